@@ -1,0 +1,85 @@
+"""Keys, ``{realm}/@v1/{rig}/{stream}/{name}``: the only place that builds or parses one."""
+
+import re
+from dataclasses import dataclass
+
+from inhand_schemas.errors import KeyFormatError, UnknownVersionError
+from inhand_schemas.messages import NAME_PATTERN
+
+VERSION = 1
+_NAME = re.compile(NAME_PATTERN)
+_VERSION_CHUNK = re.compile(r"@v(\d{1,9})")
+
+
+@dataclass(frozen=True)
+class Site:
+    """Where keys are rooted: the realm (a site) and the rig (a host or a camera group)."""
+
+    realm: str = "inhand"
+    rig: str = "rig"
+
+    def __post_init__(self) -> None:
+        require_name("realm", self.realm)
+        require_name("rig", self.rig)
+
+    def key(self, stream: str, name: str) -> str:
+        """The key of one stream; raises KeyFormatError."""
+        require_name("stream", stream)
+        require_name("name", name)
+        return f"{self._root}/{stream}/{name}"
+
+    def pattern(self, stream: str = "*") -> str:
+        """All names of a stream (or all streams) of this rig, as a Zenoh key expression."""
+        if stream != "*":
+            require_name("stream", stream)
+        return f"{self._root}/{stream}/*"
+
+    def live_key(self, service: str, instance: str) -> str:
+        """The key of an instance's liveliness token; raises KeyFormatError."""
+        require_name("service", service)
+        require_name("instance", instance)
+        return f"{self._root}/@live/{service}/{instance}"
+
+    def live_pattern(self) -> str:
+        """All liveliness tokens of this rig, as a Zenoh key expression."""
+        return f"{self._root}/@live/*/*"
+
+    @property
+    def _root(self) -> str:
+        return f"{self.realm}/@v{VERSION}/{self.rig}"
+
+
+@dataclass(frozen=True)
+class ParsedKey:
+    """A key taken apart."""
+
+    site: Site
+    stream: str
+    name: str
+
+
+def parse_key(key: str) -> ParsedKey:
+    """Take a stream's key apart; raises KeyFormatError, or UnknownVersionError."""
+    chunks = key.split("/")
+    if len(chunks) != 5:
+        raise KeyFormatError(f"{key!r} is no key of the form realm/@v{VERSION}/rig/stream/name")
+    realm, version, rig, stream, name = chunks
+    match = _VERSION_CHUNK.fullmatch(version)
+    if match is None:
+        raise KeyFormatError(f"{key!r} has no version: write @v{VERSION} after the realm")
+    if int(match[1]) != VERSION:
+        raise UnknownVersionError(
+            f"{key!r} is of version {match[1]}, and this release reads version {VERSION}: "
+            "update the older side"
+        )
+    require_name("stream", stream)
+    require_name("name", name)
+    return ParsedKey(Site(realm, rig), stream, name)
+
+
+def require_name(what: str, name: str) -> None:
+    """Raise KeyFormatError unless ``name`` is one valid chunk of a key."""
+    if not _NAME.fullmatch(name) or len(name) > 64:
+        raise KeyFormatError(
+            f"{what} {name!r} is no name: use 1 to 64 of the letters a-z, digits and underscore"
+        )

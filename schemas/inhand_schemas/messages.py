@@ -1,0 +1,261 @@
+"""Every message, as plain MessagePack maps.
+
+Lengths are metres, times integer nanoseconds since the epoch, quaternions unit and
+(w, x, y, z), camera frames OpenCV's (x right, y down, z forward). Types only grow, by optional
+fields, so that old recordings open for ever.
+"""
+
+import math
+from collections.abc import Iterable
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct
+
+JOINT_NAMES = (
+    "HipCenter",
+    "Spine",
+    "ShoulderCenter",
+    "Head",
+    "ShoulderLeft",
+    "ElbowLeft",
+    "WristLeft",
+    "HandLeft",
+    "ShoulderRight",
+    "ElbowRight",
+    "WristRight",
+    "HandRight",
+    "HipLeft",
+    "KneeLeft",
+    "AnkleLeft",
+    "FootLeft",
+    "HipRight",
+    "KneeRight",
+    "AnkleRight",
+    "FootRight",
+)
+
+NAME_PATTERN = "^[a-z0-9_]+$"
+
+Name = Annotated[str, Meta(pattern=NAME_PATTERN, max_length=64)]
+Count = Annotated[int, Meta(ge=0, le=2**63 - 1)]
+Nanoseconds = Annotated[int, Meta(ge=0, le=2**63 - 1)]
+Pixels = Annotated[int, Meta(ge=1, le=16384)]
+Positive = Annotated[float, Meta(gt=0)]
+NonNegative = Annotated[float, Meta(ge=0)]
+Fraction = Annotated[float, Meta(ge=0, le=1)]
+Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+Text = Annotated[str, Meta(max_length=4096)]
+
+ColourCodec = Literal["jpeg", "rgb8"]
+DepthCodec = Literal["z16", "z16-zstd"]
+JointState = Literal["missing", "inferred", "tracked"]
+PoseState = Literal["tracked", "predicted", "lost"]
+ServiceState = Literal["starting", "running", "degraded", "stopping"]
+
+UNIT_TOLERANCE = 1e-3
+
+
+def _require_finite(what: str, numbers: Iterable[float]) -> None:
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError(f"{what} holds a number that is not finite")
+
+
+class Message(Struct, frozen=True, kw_only=True):
+    """What every message on a stream shares."""
+
+    sequence: Count
+    time_ns: Nanoseconds
+
+
+class Pose(Struct, frozen=True):
+    """A rigid transform: ``x' = R(rotation) x + translation``."""
+
+    translation: Vector3
+    rotation: Quaternion
+
+    def __post_init__(self) -> None:
+        _require_finite("pose", (*self.translation, *self.rotation))
+        if abs(math.hypot(*self.rotation) - 1.0) > UNIT_TOLERANCE:
+            raise ValueError("rotation is no unit quaternion")
+
+
+class CameraInfo(Message, frozen=True, kw_only=True):
+    """How a camera sees: pinhole intrinsics of its ``width`` × ``height`` image.
+
+    Depth is aligned to the same view; an image of another size scales the intrinsics with it.
+    """
+
+    width: Pixels
+    height: Pixels
+    fx: Positive
+    fy: Positive
+    cx: float
+    cy: float
+    distortion: Annotated[tuple[float, ...], Meta(max_length=14)] = ()
+    depth_scale: Positive = 0.001
+    frame_rate: Positive = 30.0
+    has_colour: bool = True
+    has_depth: bool = True
+    rig_from_camera: Pose = Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
+    description: Text = ""
+
+    def __post_init__(self) -> None:
+        numbers = (self.fx, self.fy, self.cx, self.cy, self.depth_scale, self.frame_rate)
+        _require_finite("camera info", (*numbers, *self.distortion))
+
+
+class ColourImage(Struct, frozen=True):
+    """Colour pixels: ``jpeg``, or ``rgb8`` (rows of 3-byte RGB pixels)."""
+
+    codec: ColourCodec
+    width: Pixels
+    height: Pixels
+    data: bytes
+
+    def __post_init__(self) -> None:
+        if self.codec == "rgb8" and len(self.data) != 3 * self.width * self.height:
+            raise ValueError("colour bytes do not fill the image")
+
+
+class DepthImage(Struct, frozen=True):
+    """Depth pixels, little-endian unsigned 16-bit, 0 = not measured; plain or as Zstandard."""
+
+    codec: DepthCodec
+    width: Pixels
+    height: Pixels
+    data: bytes
+
+    def __post_init__(self) -> None:
+        if self.codec == "z16" and len(self.data) != 2 * self.width * self.height:
+            raise ValueError("depth bytes do not fill the image")
+
+
+class RgbdFrame(Message, frozen=True, kw_only=True):
+    """One capture of a camera; ``time_ns`` is when it was exposed, ± the uncertainty."""
+
+    time_uncertainty_ns: Nanoseconds = 0
+    colour: ColourImage | None = None
+    depth: DepthImage | None = None
+
+
+class Preview(Message, frozen=True, kw_only=True):
+    """A small JPEG for far viewers."""
+
+    width: Pixels
+    height: Pixels
+    jpeg: bytes
+
+
+class Person(Struct, frozen=True, kw_only=True):
+    """One person's 20 joints in the camera frame, in the order of ``JOINT_NAMES``.
+
+    The position of a ``missing`` joint means nothing (it is written as zeros).
+    """
+
+    id: Count
+    joints: Annotated[tuple[Vector3, ...], Meta(min_length=20, max_length=20)]
+    states: Annotated[tuple[JointState, ...], Meta(min_length=20, max_length=20)]
+    confidences: Annotated[tuple[Fraction, ...], Meta(min_length=20, max_length=20)]
+
+    def __post_init__(self) -> None:
+        for joint in self.joints:
+            _require_finite("joint", joint)
+        _require_finite("confidence", self.confidences)
+
+
+class Skeletons(Message, frozen=True, kw_only=True):
+    """The people in one frame; ``sequence`` and ``time_ns`` are the source frame's."""
+
+    people: Annotated[tuple[Person, ...], Meta(max_length=64)] = ()
+
+
+class Box(Struct, frozen=True):
+    """A rectangle in the image, in pixels."""
+
+    left: float
+    top: float
+    width: NonNegative
+    height: NonNegative
+
+    def __post_init__(self) -> None:
+        _require_finite("box", (self.left, self.top, self.width, self.height))
+
+
+class ObjectPose(Message, frozen=True, kw_only=True):
+    """Where an object is; ``sequence`` and ``time_ns`` are the source frame's.
+
+    ``covariance`` is 6 × 6, row by row, of (translation in the camera frame, rotation vector
+    applied on the left), in metres and radians. A lost object has no pose.
+    """
+
+    object: Name
+    camera: Name
+    state: PoseState
+    confidence: Fraction
+    person: Count | None = None
+    camera_from_object: Pose | None = None
+    rig_from_object: Pose | None = None
+    covariance: Annotated[tuple[float, ...], Meta(min_length=36, max_length=36)] | None = None
+    box: Box | None = None
+    class_probabilities: Annotated[dict[Name, Fraction], Meta(max_length=1024)] = {}
+
+    def __post_init__(self) -> None:
+        if self.camera_from_object is None and self.state != "lost":
+            raise ValueError(f"a {self.state} object needs a pose")
+        _require_finite("confidence", (self.confidence, *self.class_probabilities.values()))
+        if self.covariance is not None:
+            _require_finite("covariance", self.covariance)
+
+
+class Event(Message, frozen=True, kw_only=True):
+    """What was achieved, when, with which object, and the evidence for it."""
+
+    kind: Name
+    object: Name | None = None
+    person: Count | None = None
+    duration_ns: Nanoseconds = 0
+    evidence: Annotated[dict[Name, float], Meta(max_length=256)] = {}
+    description: Text = ""
+
+    def __post_init__(self) -> None:
+        _require_finite("evidence", self.evidence.values())
+
+
+class TopicHealth(Struct, frozen=True, kw_only=True):
+    """The traffic of one key at one instance since it started."""
+
+    published: Count = 0
+    received: Count = 0
+    dropped: Count = 0
+    malformed: Count = 0
+    rate_hz: NonNegative = 0.0
+
+    def __post_init__(self) -> None:
+        _require_finite("rate", (self.rate_hz,))
+
+
+class Latency(Struct, frozen=True, kw_only=True):
+    """From capture to now, over the last seconds, in milliseconds."""
+
+    p50: float
+    p99: float
+
+    def __post_init__(self) -> None:
+        _require_finite("latency", (self.p50, self.p99))
+
+
+class Health(Message, frozen=True, kw_only=True):
+    """How an instance does, once a second."""
+
+    service: Name
+    instance: Name
+    state: ServiceState
+    uptime_s: NonNegative
+    resident_bytes: Count
+    topics: Annotated[dict[str, TopicHealth], Meta(max_length=4096)] = {}
+    latency_ms: Latency | None = None
+    last_error: Text | None = None
+
+    def __post_init__(self) -> None:
+        _require_finite("uptime", (self.uptime_s,))

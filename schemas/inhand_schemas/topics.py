@@ -1,0 +1,119 @@
+"""Topics: a stream's message type, delivery and encoding in one object."""
+
+import re
+from dataclasses import dataclass
+from typing import Generic, Literal, TypeVar
+
+import msgspec
+
+from inhand_schemas import messages
+from inhand_schemas.errors import KeyFormatError, MessageError, UnknownVersionError
+from inhand_schemas.keys import ParsedKey, Site, parse_key
+
+T = TypeVar("T", bound=messages.Message)
+
+_ENCODING = re.compile(r"application/msgpack;(\w+)\.v(\d{1,9})")
+_encoder = msgspec.msgpack.Encoder()
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """Quality of service of a stream, in words of our own.
+
+    ``newest`` readers keep the newest messages only, ``every`` readers queue them; a ``kept``
+    stream hands its last message to late joiners. ``wait_for_first`` lets a fragmented message
+    that is under way finish, but a slow reader never slows another.
+    """
+
+    readers: Literal["newest", "every"]
+    congestion: Literal["wait_for_first", "wait"]
+    priority: Literal["urgent", "normal", "bulk"]
+    kept: bool = False
+
+
+BULK = Delivery("newest", "wait_for_first", "bulk")
+URGENT = Delivery("every", "wait_for_first", "urgent")
+RELIABLE = Delivery("every", "wait", "normal")
+KEPT = Delivery("every", "wait", "normal", kept=True)
+
+
+class Topic(Generic[T]):
+    """A stream: ``topic.key(site, name)``, ``topic.encode(message)``, ``topic.decode(bytes)``."""
+
+    def __init__(self, stream: str, message_type: type[T], delivery: Delivery) -> None:
+        self.stream = stream
+        self.message_type = message_type
+        self.delivery = delivery
+        self.encoding = f"application/msgpack;{message_type.__name__}.v1"
+        self._decoder = msgspec.msgpack.Decoder(message_type)
+
+    def key(self, site: Site, name: str) -> str:
+        """The key of one camera, object, kind or instance; raises KeyFormatError."""
+        return site.key(self.stream, name)
+
+    def pattern(self, site: Site) -> str:
+        """All names of this stream, as a Zenoh key expression."""
+        return site.pattern(self.stream)
+
+    def encode(self, message: T) -> bytes:
+        """The message as MessagePack; raises MessageError for one of another type."""
+        if not isinstance(message, self.message_type):
+            raise MessageError(
+                f"{self.stream} carries {self.message_type.__name__}, not {type(message).__name__}"
+            )
+        return _encoder.encode(message)
+
+    def decode(self, data: bytes, encoding: str | None = None) -> T:
+        """The message in ``data``.
+
+        Raises MessageError, or UnknownVersionError when ``encoding`` names another version.
+        """
+        if encoding is not None:
+            self._check_encoding(encoding)
+        try:
+            return self._decoder.decode(data)
+        except (msgspec.MsgspecError, RecursionError) as error:
+            raise MessageError(f"no valid {self.message_type.__name__}: {error}") from None
+
+    def _check_encoding(self, encoding: str) -> None:
+        match = _ENCODING.fullmatch(encoding)
+        if match is None or match[1] != self.message_type.__name__:
+            raise MessageError(f"{self.stream} carries {self.encoding}, not {encoding!r}")
+        if match[2] != "1":
+            raise UnknownVersionError(
+                f"{match[1]} comes in version {match[2]}, and this release reads version 1: "
+                "update the older side"
+            )
+
+
+INFO = Topic("info", messages.CameraInfo, KEPT)
+RGBD = Topic("rgbd", messages.RgbdFrame, BULK)
+PREVIEW = Topic("preview", messages.Preview, BULK)
+SKELETONS = Topic("skeletons", messages.Skeletons, URGENT)
+POSE = Topic("pose", messages.ObjectPose, URGENT)
+EVENT = Topic("event", messages.Event, RELIABLE)
+LABEL = Topic("label", messages.ObjectPose, RELIABLE)
+HEALTH = Topic("health", messages.Health, URGENT)
+
+AnyTopic = (
+    Topic[messages.CameraInfo]
+    | Topic[messages.RgbdFrame]
+    | Topic[messages.Preview]
+    | Topic[messages.Skeletons]
+    | Topic[messages.ObjectPose]
+    | Topic[messages.Event]
+    | Topic[messages.Health]
+)
+
+TOPICS: dict[str, AnyTopic] = {
+    topic.stream: topic for topic in (INFO, RGBD, PREVIEW, SKELETONS, POSE, EVENT, LABEL, HEALTH)
+}
+
+
+def topic_of(key: str) -> tuple[AnyTopic, ParsedKey]:
+    """The topic that a key belongs to; raises KeyFormatError, or UnknownVersionError."""
+    parsed = parse_key(key)
+    topic = TOPICS.get(parsed.stream)
+    if topic is None:
+        raise KeyFormatError(f"{key!r}: there is no stream {parsed.stream!r}")
+    return topic, parsed
