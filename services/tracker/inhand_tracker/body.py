@@ -1,0 +1,207 @@
+"""The body: pelvis basis, body pose, part predictors, height (Darby et al. 2014, section 4).
+
+Joints are (..., 20, 3) in metres in the camera frame, in Kinect order
+(``inhand_schemas.messages.JOINT_NAMES``). A part is a joint with its parent: 19 of them, in the
+order of ``PARTS``. Missing joints are NaN.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from inhand_schemas.messages import JOINT_NAMES
+from numpy.typing import NDArray
+
+from inhand_tracker import rotations
+
+Array = NDArray[np.float64]
+
+JOINT = {name: index for index, name in enumerate(JOINT_NAMES)}
+
+_PARENT_NAMES = {
+    "Spine": "HipCenter",
+    "ShoulderCenter": "Spine",
+    "Head": "ShoulderCenter",
+    "ShoulderLeft": "ShoulderCenter",
+    "ElbowLeft": "ShoulderLeft",
+    "WristLeft": "ElbowLeft",
+    "HandLeft": "WristLeft",
+    "ShoulderRight": "ShoulderCenter",
+    "ElbowRight": "ShoulderRight",
+    "WristRight": "ElbowRight",
+    "HandRight": "WristRight",
+    "HipLeft": "HipCenter",
+    "KneeLeft": "HipLeft",
+    "AnkleLeft": "KneeLeft",
+    "FootLeft": "AnkleLeft",
+    "HipRight": "HipCenter",
+    "KneeRight": "HipRight",
+    "AnkleRight": "KneeRight",
+    "FootRight": "AnkleRight",
+}
+
+PARTS = tuple(_PARENT_NAMES)
+PART = {name: index for index, name in enumerate(PARTS)}
+CHILD_JOINTS = np.array([JOINT[name] for name in PARTS])
+PARENT_JOINTS = np.array([JOINT[_PARENT_NAMES[name]] for name in PARTS])
+RIGHT_HAND = PART["HandRight"]
+LEFT_HAND = PART["HandLeft"]
+PELVIS_JOINTS = np.array([JOINT[n] for n in ("HipCenter", "Spine", "HipLeft", "HipRight")])
+
+MIRRORED_JOINTS = np.array(
+    [
+        JOINT[
+            name.replace("Left", "Right") if "Left" in name else name.replace("Right", "Left")
+        ]
+        for name in JOINT_NAMES
+    ]
+)
+
+# From the chain ankle-knee-hip, hip centre-spine-shoulder centre-head to stature: the ankle
+# stands at 3.9 % of it and the middle of the head at 93.5 % (Drillis and Contini 1966).
+CHAIN_SHARE_OF_STATURE = 0.896
+
+HEIGHT_WINDOW = 300
+
+
+@dataclass(frozen=True)
+class Bases:
+    """Coordinate systems in the camera frame: ``origins`` (..., 3), ``rotations`` (..., 4)."""
+
+    origins: Array
+    rotations: Array
+
+    def to_camera(self, translations: Array, orientations: Array) -> tuple[Array, Array]:
+        """Poses given in these bases, (..., 3) and (..., 4), taken to the camera frame."""
+        return (
+            self.origins + rotations.rotate(self.rotations, translations),
+            rotations.multiply(self.rotations, orientations),
+        )
+
+    def from_camera(self, translations: Array, orientations: Array) -> tuple[Array, Array]:
+        """Poses of the camera frame, (..., 3) and (..., 4), seen from these bases."""
+        inverse = rotations.conjugate(self.rotations)
+        return (
+            rotations.rotate(inverse, translations - self.origins),
+            rotations.multiply(inverse, orientations),
+        )
+
+
+def pelvis_basis(joints: Array) -> Bases:
+    """H*: x from the right hip to the left, y up the spine, z forwards, origin at HipCenter."""
+    x = joints[..., JOINT["HipLeft"], :] - joints[..., JOINT["HipRight"], :]
+    upwards = joints[..., JOINT["Spine"], :] - joints[..., JOINT["HipCenter"], :]
+    z = np.cross(x, upwards)
+    y = np.cross(z, x)
+    axes = np.stack([_unit(axis) for axis in (x, y, z)], axis=-1)
+    return Bases(joints[..., JOINT["HipCenter"], :], rotations.from_matrix(axes))
+
+
+def has_pelvis(joints: Array) -> bool:
+    """Whether the pelvis basis of one person's (20, 3) joints is defined."""
+    if not np.isfinite(joints[PELVIS_JOINTS]).all():
+        return False
+    x = joints[JOINT["HipLeft"]] - joints[JOINT["HipRight"]]
+    upwards = joints[JOINT["Spine"]] - joints[JOINT["HipCenter"]]
+    return bool(np.linalg.norm(np.cross(x, upwards)) > 1e-6)
+
+
+def part_bases(joints: Array, pelvis: Bases) -> Bases:
+    """The part predictors H_l, (..., 19): H* at the parent joint, z turned along the part.
+
+    A part of no length keeps the pelvis' directions; one that points exactly backwards is turned
+    about the pelvis' x axis.
+    """
+    parents = joints[..., PARENT_JOINTS, :]
+    pelvis_rotation = pelvis.rotations[..., None, :]
+    along = rotations.rotate(
+        rotations.conjugate(pelvis_rotation), joints[..., CHILD_JOINTS, :] - parents
+    )
+    return Bases(parents, rotations.multiply(pelvis_rotation, _turn_z_to(along)))
+
+
+def _turn_z_to(direction: Array) -> Array:
+    """The shortest rotation that takes the z axis to a direction, (..., 3) → (..., 4)."""
+    length = np.linalg.norm(direction, axis=-1, keepdims=True)
+    unit = np.divide(
+        direction, length, out=np.zeros_like(direction) + [0.0, 0.0, 1.0], where=length > 1e-9
+    )
+    x, y, z = np.moveaxis(unit, -1, 0)
+    quaternion = np.stack((1.0 + z, -y, x, np.zeros_like(z)), axis=-1)
+    size = np.linalg.norm(quaternion, axis=-1, keepdims=True)
+    half_turn_about_x = np.zeros_like(quaternion) + [0.0, 1.0, 0.0, 0.0]
+    return np.divide(quaternion, size, out=half_turn_about_x, where=~(size <= 1e-9))
+
+
+def body_pose(joints: Array, pelvis: Bases, height: Array | float) -> Array:
+    """b: the joints in the pelvis basis in units of the person's height, (..., 60)."""
+    local = rotations.rotate(
+        rotations.conjugate(pelvis.rotations)[..., None, :],
+        joints - pelvis.origins[..., None, :],
+    )
+    scaled = local / np.asarray(height)[..., None, None]
+    return scaled.reshape(*scaled.shape[:-2], 60)
+
+
+def part_lengths(joints: Array) -> Array:
+    """The lengths of the 19 parts, (..., 19); NaN where an end is missing."""
+    return np.linalg.norm(
+        joints[..., CHILD_JOINTS, :] - joints[..., PARENT_JOINTS, :], axis=-1
+    )
+
+
+def standing_height(lengths: Array) -> float:
+    """Stature from part lengths (T, 19) of one person, each part's median over time.
+
+    Lengths do not change when a person bends. A leg seen on one side only counts for both; NaN
+    when a part of the chain was never seen.
+    """
+    with np.errstate(all="ignore"):
+        seen = np.isfinite(lengths).any(axis=0)
+        typical = np.full(len(PARTS), np.nan)
+        typical[seen] = np.nanmedian(lengths[:, seen], axis=0)
+    trunk = sum(typical[PART[name]] for name in ("Spine", "ShoulderCenter", "Head"))
+    legs = []
+    for side in ("Left", "Right"):
+        legs.append(typical[PART["Knee" + side]] + typical[PART["Ankle" + side]])
+    known = [leg for leg in legs if np.isfinite(leg)]
+    if not known:
+        return float("nan")
+    return float((trunk + sum(known) / len(known)) / CHAIN_SHARE_OF_STATURE)
+
+
+class RunningHeight:
+    """h_t: the stature from the last frames' part lengths."""
+
+    def __init__(self) -> None:
+        self._lengths = np.full((HEIGHT_WINDOW, len(PARTS)), np.nan)
+        self._frames = 0
+
+    def update(self, joints: Array) -> float:
+        """Take one frame's (20, 3) joints and give the height in metres; NaN while unknown."""
+        self._lengths[self._frames % HEIGHT_WINDOW] = part_lengths(joints)
+        self._frames += 1
+        return standing_height(self._lengths[: self._frames])
+
+
+def mirror_joints(joints: Array) -> Array:
+    """The person as a mirror shows it: x negated, left and right exchanged, (..., 20, 3)."""
+    return joints[..., MIRRORED_JOINTS, :] * np.array([-1.0, 1.0, 1.0])
+
+
+def mirror_pose(
+    translations: Array, orientations: Array, mirror_normal: Array
+) -> tuple[Array, Array]:
+    """Object poses (..., 3) and (..., 4) as a mirror (x negated) shows them.
+
+    ``mirror_normal`` (3,) is the unit normal, in the object's frame, of the object's own plane of
+    symmetry, which makes the mirrored object the same object again.
+    """
+    # A reflection is minus a half turn about its normal: S R S' = turn_x R turn_normal.
+    turn_x = np.array([0.0, 1.0, 0.0, 0.0])
+    turn_normal = np.concatenate(([0.0], mirror_normal))
+    turned = rotations.multiply(rotations.multiply(turn_x, orientations), turn_normal)
+    return translations * np.array([-1.0, 1.0, 1.0]), turned
+
+
+def _unit(vector: Array) -> Array:
+    return vector / np.linalg.norm(vector, axis=-1, keepdims=True)
