@@ -5,6 +5,7 @@
 
 import json
 import sys
+from inspect import cleandoc
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ from inhand_schemas.topics import TOPICS
 def json_schema(message_type: type[msgspec.Struct]) -> dict[str, Any]:
     """The JSON Schema (2020-12) of a message type; bytes appear as base64 strings."""
     schema = msgspec.json.schema(message_type)
+    for definition in schema["$defs"].values():
+        definition["description"] = cleandoc(definition["description"])
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 

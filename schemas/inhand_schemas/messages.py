@@ -34,7 +34,8 @@ JOINT_NAMES = (
     "FootRight",
 )
 
-NAME_PATTERN = "^[a-z0-9_]+$"
+# Ends by a lookahead, since in some languages "$" also matches before a last newline.
+NAME_PATTERN = r"^[a-z0-9_]+(?![\s\S])"
 
 Name = Annotated[str, Meta(pattern=NAME_PATTERN, max_length=64)]
 Count = Annotated[int, Meta(ge=0, le=2**63 - 1)]

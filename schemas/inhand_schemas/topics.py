@@ -72,7 +72,7 @@ class Topic(Generic[T]):
             self._check_encoding(encoding)
         try:
             return self._decoder.decode(data)
-        except (msgspec.MsgspecError, RecursionError) as error:
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
             raise MessageError(f"no valid {self.message_type.__name__}: {error}") from None
 
     def _check_encoding(self, encoding: str) -> None:

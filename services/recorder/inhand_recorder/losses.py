@@ -1,0 +1,87 @@
+"""Losses per key, from the numbers that messages carry."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from inhand_runtime.recording import SEQUENCE_MASK
+
+LOSSES_RECORD = "losses"
+"""The name of the metadata record that a recording keeps its losses in."""
+
+_FORMAT = re.compile(r"received=(\d+) lost=(\d+) restarts=(\d+) dropped=(\d+)")
+
+
+@dataclass(frozen=True)
+class Losses:
+    """What came of one key and what did not.
+
+    ``lost`` counts the numbers that are missing; ``dropped`` those among them that reached this
+    process and found its queue full; ``restarts`` how often a publisher began anew.
+    """
+
+    received: int = 0
+    lost: int = 0
+    restarts: int = 0
+    dropped: int = 0
+
+
+class LossCounter:
+    """Counts one recording's losses, each key from the first message seen on.
+
+    A gap forward is lost messages. A jump back is a restarted publisher or a looped replay, and
+    loses nothing. A repeated number is a duplicate and not counted at all. Numbers are compared
+    in the 32 bits that a recording keeps, so that a count from the file agrees.
+    """
+
+    def __init__(self) -> None:
+        self._latest: dict[str, int] = {}
+        self._losses: dict[str, Losses] = {}
+
+    def count(self, key: str, sequence: int) -> None:
+        """Take note of one message."""
+        sequence &= SEQUENCE_MASK
+        latest = self._latest.get(key)
+        losses = self._losses.get(key, Losses())
+        if sequence == latest:
+            return
+        self._latest[key] = sequence
+        received = losses.received + 1
+        if latest is None:
+            self._losses[key] = replace(losses, received=received)
+        elif sequence < latest:
+            self._losses[key] = replace(losses, received=received, restarts=losses.restarts + 1)
+        else:
+            lost = losses.lost + sequence - latest - 1
+            self._losses[key] = replace(losses, received=received, lost=lost)
+
+    def losses(self, dropped: Mapping[str, int] | None = None) -> dict[str, Losses]:
+        """The count so far by key, with the drops that the queue counted by key."""
+        dropped = dropped or {}
+        keys = sorted(self._losses.keys() | dropped.keys())
+        return {
+            key: replace(self._losses.get(key, Losses()), dropped=dropped.get(key, 0))
+            for key in keys
+        }
+
+
+def format_losses(losses: Mapping[str, Losses]) -> dict[str, str]:
+    """The values of the metadata record ``losses``."""
+    return {
+        key: f"received={one.received} lost={one.lost} "
+        f"restarts={one.restarts} dropped={one.dropped}"
+        for key, one in losses.items()
+    }
+
+
+def parse_losses(values: Mapping[str, str]) -> dict[str, Losses]:
+    """What ``format_losses`` wrote; raises ValueError."""
+    return {key: _parse(key, value) for key, value in values.items()}
+
+
+def _parse(key: str, value: str) -> Losses:
+    match = _FORMAT.fullmatch(value)
+    if match is None:
+        raise ValueError(f"the losses of {key} are written as {value!r}")
+    received, lost, restarts, dropped = map(int, match.groups())
+    return Losses(received, lost, restarts, dropped)

@@ -1,0 +1,103 @@
+"""One file under way: what it holds, what of it stands only in memory, and when it is full."""
+
+import contextlib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from inhand_runtime.part_file import PART_SUFFIX
+from inhand_runtime.recording import RecordingError, RecordingWriter
+
+from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One encoded message; times are nanoseconds since the epoch.
+
+    A ``kept`` one (calibration, say) belongs at the start of every later file.
+    """
+
+    key: str
+    payload: bytes
+    received_ns: int
+    captured_ns: int
+    sequence: int
+    kept: bool = False
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When a file is big enough, in bytes and seconds; 0 = never."""
+
+    split_bytes: int = 0
+    split_seconds: float = 0.0
+
+
+class RecordingFile:
+    """Writes entries and counts losses; every method but ``give_up`` raises RecordingError."""
+
+    def __init__(self, path: Path, opened_ns: int) -> None:
+        self._part = path.with_name(path.name + PART_SUFFIX)
+        self._opened_ns = opened_ns
+        self._losses = LossCounter()
+        self._in_memory: list[Entry] = []
+        self._saved = False
+        self._writer = RecordingWriter(path)
+
+    def full(self, limits: Limits, now_ns: int) -> bool:
+        """Whether it has reached a limit."""
+        by_size = 0 < limits.split_bytes <= self._writer.bytes_written
+        by_time = 0 < limits.split_seconds * 1e9 <= now_ns - self._opened_ns
+        return by_size or by_time
+
+    def repeat(self, entry: Entry) -> None:
+        """Add an entry of an earlier file, as if it were received when this one was opened."""
+        self._write(replace(entry, received_ns=self._opened_ns))
+
+    def put(self, entry: Entry) -> None:
+        """Add an entry; it stands in memory until its chunk is full, or until ``sync``."""
+        self._in_memory.append(entry)
+        before = self._writer.bytes_written
+        self._write(entry)
+        if self._writer.bytes_written > before and len(self._in_memory) > 1:
+            # The chunk that went to the file may or may not hold the newest entry.
+            del self._in_memory[:-1]
+            self._saved = True
+
+    def sync(self) -> None:
+        """Bring everything to the disk, and make sure that the file is still there."""
+        self._writer.sync()
+        if not self._part.exists():
+            raise RecordingError(
+                f"{self._part} was removed while it was written: "
+                "bring its disk or folder back; a new file is begun"
+            )
+        self._in_memory.clear()
+        self._saved = True
+
+    def finish(self, dropped: Mapping[str, int]) -> Path:
+        """Write the losses (with the drops of a queue by key) and give the file its name."""
+        self._writer.add_metadata(LOSSES_RECORD, format_losses(self._losses.losses(dropped)))
+        return self._writer.close()
+
+    def give_up(self) -> list[Entry]:
+        """Close a file that failed, and return what would be lost otherwise.
+
+        The ``.part`` stays, except when all that it holds is returned.
+        """
+        with contextlib.suppress(RecordingError):  # it failed already, and says so again
+            self._writer.close()
+        if not self._saved:
+            self._part.unlink(missing_ok=True)
+        return self._in_memory
+
+    def _write(self, entry: Entry) -> None:
+        self._losses.count(entry.key, entry.sequence)
+        self._writer.write(
+            entry.key,
+            entry.payload,
+            received_ns=entry.received_ns,
+            captured_ns=entry.captured_ns,
+            sequence=entry.sequence,
+        )

@@ -1,0 +1,136 @@
+"""A whole recording from one that was cut off or damaged."""
+
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from inhand_runtime.recording import MESSAGE_ENCODING, RecordingError, RecordingWriter
+from inhand_schemas.errors import KeyFormatError, MessageError, UnknownVersionError
+from inhand_schemas.topics import AnyTopic, topic_of
+from mcap.records import Channel, Message, Metadata
+
+from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses, parse_losses
+from inhand_recorder.scanning import Bytes, Stretch, channels, opened, scan
+
+RECOVERY_RECORD = "recovery"
+RECOVERING_SUFFIX = ".recovering"
+
+
+@dataclass(frozen=True)
+class RecoveryReport:
+    """What was saved: ``messages`` messages of ``keys`` keys.
+
+    ``skipped_bytes`` could not be read, or were no messages of Inhand's.
+    """
+
+    output: Path
+    messages: int
+    keys: int
+    skipped_bytes: int
+
+
+def recover_recording(path: Path, output: Path) -> RecoveryReport:
+    """Write all messages that are left in ``path`` to the new file ``output``.
+
+    What a checksum contradicts is left out. The named records stay, ``losses`` is counted anew,
+    and ``recovery`` tells where the file comes from. Raises RecordingError, also when nothing is
+    left, and then leaves no file; neither the input nor an existing file is ever changed.
+    """
+    with opened(path) as data:
+        unfinished = output.with_name(output.name + RECOVERING_SUFFIX)
+        unfinished.unlink(missing_ok=True)
+        try:
+            with RecordingWriter(output, part_suffix=RECOVERING_SUFFIX) as writer:
+                rescue = _rescue(path, data, writer)
+        except RecordingError as error:
+            if not isinstance(error.__cause__, OSError):
+                raise
+            raise RecordingError(
+                f"cannot write {output}: {error.__cause__.strerror}: make room or use another "
+                f"disk; {path} stays as it is"
+            ) from error
+        finally:
+            unfinished.unlink(missing_ok=True)
+    return RecoveryReport(output, rescue.messages, len(rescue.found), rescue.skipped_bytes)
+
+
+def _rescue(path: Path, data: Bytes, writer: RecordingWriter) -> "_Rescue":
+    rescue = _Rescue(writer, _known(path, channels(data)))
+    for stretch in scan(data):
+        rescue.take(stretch)
+    if rescue.messages == 0:
+        raise RecordingError(f"{path} holds no message that could be saved: delete it")
+    rescue.finish(path)
+    return rescue
+
+
+class _Rescue:
+    def __init__(self, writer: RecordingWriter, known: dict[int, tuple[str, AnyTopic]]) -> None:
+        self._writer = writer
+        self._known = known
+        self._counter = LossCounter()
+        self._dropped: dict[str, int] = {}
+        self.found: set[str] = set()
+        self.messages = 0
+        self.skipped_bytes = 0
+
+    def take(self, stretch: Stretch) -> None:
+        self.skipped_bytes += stretch.unread_bytes
+        for record in stretch.records:
+            if isinstance(record, Message):
+                self._take_message(record, checked=stretch.state == "whole")
+            elif isinstance(record, Metadata):
+                self._take_metadata(record)
+
+    def finish(self, source: Path) -> None:
+        losses = self._counter.losses(self._dropped)
+        self._writer.add_metadata(LOSSES_RECORD, format_losses(losses))
+        origin = {"source": source.name, "skipped_bytes": str(self.skipped_bytes)}
+        self._writer.add_metadata(RECOVERY_RECORD, origin)
+
+    def _take_message(self, record: Message, *, checked: bool) -> None:
+        key, topic = self._known.get(record.channel_id, (None, None))
+        if key is None or topic is None or not (checked or _decodes(topic, record.data)):
+            self.skipped_bytes += len(record.data)
+            return
+        self._writer.write(
+            key,
+            record.data,
+            received_ns=record.log_time,
+            captured_ns=record.publish_time,
+            sequence=record.sequence,
+        )
+        self._counter.count(key, record.sequence)
+        self.found.add(key)
+        self.messages += 1
+
+    def _take_metadata(self, record: Metadata) -> None:
+        if record.name != LOSSES_RECORD:
+            self._writer.add_metadata(record.name, record.metadata)
+            return
+        with suppress(ValueError):
+            written = parse_losses(record.metadata)
+            self._dropped = {key: losses.dropped for key, losses in written.items()}
+
+
+def _known(path: Path, by_number: dict[int, Channel]) -> dict[int, tuple[str, AnyTopic]]:
+    known = {}
+    for number, channel in by_number.items():
+        if channel.message_encoding != MESSAGE_ENCODING:
+            continue
+        try:
+            topic, _ = topic_of(channel.topic)
+        except UnknownVersionError as error:
+            raise RecordingError(f"{path}: {error}") from None
+        except KeyFormatError:
+            continue
+        known[number] = channel.topic, topic
+    return known
+
+
+def _decodes(topic: AnyTopic, payload: bytes) -> bool:
+    try:
+        topic.decode(payload)
+    except MessageError:
+        return False
+    return True

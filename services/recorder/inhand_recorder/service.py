@@ -1,0 +1,189 @@
+"""The recorder's daemon: takes what arrives, and keeps the disk's troubles from what receives."""
+
+import tempfile
+import time
+from pathlib import Path
+from typing import Annotated
+
+from inhand_runtime.daemon import Daemon, running_daemon
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.inbox import Received
+from inhand_runtime.recording import RecordingError
+from inhand_runtime.settings import Section, Settings
+from inhand_schemas.errors import KeyFormatError, MessageError
+from inhand_schemas.topics import RGBD, TOPICS
+from pydantic import AfterValidator, ByteSize, Field
+
+from inhand_recorder.gaps import GapTeller
+from inhand_recorder.journal import Journal
+from inhand_recorder.recording_file import Limits
+from inhand_recorder.stamps import entry_of
+
+SYNC_PERIOD_S = 0.75
+"""A crash loses this much and what a sync takes itself: a second at the most."""
+IDLE_S = 0.1
+FIRST_RETRY_S, LAST_RETRY_S = 1.0, 30.0
+QUEUE_SAMPLES = 1 << 16
+FRAMES_SHARE = 0.75
+SMALLEST_SPLIT_BYTES = 1 << 20
+SMALLEST_SPLIT_S = 1.0
+
+
+def _known_streams(streams: tuple[str, ...]) -> tuple[str, ...]:
+    for stream in streams:
+        if stream not in TOPICS:
+            raise ValueError(f"there is no stream {stream!r}; there are: {', '.join(TOPICS)}")
+    return streams
+
+
+def _zero_or_a_mebibyte(size: ByteSize) -> ByteSize:
+    if 0 < size < SMALLEST_SPLIT_BYTES:
+        raise ValueError("a file must hold 1 MiB at least; 0 means never")
+    return size
+
+
+def _zero_or_a_second(seconds: float) -> float:
+    if 0 < seconds < SMALLEST_SPLIT_S:
+        raise ValueError("a file must last 1 s at least; 0 means never")
+    return seconds
+
+
+class RecorderSettings(Section):
+    """``[recorder.NAME]``.
+
+    A new file begins after ``split_bytes`` or ``split_seconds``; 0 means never. What the disk
+    cannot take at once waits in memory, ``queue_bytes`` at the most; then the oldest is dropped
+    and counted.
+    """
+
+    folder: Path = Path("recordings")
+    streams: Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_known_streams)] = (
+        tuple(TOPICS)
+    )
+    split_bytes: Annotated[ByteSize, Field(ge=0), AfterValidator(_zero_or_a_mebibyte)] = ByteSize(0)
+    split_seconds: Annotated[
+        float, Field(ge=0, allow_inf_nan=False), AfterValidator(_zero_or_a_second)
+    ] = 0.0
+    queue_bytes: Annotated[ByteSize, Field(ge=1 << 20)] = ByteSize(256 << 20)
+
+
+def run(settings: Settings[RecorderSettings]) -> None:
+    """Record until SIGTERM or SIGINT.
+
+    Raises SettingsError before anything starts, InhandError when there is no session, and
+    RecordingError when the end could not be written.
+    """
+    chosen = settings.service
+    _require_writable(chosen.folder)
+    with running_daemon("recorder", settings) as daemon:
+        journal = Journal(
+            chosen.folder,
+            settings.site.rig,
+            Limits(chosen.split_bytes, chosen.split_seconds),
+            daemon.health.drops,
+        )
+        for stream, size in queue_shares(chosen.streams, chosen.queue_bytes).items():
+            daemon.subscribe(TOPICS[stream], samples=QUEUE_SAMPLES, size=size)
+        _Recorder(daemon, journal).run()
+
+
+def queue_shares(streams: tuple[str, ...], queue_bytes: int) -> dict[str, int]:
+    """How many bytes of each stream may wait: three quarters for frames, the rest evenly.
+
+    Small messages have room of their own, so that no flood of frames pushes a pose out.
+    """
+    others = [stream for stream in streams if stream != RGBD.stream]
+    frames = 0 if len(others) == len(streams) else queue_bytes
+    if frames and others:
+        frames = int(FRAMES_SHARE * queue_bytes)
+    shares = {stream: (queue_bytes - frames) // len(others) for stream in others}
+    return shares | ({RGBD.stream: frames} if frames else {})
+
+
+def _require_writable(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise SettingsError(
+            f"cannot write to the folder {folder}: {error.strerror}: change folder in the "
+            "recorder's settings"
+        ) from None
+
+
+class _Recorder:
+    def __init__(self, daemon: Daemon, journal: Journal) -> None:
+        self._daemon = daemon
+        self._journal = journal
+        self._gaps = GapTeller(daemon.health.error)
+
+    def run(self) -> None:
+        """Write until stopped; while the disk fails, what arrives waits in the inbox."""
+        health, delay = self._daemon.health, FIRST_RETRY_S
+        while not self._daemon.stop.is_set():
+            try:
+                self._write_until_stopped()
+            except RecordingError as error:
+                delay = FIRST_RETRY_S if health.state == "running" else min(2 * delay, LAST_RETRY_S)
+                health.state = "degraded"
+                health.error(str(error))
+                self._wait(delay)
+        self._write_the_rest()
+
+    def _write_until_stopped(self) -> None:
+        self._journal.sync()
+        self._daemon.health.state = "running"
+        next_sync = time.monotonic() + SYNC_PERIOD_S
+        while not self._daemon.stop.is_set():
+            sample = self._daemon.inbox.get(IDLE_S)
+            if sample is not None:
+                self._write(sample)
+            if time.monotonic() >= next_sync:
+                self._journal.sync()
+                self._gaps.tell()
+                next_sync = time.monotonic() + SYNC_PERIOD_S
+
+    def _write_the_rest(self) -> None:
+        self._daemon.inbox.close()
+        try:
+            try:
+                self._write_all()
+            except RecordingError as error:
+                self._daemon.health.error(f"{error}; trying a last time in another file")
+                self._write_all()
+                raise
+        finally:
+            self._count_what_is_left()
+
+    def _write_all(self) -> None:
+        while (sample := self._daemon.inbox.get(0)) is not None:
+            self._write(sample)
+        self._journal.close()
+        self._gaps.tell()
+
+    def _write(self, sample: Received) -> None:
+        try:
+            entry = entry_of(sample)
+        except (MessageError, KeyFormatError) as error:
+            self._daemon.health.malformed(sample.key, error)
+            return
+        self._daemon.health.received(entry.key)
+        self._gaps.count(entry.key, entry.sequence)
+        self._journal.write(entry)
+
+    def _count_what_is_left(self) -> None:
+        left = self._journal.waiting
+        while (sample := self._daemon.inbox.get(0)) is not None:
+            left[sample.key] += 1
+        for key, messages in left.items():
+            for _ in range(messages):
+                self._daemon.health.dropped(key)
+        if left:
+            self._daemon.health.error(f"{left.total()} messages could not be written any more")
+
+    def _wait(self, seconds: float) -> None:
+        # In slices: a signal handler must not set an event that its own thread is waiting on.
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and not self._daemon.stop.is_set():
+            time.sleep(IDLE_S)

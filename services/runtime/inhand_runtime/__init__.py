@@ -1,0 +1,1 @@
+"""What every daemon shares: settings, session, lifecycle, health, logs, pixels and recordings."""

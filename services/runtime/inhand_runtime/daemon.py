@@ -1,0 +1,146 @@
+"""The life of a daemon: start, tell its health, stop on a signal.
+
+``with running_daemon("tracker", settings) as daemon`` gives a service its publishers, its inbox
+and the signal to stop; what a service does in between is its own.
+"""
+
+import contextlib
+import logging
+import threading
+from collections.abc import Iterator
+from typing import TypeVar
+
+import zenoh
+from inhand_schemas.errors import KeyFormatError, MessageError
+from inhand_schemas.keys import Site
+from inhand_schemas.messages import Health, Message
+from inhand_schemas.topics import HEALTH, AnyTopic, Topic
+
+from inhand_runtime.health import HealthBoard
+from inhand_runtime.inbox import UNBOUNDED, Inbox, Received
+from inhand_runtime.logs import configure_logs
+from inhand_runtime.session import Publisher, Subscription, open_session, subscribe
+from inhand_runtime.settings import Section, Settings, ZenohSettings
+from inhand_runtime.signals import set_on_signals
+
+log = logging.getLogger(__name__)
+
+T = TypeVar("T", bound=Message)
+
+HEALTH_PERIOD_S = 1.0
+REPORTS_UNTIL_LONELY = 3
+NEWEST_SAMPLES = 4
+EVERY_SAMPLES = 256
+
+
+class Daemon:
+    """What a running service works with."""
+
+    def __init__(
+        self, session: zenoh.Session, site: Site, service: str, instance: str, stop: threading.Event
+    ) -> None:
+        self.site = site
+        self.instance = instance
+        self.inbox = Inbox()
+        self.health = HealthBoard(service, instance)
+        self.stop = stop
+        self._session = session
+        self._subscriptions: list[Subscription] = []
+
+    def publisher(self, topic: Topic[T], name: str) -> Publisher[T]:
+        """A counted publisher of this site."""
+        return Publisher(self._session, topic, topic.key(self.site, name), self.health.published)
+
+    def subscribe(
+        self,
+        topic: AnyTopic,
+        name: str | None = None,
+        *,
+        samples: int | None = None,
+        size: int = UNBOUNDED,
+    ) -> None:
+        """Let a topic (one name of it, or all) arrive in the inbox.
+
+        ``samples`` and ``size`` (bytes) bound what may wait; without ``samples`` the topic's
+        delivery does. The oldest beyond the bound is dropped and counted.
+        """
+        if samples is None:
+            samples = NEWEST_SAMPLES if topic.delivery.readers == "newest" else EVERY_SAMPLES
+        lane = self.inbox.lane(samples=samples, size=size, on_drop=self.health.dropped)
+        pattern = topic.pattern(self.site) if name is None else topic.key(self.site, name)
+        self._subscriptions.append(subscribe(self._session, pattern, topic.delivery, lane.put))
+
+    def is_alone(self) -> bool:
+        """Whether no other process is connected now."""
+        info = self._session.info
+        return not (info.peers_zid() or info.routers_zid())
+
+    def decode(self, topic: Topic[T], sample: Received) -> T | None:
+        """The sample's message; None when it is malformed, which is counted and logged."""
+        try:
+            message = topic.decode(sample.payload, sample.encoding)
+        except (MessageError, KeyFormatError) as error:
+            self.health.malformed(sample.key, error)
+            return None
+        self.health.received(sample.key)
+        return message
+
+
+@contextlib.contextmanager
+def running_daemon(service: str, settings: Settings[Section]) -> Iterator[Daemon]:
+    """Open the session, announce the instance, and tell its health until the block ends.
+
+    SIGTERM or SIGINT sets ``daemon.stop``; a second one ends the process at once. Raises
+    SettingsError or InhandError when the session cannot be opened.
+    """
+    configure_logs(settings.log, settings.instance)
+    stop = threading.Event()
+    with set_on_signals(stop), open_session(settings.zenoh) as session:
+        daemon = Daemon(session, settings.site, service, settings.instance, stop)
+        live_key = settings.site.live_key(service, settings.instance)
+        with session.liveliness().declare_token(live_key), _telling_health(daemon, settings.zenoh):
+            log.info("%s %s is up", service, settings.instance)
+            try:
+                yield daemon
+            finally:
+                daemon.health.state = "stopping"
+                daemon.stop.set()
+                daemon.inbox.close()
+        log.info("%s %s stopped", service, settings.instance)
+
+
+@contextlib.contextmanager
+def _telling_health(daemon: Daemon, settings: ZenohSettings) -> Iterator[None]:
+    """Publish the health once a second, and a last time at the end of the block."""
+    publisher = daemon.publisher(HEALTH, daemon.instance)
+    finished = threading.Event()
+    reporter = threading.Thread(
+        target=_report, args=(daemon, publisher, finished, settings), name="health"
+    )
+    reporter.start()
+    try:
+        yield
+    finally:
+        finished.set()
+        reporter.join()
+
+
+def _report(
+    daemon: Daemon, publisher: Publisher[Health], finished: threading.Event, settings: ZenohSettings
+) -> None:
+    reports = 0
+    while not finished.wait(HEALTH_PERIOD_S):
+        publisher.put(daemon.health.report())
+        reports += 1
+        if reports == REPORTS_UNTIL_LONELY and daemon.is_alone():
+            log.warning("no other process is connected yet; %s", _where_to_meet(settings))
+    publisher.put(daemon.health.report())
+
+
+def _where_to_meet(settings: ZenohSettings) -> str:
+    if settings.mode == "client":
+        return f"check the hub at {', '.join(settings.connect)}"
+    return (
+        f"those that run meet at zenoh.meeting = {settings.meeting}: check that all have the "
+        "same, and that no foreign program holds that port"
+    )

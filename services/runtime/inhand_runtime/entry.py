@@ -1,0 +1,49 @@
+"""The command line that all daemons share: ``python -m SERVICE [--config F] [--name N]``."""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.settings import Section, Settings, load_settings
+
+S = TypeVar("S", bound=Section)
+
+DONE, FAILED, WRONG_USAGE = 0, 1, 2
+
+
+def daemon_main(
+    service: str,
+    model: type[S],
+    run: Callable[[Settings[S]], None],
+    arguments: Sequence[str] | None = None,
+) -> int:
+    """Run one daemon until it ends; returns its exit code, after one line about what failed.
+
+    ``arguments`` are the process's own unless given. Wrong arguments end the process with 2.
+    """
+    chosen = _parser(service).parse_args(arguments)
+    try:
+        settings = load_settings(chosen.config, service, model, chosen.name)
+        if chosen.check_config:
+            print(f"{service} {settings.instance}: the settings are valid")
+        else:
+            run(settings)
+    except InhandError as error:
+        print(f"{service}: {error}", file=sys.stderr)
+        return WRONG_USAGE if isinstance(error, SettingsError) else FAILED
+    return DONE
+
+
+def _parser(service: str) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=f"inhand {service}", description=f"Run one {service} daemon until SIGTERM or Ctrl-C."
+    )
+    parser.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
+    parser.add_argument("--name", help="which instance of the file, where it names several")
+    parser.add_argument(
+        "--check-config", action="store_true", help="check the settings and start nothing"
+    )
+    return parser

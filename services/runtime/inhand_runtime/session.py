@@ -1,0 +1,181 @@
+"""Zenoh sessions, publishers and subscribers of typed topics: nothing else touches Zenoh.
+
+Peers meet without multicast: the first process of a rig takes the meeting address and the later
+ones connect to it; gossip then connects each to all. When the one that holds the address goes
+away, the next process that starts takes it and the others find it by retrying.
+"""
+
+import contextlib
+import json
+import time
+from collections.abc import Callable, Iterator
+from typing import Any, Generic, TypeVar
+
+import zenoh
+import zenoh.ext
+from inhand_schemas.messages import Message
+from inhand_schemas.topics import Delivery, Topic
+
+from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.inbox import Received
+from inhand_runtime.settings import ZenohSettings
+
+T = TypeVar("T", bound=Message)
+
+Subscription = zenoh.Subscriber[None] | zenoh.ext.AdvancedSubscriber[None]
+
+HEARTBEAT_S = 0.5
+CLIENT_TIMEOUT_MS = 3_000
+HANDSHAKE_TIMEOUT_MS = 1_500
+FOR_EVER_MS = -1
+
+_PRIORITIES = {
+    "urgent": zenoh.Priority.REAL_TIME,
+    "normal": zenoh.Priority.DATA,
+    "bulk": zenoh.Priority.DATA_LOW,
+}
+_CONGESTION = {
+    "wait_for_first": zenoh.CongestionControl.BLOCK_FIRST,
+    "wait": zenoh.CongestionControl.BLOCK,
+}
+
+
+@contextlib.contextmanager
+def open_session(settings: ZenohSettings) -> Iterator[zenoh.Session]:
+    """A session that is closed at the end; raises SettingsError or InhandError within seconds."""
+    zenoh.init_log_from_env_or("off")
+    session = _open_client(settings) if settings.mode == "client" else _open_peer(settings)
+    with session:
+        yield session
+
+
+def _open_client(settings: ZenohSettings) -> zenoh.Session:
+    if not settings.connect:
+        raise SettingsError('zenoh.mode = "client" needs zenoh.connect, the addresses of hubs')
+    config = _config(settings, listen=(), connect=settings.connect)
+    try:
+        return zenoh.open(config)
+    except zenoh.ZError:
+        raise InhandError(
+            f"no hub answers at {', '.join(settings.connect)}: check that it runs, the address, "
+            "and that user, password and certificates are the hub's"
+        ) from None
+
+
+def _open_peer(settings: ZenohSettings) -> zenoh.Session:
+    with contextlib.suppress(zenoh.ZError):
+        return zenoh.open(_config(settings, (settings.meeting, *settings.listen), settings.connect))
+    listen = settings.listen or (_any_port(settings.meeting),)
+    try:
+        return zenoh.open(_config(settings, listen, (settings.meeting, *settings.connect)))
+    except zenoh.ZError:
+        setting = "listen" if settings.listen else "meeting"
+        raise SettingsError(
+            f"cannot listen on {', '.join(listen)}: the port is in use, or the address is not "
+            f"of this machine; change zenoh.{setting}"
+        ) from None
+
+
+def _any_port(endpoint: str) -> str:
+    return endpoint.rsplit(":", 1)[0] + ":0"
+
+
+def _config(
+    settings: ZenohSettings, listen: tuple[str, ...], connect: tuple[str, ...]
+) -> zenoh.Config:
+    client = settings.mode == "client"
+    values: dict[str, Any] = {
+        "mode": settings.mode,
+        "listen/endpoints": list(listen),
+        "connect/endpoints": list(connect),
+        "connect/timeout_ms": CLIENT_TIMEOUT_MS if client else FOR_EVER_MS,
+        "connect/exit_on_failure": client,
+        "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000},
+        "transport/unicast/open_timeout": HANDSHAKE_TIMEOUT_MS,
+        "scouting/multicast/enabled": False,
+        "transport/shared_memory/enabled": False,
+    }
+    config = zenoh.Config()
+    for key, value in values.items():
+        config.insert_json5(key, json.dumps(value))
+    return config
+
+
+class Publisher(Generic[T]):
+    """Publishes one topic under one name; ``kept`` topics hand the last value to late joiners."""
+
+    def __init__(
+        self,
+        session: zenoh.Session,
+        topic: Topic[T],
+        key: str,
+        on_put: Callable[[str], None],
+    ) -> None:
+        self.key = key
+        self._topic = topic
+        self._on_put = on_put
+        delivery = topic.delivery
+        quality: dict[str, Any] = {
+            "encoding": topic.encoding,
+            "priority": _PRIORITIES[delivery.priority],
+            "congestion_control": _CONGESTION[delivery.congestion],
+            "express": delivery.priority == "urgent",
+        }
+        self._publisher: zenoh.Publisher | zenoh.ext.AdvancedPublisher
+        if not delivery.kept:
+            self._publisher = session.declare_publisher(key, **quality)
+            return
+        self._publisher = zenoh.ext.declare_advanced_publisher(
+            session,
+            key,
+            cache=zenoh.ext.CacheConfig(1),
+            publisher_detection=True,
+            sample_miss_detection=zenoh.ext.MissDetectionConfig(
+                heartbeat=None, sporadic_heartbeat=HEARTBEAT_S
+            ),
+            **quality,
+        )
+
+    def put(self, message: T) -> None:
+        """Encode and send."""
+        self._publisher.put(self._topic.encode(message))
+        self._on_put(self.key)
+
+    def wanted(self) -> bool:
+        """Whether anybody listens now; a kept topic is always wanted, for those to come."""
+        if isinstance(self._publisher, zenoh.ext.AdvancedPublisher):
+            return True
+        status: Any = self._publisher.matching_status
+        return bool(status.matching)
+
+
+def subscribe(
+    session: zenoh.Session,
+    pattern: str,
+    delivery: Delivery,
+    on_sample: Callable[[Received], None],
+) -> Subscription:
+    """Call ``on_sample`` from Zenoh's threads for what matches; keep the returned handle.
+
+    ``on_sample`` must return quickly and never raise: give it a lane's ``put``.
+    """
+
+    def receive(sample: zenoh.Sample) -> None:
+        on_sample(
+            Received(
+                str(sample.key_expr),
+                sample.payload.to_bytes(),
+                str(sample.encoding),
+                time.time_ns(),
+            )
+        )
+
+    if not delivery.kept:
+        return session.declare_subscriber(pattern, receive)
+    return zenoh.ext.declare_advanced_subscriber(
+        session,
+        pattern,
+        receive,
+        history=zenoh.ext.HistoryConfig(detect_late_publishers=True),
+        recovery=zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
+    )

@@ -1,0 +1,94 @@
+"""What a camera source is: the plugin interface of the entry-point group ``inhand.sources``.
+
+A source is made by calling the entry point with the free-form table that the user wrote under
+``[capture.NAME.options]``; it raises SourceError when that cannot work.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any, Protocol
+
+from inhand_schemas.messages import (
+    CameraInfo,
+    ColourImage,
+    DepthImage,
+    ObjectPose,
+    Person,
+)
+from numpy import uint8, uint16
+from numpy.typing import NDArray
+
+ENTRY_POINT_GROUP = "inhand.sources"
+
+
+class SourceError(Exception):
+    """A source that cannot start or go on; the message tells the user the mend."""
+
+
+class SourceLostError(SourceError):
+    """A device that went away and may come back: capture opens the source again."""
+
+
+@dataclass(frozen=True)
+class Pixels:
+    """One picture: raw arrays, or images that are encoded already (a recording's).
+
+    Colour is (H, W, 3) RGB, depth (H, W) in the camera's depth units, 0 = not measured.
+    """
+
+    colour: NDArray[uint8] | ColourImage | None
+    depth: NDArray[uint16] | DepthImage | None
+
+
+@dataclass(frozen=True)
+class Captured:
+    """One moment as a source gives it. ``pixels`` is called only when somebody listens."""
+
+    time_ns: int
+    time_uncertainty_ns: int
+    pixels: Callable[[], Pixels] | None
+    people: tuple[Person, ...] | None
+    labels: tuple[ObjectPose, ...] = ()
+
+
+class Source(Protocol):
+    """A camera, a recording or a simulated world."""
+
+    @property
+    def info(self) -> CameraInfo:
+        """How it sees; capture fills in the sequence, and the time where it is 0."""
+
+    def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured]:
+        """Moments at the pace at which they happen; ``wanted`` tells whether pixels are.
+
+        Ends when the source has no more. Raises SourceLostError when a device went away, and
+        SourceError when opening it again cannot help.
+        """
+
+    def close(self) -> None:
+        """Release the device, from any thread and also twice; waiting ``captures`` end soon."""
+
+
+SourceFactory = Callable[[Mapping[str, Any]], Source]
+
+
+def require_source(name: str) -> EntryPoint:
+    """Where the source of that name is installed, without loading it; raises SourceError."""
+    found = {entry.name: entry for entry in entry_points(group=ENTRY_POINT_GROUP)}
+    if name not in found:
+        raise SourceError(f"no source {name!r} is installed; there are: {', '.join(sorted(found))}")
+    return found[name]
+
+
+def source_factory(name: str) -> SourceFactory:
+    """The installed source of that name; raises SourceError."""
+    entry = require_source(name)
+    try:
+        factory: SourceFactory = entry.load()
+    except ModuleNotFoundError as error:
+        raise SourceError(
+            f"source {name!r} needs the package {error.name}, which is not installed: "
+            f"run pip install 'inhand[{name}]'"
+        ) from error
+    return factory

@@ -1,0 +1,28 @@
+"""What all tests share."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+from running_rig import RunningRig
+from wire import Wire
+
+# Example times on a busy machine say nothing about the code; each test has its own timeout.
+settings.register_profile("inhand", deadline=None)
+settings.load_profile("inhand")
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Iterator[RunningRig]:
+    """Nothing runs yet; everything ends with the test."""
+    running = RunningRig(tmp_path)
+    yield running
+    running.close()
+
+
+@pytest.fixture
+def wire(rig: RunningRig) -> Iterator[Wire]:
+    """The test's own session at the rig's meeting address."""
+    with Wire.at(rig.meeting) as opened:
+        yield opened

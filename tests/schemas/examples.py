@@ -1,0 +1,99 @@
+"""One message of each type with every field filled."""
+
+import math
+
+from inhand_schemas.messages import (
+    Box,
+    CameraInfo,
+    ColourImage,
+    DepthImage,
+    Event,
+    Health,
+    Latency,
+    Message,
+    ObjectPose,
+    Person,
+    Pose,
+    Preview,
+    RgbdFrame,
+    Skeletons,
+    TopicHealth,
+)
+
+TIME_NS = 1_753_000_000_123_456_789
+POSE = Pose((0.125, -0.25, 1.5), (math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0))
+PERSON = Person(
+    id=3,
+    joints=tuple((0.25 * joint, -0.5, 2.0) for joint in range(20)),
+    states=("missing", "inferred", *["tracked"] * 18),
+    confidences=(0.0, 0.5, *[1.0] * 18),
+)
+
+EXAMPLES: tuple[Message, ...] = (
+    CameraInfo(
+        sequence=1,
+        time_ns=TIME_NS,
+        width=640,
+        height=480,
+        fx=575.5,
+        fy=576.25,
+        cx=319.5,
+        cy=239.5,
+        distortion=(0.1, -0.05, 0.0, 0.0, 0.01),
+        depth_scale=0.001,
+        frame_rate=30.0,
+        has_colour=True,
+        has_depth=False,
+        rig_from_camera=POSE,
+        description="über dem Tisch",
+    ),
+    RgbdFrame(
+        sequence=2**40,
+        time_ns=TIME_NS,
+        time_uncertainty_ns=500_000,
+        colour=ColourImage("jpeg", 640, 480, b"\xff\xd8\xff\xe0 pixels \xff\xd9"),
+        depth=DepthImage("z16", 2, 1, b"\x00\x04\xff\xff"),
+    ),
+    Preview(sequence=4, time_ns=TIME_NS, width=160, height=120, jpeg=b"\xff\xd8\xff\xd9"),
+    Skeletons(sequence=5, time_ns=TIME_NS, people=(PERSON,)),
+    ObjectPose(
+        sequence=6,
+        time_ns=TIME_NS,
+        object="mug",
+        camera="kitchen",
+        state="tracked",
+        confidence=0.875,
+        person=3,
+        camera_from_object=POSE,
+        rig_from_object=POSE,
+        covariance=tuple(float(i // 6 == i % 6) for i in range(36)),
+        box=Box(10.5, 20.25, 30.0, 40.0),
+        class_probabilities={"mug": 0.75, "glasses": 0.25},
+    ),
+    Event(
+        sequence=7,
+        time_ns=TIME_NS,
+        kind="drank",
+        object="mug",
+        person=3,
+        duration_ns=2_500_000_000,
+        evidence={"tilt": 0.5, "height": 1.25},
+        description="drank from the mug",
+    ),
+    Health(
+        sequence=8,
+        time_ns=TIME_NS,
+        service="tracker",
+        instance="tracker_1",
+        state="running",
+        uptime_s=12.5,
+        resident_bytes=200_000_000,
+        topics={
+            "inhand/@v1/rig/rgbd/kitchen": TopicHealth(
+                published=1, received=360, dropped=2, malformed=3, rate_hz=30.0
+            )
+        },
+        latency_ms=Latency(p50=12.5, p99=40.0),
+        last_error="none yet",
+    ),
+)
