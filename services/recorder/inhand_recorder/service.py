@@ -128,7 +128,7 @@ class _Recorder:
                 delay = FIRST_RETRY_S if health.state == "running" else min(2 * delay, LAST_RETRY_S)
                 health.state = "degraded"
                 health.error(str(error))
-                self._wait(delay)
+                self._daemon.stop.wait(delay)
         self._write_the_rest()
 
     def _write_until_stopped(self) -> None:
@@ -181,9 +181,3 @@ class _Recorder:
                 self._daemon.health.dropped(key)
         if left:
             self._daemon.health.error(f"{left.total()} messages could not be written any more")
-
-    def _wait(self, seconds: float) -> None:
-        # In slices: a signal handler must not set an event that its own thread is waiting on.
-        end = time.monotonic() + seconds
-        while time.monotonic() < end and not self._daemon.stop.is_set():
-            time.sleep(IDLE_S)

@@ -49,18 +49,21 @@ PELVIS_JOINTS = np.array([JOINT[n] for n in ("HipCenter", "Spine", "HipLeft", "H
 
 MIRRORED_JOINTS = np.array(
     [
-        JOINT[
-            name.replace("Left", "Right") if "Left" in name else name.replace("Right", "Left")
-        ]
+        JOINT[name.replace("Left", "Right") if "Left" in name else name.replace("Right", "Left")]
         for name in JOINT_NAMES
     ]
 )
 
-# From the chain ankle-knee-hip, hip centre-spine-shoulder centre-head to stature: the ankle
-# stands at 3.9 % of it and the middle of the head at 93.5 % (Drillis and Contini 1966).
-CHAIN_SHARE_OF_STATURE = 0.896
+# Shares of stature (Drillis and Contini 1966): from the ankle (3.9 %) to the hip (53 %), and from
+# the hip to the middle of the head (93.5 %).
+LEG_SHARE = 0.491
+TRUNK_SHARE = 0.405
 
 HEIGHT_WINDOW = 300
+
+_LEG_PARTS = np.array(
+    [[PART["KneeLeft"], PART["AnkleLeft"]], [PART["KneeRight"], PART["AnkleRight"]]]
+)
 
 
 @dataclass(frozen=True)
@@ -122,14 +125,12 @@ def part_bases(joints: Array, pelvis: Bases) -> Bases:
 def _turn_z_to(direction: Array) -> Array:
     """The shortest rotation that takes the z axis to a direction, (..., 3) → (..., 4)."""
     length = np.linalg.norm(direction, axis=-1, keepdims=True)
-    unit = np.divide(
-        direction, length, out=np.zeros_like(direction) + [0.0, 0.0, 1.0], where=length > 1e-9
-    )
+    unit = direction / np.where(length > 1e-9, length, 1.0)
     x, y, z = np.moveaxis(unit, -1, 0)
-    quaternion = np.stack((1.0 + z, -y, x, np.zeros_like(z)), axis=-1)
-    size = np.linalg.norm(quaternion, axis=-1, keepdims=True)
-    half_turn_about_x = np.zeros_like(quaternion) + [0.0, 1.0, 0.0, 0.0]
-    return np.divide(quaternion, size, out=half_turn_about_x, where=~(size <= 1e-9))
+    z = np.where(length[..., 0] > 1e-9, z, 1.0)
+    turn = np.stack((1.0 + z, -y, x, np.zeros_like(z)), axis=-1)
+    backwards = np.linalg.norm(turn, axis=-1, keepdims=True) <= 1e-9
+    return rotations.normalise(np.where(backwards, np.array([0.0, 1.0, 0.0, 0.0]), turn))
 
 
 def body_pose(joints: Array, pelvis: Bases, height: Array | float) -> Array:
@@ -144,29 +145,23 @@ def body_pose(joints: Array, pelvis: Bases, height: Array | float) -> Array:
 
 def part_lengths(joints: Array) -> Array:
     """The lengths of the 19 parts, (..., 19); NaN where an end is missing."""
-    return np.linalg.norm(
-        joints[..., CHILD_JOINTS, :] - joints[..., PARENT_JOINTS, :], axis=-1
-    )
+    return np.linalg.norm(joints[..., CHILD_JOINTS, :] - joints[..., PARENT_JOINTS, :], axis=-1)
 
 
 def standing_height(lengths: Array) -> float:
     """Stature from part lengths (T, 19) of one person, each part's median over time.
 
-    Lengths do not change when a person bends. A leg seen on one side only counts for both; NaN
-    when a part of the chain was never seen.
+    Lengths do not change when a person bends. A leg seen on one side only counts for both, and
+    the trunk alone must do where no leg was seen; NaN when a part of the trunk was not.
     """
-    with np.errstate(all="ignore"):
-        seen = np.isfinite(lengths).any(axis=0)
-        typical = np.full(len(PARTS), np.nan)
-        typical[seen] = np.nanmedian(lengths[:, seen], axis=0)
-    trunk = sum(typical[PART[name]] for name in ("Spine", "ShoulderCenter", "Head"))
-    legs = []
-    for side in ("Left", "Right"):
-        legs.append(typical[PART["Knee" + side]] + typical[PART["Ankle" + side]])
-    known = [leg for leg in legs if np.isfinite(leg)]
-    if not known:
-        return float("nan")
-    return float((trunk + sum(known) / len(known)) / CHAIN_SHARE_OF_STATURE)
+    typical = np.full(len(PARTS), np.nan)
+    seen = np.isfinite(lengths).any(axis=0)
+    typical[seen] = np.nanmedian(lengths[:, seen], axis=0)
+    trunk = typical[[PART["Spine"], PART["ShoulderCenter"], PART["Head"]]].sum()
+    legs = typical[_LEG_PARTS].sum(axis=1)
+    if not np.isfinite(legs).any():
+        return float(trunk / TRUNK_SHARE)
+    return float((trunk + np.nanmean(legs)) / (TRUNK_SHARE + LEG_SHARE))
 
 
 class RunningHeight:

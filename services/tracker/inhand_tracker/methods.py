@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
+MethodName = Literal["g-hand", "gd-hand", "gd-random", "gd-stable", "gd-stable-proximate"]
 PartRule = Literal["hand", "random", "stable", "proximate"]
 
 
@@ -10,13 +11,13 @@ PartRule = Literal["hand", "random", "stable", "proximate"]
 class Method:
     """How a tracker re-initialises particles, and from which parts it predicts."""
 
-    name: str
+    name: MethodName
     reinitialises: bool
     translation_part: PartRule
     rotation_part: PartRule
 
 
-METHODS = {
+METHODS: dict[str, Method] = {
     method.name: method
     for method in (
         Method("g-hand", False, "hand", "hand"),
@@ -27,4 +28,4 @@ METHODS = {
     )
 }
 
-DEFAULT_METHOD = "gd-stable-proximate"
+DEFAULT_METHOD: MethodName = "gd-stable-proximate"

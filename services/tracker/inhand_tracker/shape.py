@@ -95,9 +95,7 @@ def load_shape(folder: Path) -> ObjectShape:
             f"{description} marks {len(marked)} vertices: the error score needs 3 or more; "
             "write marked_vertices = [[x, y, z], …] in metres"
         )
-    return ObjectShape(
-        name, vertices, faces, marked, normal / np.linalg.norm(normal), symmetries
-    )
+    return ObjectShape(name, vertices, faces, marked, normal / np.linalg.norm(normal), symmetries)
 
 
 def _load_mesh(folder: Path) -> tuple[Array, NDArray[np.int64]]:
@@ -105,8 +103,8 @@ def _load_mesh(folder: Path) -> tuple[Array, NDArray[np.int64]]:
     if not found:
         raise InhandError(f"{folder} holds no mesh: add mesh.ply, mesh.obj or mesh.stl")
     try:
-        mesh = trimesh.load(found[0], force="mesh", process=False)
-        vertices = np.asarray(mesh.vertices, float)
+        mesh = trimesh.load_mesh(found[0], process=False)
+        vertices = np.asarray(mesh.vertices, np.float64)
         faces = np.asarray(mesh.faces, np.int64)
     except Exception as error:  # noqa: BLE001 - a reader of foreign files may raise anything
         raise InhandError(f"{found[0]} is no mesh that can be read: {error}") from None

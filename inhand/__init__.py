@@ -1,0 +1,1 @@
+"""The command line, the roof of the house: one verb a file."""

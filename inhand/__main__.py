@@ -1,0 +1,95 @@
+"""``inhand VERB …``: finds the verb, runs it, and says in one line what failed."""
+
+import argparse
+import importlib
+import importlib.metadata
+import os
+import sys
+from collections.abc import Sequence
+from keyword import iskeyword
+from typing import Any
+
+from inhand_runtime.errors import InhandError, SettingsError
+
+DONE, FAILED, WRONG_USAGE, INTERRUPTED = 0, 1, 2, 130
+
+DAEMONS = {
+    "capture": "publish frames and skeletons of one camera",
+    "tracker": "follow the objects in people's hands",
+    "recorder": "write everything that a rig publishes into recordings",
+}
+"""Verbs whose module has ``main(arguments) -> int``: the service parses for itself."""
+
+VERBS = {
+    "demo": "from nothing to tracked, recorded poses on this machine",
+    "up": "run every process that the config names, supervised",
+    "replay": "publish a recording again",
+    "simulate": "make a labelled dataset of simulated people",
+    "import": "make a dataset of real data: utd-mhad, motion, ycb-video",
+    "train": "learn a model from a labelled dataset",
+    "evaluate": "measure methods on people that were not trained on",
+    "recording": "info, verify and recover recordings",
+    "topics": "list what a running site publishes",
+    "echo": "print messages",
+    "rate": "measure rates, gaps and sizes",
+    "status": "list the live instances and their health",
+}
+"""Verbs whose module has ``add_arguments(parser)`` and ``run(arguments) -> int``."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one verb and return its exit code; only that verb's module is imported.
+
+    Wrong usage ends the process with 2, as argparse does.
+    """
+    chosen = _parser().parse_args(arguments)
+    try:
+        return _run(chosen.verb, chosen.arguments)
+    except InhandError as error:
+        print(f"inhand {chosen.verb}: {error}", file=sys.stderr)
+        return WRONG_USAGE if isinstance(error, SettingsError) else FAILED
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+
+
+def _run(verb: str, arguments: list[str]) -> int:
+    # A module cannot have a keyword's name.
+    module = importlib.import_module(f"inhand.{verb}_" if iskeyword(verb) else f"inhand.{verb}")
+    if verb in DAEMONS:
+        return int(module.main(arguments))
+    parser = argparse.ArgumentParser(prog=f"inhand {verb}", description=_sentence(module.__doc__))
+    module.add_arguments(parser)
+    return int(module.run(parser.parse_args(arguments)))
+
+
+def _sentence(docstring: str | None) -> str:
+    return (docstring or "").partition(": ")[2].strip()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="inhand",
+        description="Where the things in people's hands are: live 6-DoF object poses over Zenoh.",
+        epilog="verbs:\n"
+        + "".join(f"  {verb:10} {text}\n" for verb, text in (DAEMONS | VERBS).items())
+        + "\n`inhand VERB --help` tells what a verb takes.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action=_Version, nargs=0, help="say the release, and end")
+    parser.add_argument("verb", metavar="VERB", choices=(*DAEMONS, *VERBS), help="one of these:")
+    parser.add_argument("arguments", nargs=argparse.REMAINDER, metavar="…", help="the verb's own")
+    return parser
+
+
+class _Version(argparse.Action):
+    """Looks the release up only when it is asked for."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        parser.exit(message=f"inhand {importlib.metadata.version('inhand')}\n")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,197 @@
+"""``inhand demo``: from nothing to tracked, recorded object poses on this machine."""
+
+import argparse
+import contextlib
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from inhand_lab.demonstration import (
+    NAME,
+    TRAINED_PARTICIPANTS,
+    draw_picture,
+    train_demonstration,
+    write_rig_file,
+)
+from inhand_lab.review import Review, review
+from inhand_lab.world import INTERACTIONS
+from inhand_runtime.errors import InhandError, SettingsError
+from inhand_schemas.topics import POSE
+from rich.console import Console
+from rich.progress import Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from inhand.looking import Look, open_look
+from inhand.progress import progress_bar
+from inhand.results import write_json
+
+DEFAULT_INTERACTION = "drinkFromMug"
+DEFAULT_SECONDS = 12.0
+READY_WITHIN_S = 60.0
+STOP_WITHIN_S = 10.0
+ERROR_BOUND_CM = 12.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The verb's arguments."""
+    parser.add_argument(
+        "--interaction",
+        default=DEFAULT_INTERACTION,
+        choices=INTERACTIONS,
+        help=f"what the simulated person does (default: {DEFAULT_INTERACTION})",
+    )
+    parser.add_argument(
+        "--seconds", type=float, default=DEFAULT_SECONDS, metavar="S", help="how long to track"
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
+    parser.add_argument(
+        "--folder", type=Path, default=Path("demo"), metavar="DIR", help="where to keep everything"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Exit code 1 when a frame was lost or the error is beyond the bound."""
+    if not 1 <= arguments.seconds <= 3600:
+        raise SettingsError("--seconds is 1 to 3600")
+    began = time.monotonic()
+    console = Console()
+    folder = arguments.folder / time.strftime("%Y%m%d_%H%M%S")
+    folder.mkdir(parents=True)
+    with progress_bar("simulating people to learn from", TRAINED_PARTICIPANTS) as advance:
+        model, model_path = train_demonstration(folder, arguments.interaction, advance)
+    config = write_rig_file(folder, arguments.interaction, model_path)
+    _run_rig(config, arguments.seconds)
+    recording = _only_recording(folder / "recordings")
+    seen = review(recording, model.shape.name, model.shape.marked_vertices)
+    if len(seen.vertex_errors_m) == 0:
+        raise InhandError(f"{recording} holds no pose that can be compared with the truth")
+    picture = folder / "picture.png"
+    draw_picture(recording, seen, model, picture)
+    result = _result(seen, recording, picture, time.monotonic() - began)
+    console.print(_table(seen))
+    for line in _summary(result):
+        console.print(line, soft_wrap=True)
+    if arguments.json is not None:
+        write_json(arguments.json, result)
+    return _judge(result)
+
+
+def _run_rig(config: Path, seconds: float) -> None:
+    """Recorder and tracker first, then the camera; stopped the other way round."""
+    with open_look(config) as look, contextlib.ExitStack() as daemons:
+        look.follow(POSE)
+        alive: set[str] = set()
+        look.follow_tokens(lambda service, _, lives: alive.add(service) if lives else None)
+        for service in ("recorder", "tracker"):
+            daemons.enter_context(_daemon(service, config))
+        deadline = time.monotonic() + READY_WITHIN_S
+        while not {"recorder", "tracker"} <= alive:
+            if time.monotonic() > deadline:
+                raise InhandError("the daemons did not come up; their lines above say why")
+            time.sleep(0.05)
+        daemons.enter_context(_daemon("capture", config))
+        _watch(look, seconds)
+
+
+@contextlib.contextmanager
+def _daemon(service: str, config: Path) -> Iterator[None]:
+    command = [sys.executable, "-m", "inhand", service, "--config", str(config)]
+    process = subprocess.Popen(command, stdin=subprocess.DEVNULL)
+    try:
+        yield
+    finally:
+        process.send_signal(signal.SIGTERM)
+        try:
+            process.wait(STOP_WITHIN_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+            raise InhandError(f"the {service} did not stop when asked to") from None
+
+
+def _watch(look: Look, seconds: float) -> None:
+    """Show the poses as they come, for some seconds from the first one on."""
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description}"), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True) as progress:
+        task = progress.add_task("waiting for the first pose")
+        poses = 0
+        end = time.monotonic() + READY_WITHIN_S
+        for sample in look.samples(None):
+            if time.monotonic() > end:
+                break
+            if sample is None:
+                continue
+            if poses == 0:
+                end = time.monotonic() + seconds
+            poses += 1
+            pose = POSE.decode(sample.payload)
+            if pose.camera_from_object is not None:
+                x, y, z = pose.camera_from_object.translation
+                progress.update(
+                    task,
+                    description=f"{pose.object} {pose.state}, {poses} poses, "
+                    f"at x {x:+.2f} y {y:+.2f} z {z:+.2f} m, confidence {pose.confidence:.2f}",
+                )
+    if poses == 0:
+        raise InhandError(f"no pose came within {READY_WITHIN_S:.0f} s; the lines above say why")
+
+
+def _only_recording(folder: Path) -> Path:
+    found = sorted(folder.glob("*.mcap"))
+    if not found:
+        raise InhandError(f"the recorder left no recording in {folder}")
+    return found[0]
+
+
+def _result(seen: Review, recording: Path, picture: Path, seconds: float) -> dict[str, Any]:
+    p50, p99 = np.percentile(seen.latencies_ms, (50, 99)).tolist()
+    return {
+        "topics": {
+            stream: {
+                "published": one.published,
+                "received": one.received,
+                "recorded": one.recorded,
+                "lost": one.lost,
+            }
+            for stream, one in seen.traffic.items()
+        },
+        "latency_ms": {"p50": p50, "p99": p99},
+        "vertex_error_cm": 100.0 * float(seen.vertex_errors_m.mean()),
+        "recording": str(recording),
+        "picture": str(picture),
+        "seconds": seconds,
+    }
+
+
+def _table(seen: Review) -> Table:
+    table = Table("topic", "published", "received", "recorded", "lost", title=f"rig {NAME}")
+    for stream, one in seen.traffic.items():
+        counts = (one.published, one.received, one.recorded, one.lost)
+        table.add_row(stream, *map(str, counts))
+    return table
+
+
+def _summary(result: dict[str, Any]) -> list[str]:
+    latency = result["latency_ms"]
+    return [
+        f"latency, capture to pose: p50 {latency['p50']:.1f} ms, p99 {latency['p99']:.1f} ms",
+        f"vertex error for a person never seen before: {result['vertex_error_cm']:.1f} cm "
+        f"(bound {ERROR_BOUND_CM:.0f} cm)",
+        f"recording: {result['recording']}",
+        f"picture:   {result['picture']}",
+    ]
+
+
+def _judge(result: dict[str, Any]) -> int:
+    lost = sum(topic["lost"] for topic in result["topics"].values())
+    if lost:
+        print(f"inhand demo: {lost} messages were lost", file=sys.stderr)
+    if result["vertex_error_cm"] > ERROR_BOUND_CM:
+        print("inhand demo: the error is beyond its bound", file=sys.stderr)
+    return int(lost > 0 or result["vertex_error_cm"] > ERROR_BOUND_CM)

@@ -1,0 +1,147 @@
+"""A look at a running site: what the verbs topics, echo, rate and status share."""
+
+import argparse
+import contextlib
+import json
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import zenoh
+from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.inbox import Inbox, Received
+from inhand_runtime.session import open_session, subscribe
+from inhand_runtime.settings import load_rig_file
+from inhand_schemas.errors import KeyFormatError
+from inhand_schemas.keys import VERSION, Site
+from inhand_schemas.topics import BULK, TOPICS, AnyTopic, topic_of
+from rich.console import Console
+
+QUEUE_BYTES = 64 << 20
+QUEUE_SAMPLES = 10_000
+IDLE_S = 0.1
+FILE_WIDTH = 200
+OTHER_VERSIONS = tuple(version for version in range(10) if version != VERSION)
+
+
+class Look:
+    """Samples of one rig as they arrive, without taking part in its work."""
+
+    def __init__(self, session: zenoh.Session, site: Site) -> None:
+        self.site = site
+        self.skipped = 0
+        self._session = session
+        self._inbox = Inbox()
+        self._subscribers: list[Any] = []
+
+    def follow(self, topic: AnyTopic, name: str | None = None) -> None:
+        """Let a topic arrive: one name of it, or all."""
+        pattern = topic.pattern(self.site) if name is None else topic.key(self.site, name)
+        lane = self._inbox.lane(samples=QUEUE_SAMPLES, size=QUEUE_BYTES, on_drop=self._skip)
+        self._subscribers.append(subscribe(self._session, pattern, topic.delivery, lane.put))
+
+    def follow_all(self) -> None:
+        """Let every topic arrive, and what other versions of Inhand publish beside them."""
+        for topic in TOPICS.values():
+            self.follow(topic)
+        lane = self._inbox.lane(samples=QUEUE_SAMPLES, size=QUEUE_BYTES, on_drop=self._skip)
+        for version in OTHER_VERSIONS:
+            pattern = self.site.pattern().replace(f"/@v{VERSION}/", f"/@v{version}/")
+            self._subscribers.append(subscribe(self._session, pattern, BULK, lane.put))
+
+    def follow_tokens(self, on_change: Callable[[str, str, bool], None]) -> None:
+        """Tell (service, instance, whether it lives) now and at each change, from any thread."""
+
+        def receive(sample: zenoh.Sample) -> None:
+            service, instance = str(sample.key_expr).split("/")[-2:]
+            on_change(service, instance, sample.kind == zenoh.SampleKind.PUT)
+
+        pattern = self.site.live_pattern()
+        self._subscribers.append(
+            self._session.liveliness().declare_subscriber(pattern, receive, history=True)
+        )
+
+    def samples(self, seconds: float | None) -> Iterator[Received | None]:
+        """What arrives within ``seconds`` (None = without end); None when nothing just did."""
+        end = None if seconds is None else time.monotonic() + seconds
+        while end is None or time.monotonic() < end:
+            yield self._inbox.get(IDLE_S)
+
+    def _skip(self, _key: str) -> None:
+        self.skipped += 1
+
+
+@contextlib.contextmanager
+def open_look(config: Path | None) -> Iterator[Look]:
+    """A look at the rig of a settings file; raises SettingsError or InhandError."""
+    rig_file = load_rig_file(config)
+    with open_session(rig_file.zenoh) as session:
+        yield Look(session, Site(rig_file.realm, rig_file.rig))
+
+
+def add_looking_arguments(parser: argparse.ArgumentParser, seconds: float | None) -> None:
+    """``--config``, and ``--seconds`` with its default."""
+    parser.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
+    parser.add_argument(
+        "--seconds",
+        type=positive_number,
+        default=seconds,
+        metavar="S",
+        help=f"how long to look (default: {seconds or 'until Ctrl-C'})",
+    )
+
+
+def positive_number(text: str) -> float:
+    """An argument above zero; raises ValueError, which argparse tells."""
+    number = float(text)
+    if not 0 < number < float("inf"):
+        raise ValueError
+    return number
+
+
+def unreadable(sample: Received) -> str | None:
+    """Why this release cannot read what was sent; None when it can."""
+    try:
+        topic, _ = topic_of(sample.key)
+    except KeyFormatError as error:
+        return str(error)
+    if sample.encoding != topic.encoding:
+        return (
+            f"{sample.key} carries {sample.encoding!r}, and this release reads "
+            f"{topic.encoding!r}: update the older side"
+        )
+    return None
+
+
+def nothing_heard(site: Site, seconds: float | None) -> InhandError:
+    """The line for a site that is silent."""
+    within = "" if seconds is None else f" within {seconds:g} s"
+    return InhandError(
+        f"nothing answered from rig {site.rig!r} of realm {site.realm!r}{within}: start it with "
+        "`inhand up`, or name its settings with --config"
+    )
+
+
+def stream_and_name(text: str) -> tuple[AnyTopic, str | None]:
+    """Take ``STREAM`` or ``STREAM/NAME`` apart; raises SettingsError."""
+    stream, _, name = text.partition("/")
+    if stream not in TOPICS:
+        raise SettingsError(f"there is no stream {stream!r}; there are: {', '.join(TOPICS)}")
+    return TOPICS[stream], name or None
+
+
+def output() -> Console:
+    """Standard output for tables; what is no terminal takes wide lines."""
+    console = Console()
+    if not console.is_terminal:
+        console.width = FILE_WIDTH
+    return console
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Write a verb's result for machines; raises InhandError."""
+    try:
+        path.write_text(json.dumps(value, indent=2) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise InhandError(f"cannot write {path}: {error.strerror}; choose another file") from None

@@ -1,0 +1,139 @@
+"""``inhand recording``: look into recordings, verify them, and recover damaged ones."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from inhand_recorder.inspection import RecordingInfo, inspect_recording
+from inhand_recorder.recovery import RecoveryReport, recover_recording
+from inhand_recorder.verification import verify_recording
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.part_file import PART_SUFFIX
+from rich.table import Table
+
+from inhand.looking import output, write_json
+
+RECOVERED_SUFFIX = ".recovered.mcap"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The verb's arguments."""
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
+    for name, run_action, text in (
+        ("info", _info, "what is in recordings, whole or not"),
+        ("verify", _verify, "whether they are whole and true; exit 1 when one is not"),
+        ("recover", _recover, "save what is left of recordings that were cut off or damaged"),
+    ):
+        action = actions.add_parser(name, help=text, description=text)
+        action.add_argument("files", nargs="+", type=Path, metavar="FILE")
+        action.add_argument("--json", type=Path, metavar="FILE", help="write the result there")
+        action.set_defaults(run_action=run_action)
+        if name == "recover":
+            action.add_argument(
+                "-o", "--output", type=Path, metavar="OUT", help="the file to write (of one FILE)"
+            )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Do one action; raises RecordingError, or SettingsError for a wrong use of ``-o``."""
+    return int(arguments.run_action(arguments))
+
+
+def _info(arguments: argparse.Namespace) -> int:
+    infos = [inspect_recording(path) for path in arguments.files]
+    for info in infos:
+        output().print(_info_table(info))
+    _result(arguments, "recordings", [_info_values(info) for info in infos])
+    return 0
+
+
+def _verify(arguments: argparse.Namespace) -> int:
+    problems = {str(path): verify_recording(path) for path in arguments.files}
+    for path, lines in problems.items():
+        print(f"{path}: whole and true" if not lines else f"{path}: {len(lines)} problems")
+        for line in lines:
+            print(f"  {line}")
+    _result(arguments, "problems", problems)
+    return 1 if any(problems.values()) else 0
+
+
+def _recover(arguments: argparse.Namespace) -> int:
+    if arguments.output is not None and len(arguments.files) > 1:
+        raise SettingsError("-o names one output: give one FILE, or leave -o out")
+    reports = []
+    for path in arguments.files:
+        report = recover_recording(path, arguments.output or _recovered(path))
+        print(
+            f"{report.output}: {report.messages} messages of {report.keys} keys; "
+            f"{report.skipped_bytes} bytes could not be saved"
+        )
+        reports.append(_report_values(path, report))
+    _result(arguments, "recovered", reports)
+    return 0
+
+
+def _recovered(path: Path) -> Path:
+    stem = path.name.removesuffix(PART_SUFFIX).removesuffix(".mcap")
+    return path.with_name(stem + RECOVERED_SUFFIX)
+
+
+def _result(arguments: argparse.Namespace, name: str, value: Any) -> None:
+    if arguments.json is not None:
+        write_json(arguments.json, {name: value})
+
+
+def _info_table(info: RecordingInfo) -> Table:
+    state = "complete" if info.complete else "NOT COMPLETE: `inhand recording recover` saves it"
+    table = Table(
+        "key",
+        "message",
+        "messages",
+        "Hz",
+        "bytes",
+        "lost",
+        title=f"{info.path}: {info.bytes:,} bytes, {info.duration_s:.3f} s, {state}",
+        title_justify="left",
+    )
+    for key in info.keys:
+        table.add_row(
+            key.key,
+            key.type,
+            str(key.messages),
+            f"{key.rate_hz:.2f}",
+            f"{key.bytes:,}",
+            str(key.lost),
+        )
+    return table
+
+
+def _info_values(info: RecordingInfo) -> dict[str, Any]:
+    return {
+        "path": str(info.path),
+        "bytes": info.bytes,
+        "start_ns": info.start_ns,
+        "end_ns": info.end_ns,
+        "messages": info.messages,
+        "complete": info.complete,
+        "unread_bytes": info.unread_bytes,
+        "metadata": info.metadata,
+        "keys": {
+            key.key: {
+                "type": key.type,
+                "messages": key.messages,
+                "bytes": key.bytes,
+                "rate_hz": key.rate_hz,
+                "lost": key.lost,
+            }
+            for key in info.keys
+        },
+    }
+
+
+def _report_values(path: Path, report: RecoveryReport) -> dict[str, Any]:
+    return {
+        "path": str(path),
+        "output": str(report.output),
+        "messages": report.messages,
+        "keys": report.keys,
+        "skipped_bytes": report.skipped_bytes,
+    }

@@ -1,0 +1,154 @@
+"""Keeps child processes running, and leaves none behind."""
+
+import ctypes
+import logging
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Sequence
+from types import FrameType
+
+log = logging.getLogger(__name__)
+
+TICK_S = 0.05
+FIRST_RESTART_S, LAST_RESTART_S = 0.5, 30.0
+HEALTHY_AFTER_S = 10.0
+STOP_WITHIN_S = 4.0
+"""What a daemon promises (2 s), and 2 s more for a busy machine."""
+
+DONE, FAILED, WRONG_SETTINGS = 0, 1, 2
+_PR_SET_PDEATHSIG = 1
+
+
+class Child:
+    """One process; it is started again after a failure, later each time."""
+
+    def __init__(self, name: str, command: Sequence[str]) -> None:
+        self.name = name
+        self.done = False
+        self._command = command
+        self._process: subprocess.Popen[bytes] | None = None
+        self._start_at = 0.0
+        self._delay = FIRST_RESTART_S
+
+    def tend(self) -> int | None:
+        """Start the process when its time has come; returns the exit code when it just ended."""
+        now = time.monotonic()
+        if self._process is None:
+            if not self.done and now >= self._start_at:
+                self._start_at = now
+                self._process = subprocess.Popen(
+                    self._command,
+                    stdin=subprocess.DEVNULL,
+                    process_group=0,
+                    preexec_fn=_ending_with(os.getpid()),
+                )
+            return None
+        code = self._process.poll()
+        if code is None:
+            return None
+        self._process = None
+        self.done = code in (DONE, WRONG_SETTINGS)
+        if self.done:
+            log.info("%s ended with exit code %d", self.name, code)
+        else:
+            if now - self._start_at > HEALTHY_AFTER_S:
+                self._delay = FIRST_RESTART_S
+            log.warning("%s ended with %d; starting it again in %g s", self.name, code, self._delay)
+            self._start_at = now + self._delay
+            self._delay = min(2 * self._delay, LAST_RESTART_S)
+        return code
+
+    def send(self, number: int) -> None:
+        """Send a signal, when it runs."""
+        if self._process is not None:
+            self._process.send_signal(number)
+
+    def ended(self) -> bool:
+        """Whether no process is left."""
+        return self._process is None or self._process.poll() is not None
+
+    def kill(self) -> None:
+        """End it at once, and wait until it is gone."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+
+
+class Supervisor:
+    """Runs children until all are done, one has wrong settings, or SIGTERM or SIGINT comes.
+
+    They are started in reverse, and stopped stage by stage in the given order, so that what is
+    under way reaches the last.
+    """
+
+    def __init__(self, stages: Sequence[Sequence[Child]]) -> None:
+        self._stages = stages
+        self._signals = 0
+
+    def run(self) -> int:
+        """Exit code 0, 1 when a child had to be killed, or 2 for wrong settings."""
+        previous = {
+            number: signal.signal(number, self._note) for number in (signal.SIGTERM, signal.SIGINT)
+        }
+        try:
+            code = self._tend()
+            return FAILED if not self._stop() and code == DONE else code
+        finally:
+            for child in self._children():
+                child.kill()
+            for number, handler in previous.items():
+                signal.signal(number, handler)
+
+    def _note(self, _number: int, _frame: FrameType | None) -> None:
+        self._signals += 1
+
+    def _children(self) -> list[Child]:
+        return [child for stage in reversed(self._stages) for child in stage]
+
+    def _tend(self) -> int:
+        children = self._children()
+        while not self._signals:
+            for child in children:
+                if child.tend() == WRONG_SETTINGS:
+                    log.error("%s has wrong settings (see above): stopping everything", child.name)
+                    return WRONG_SETTINGS
+            if all(child.done for child in children):
+                return DONE
+            time.sleep(TICK_S)
+        return DONE
+
+    def _stop(self) -> bool:
+        """Ask all to end; False when one had to be killed. A second signal kills at once."""
+        signals = self._signals
+        all_ended = True
+        for stage in self._stages:
+            for child in stage:
+                child.send(signal.SIGTERM)
+            end = time.monotonic() + STOP_WITHIN_S
+            while not all(child.ended() for child in stage):
+                if time.monotonic() > end or self._signals > signals:
+                    break
+                time.sleep(TICK_S)
+            for child in stage:
+                if not child.ended():
+                    log.error("%s did not end by itself: killed", child.name)
+                    child.kill()
+                    all_ended = False
+        return all_ended
+
+
+def _ending_with(parent: int) -> Callable[[], None] | None:
+    """What a child does first, so that not even a killed supervisor leaves it behind."""
+    if sys.platform != "linux":
+        return None
+    libc = ctypes.CDLL(None)
+
+    def prepare() -> None:
+        libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+        if os.getppid() != parent:
+            os._exit(FAILED)
+
+    return prepare

@@ -1,0 +1,11 @@
+"""``inhand tracker``: one tracker daemon."""
+
+from collections.abc import Sequence
+
+from inhand_runtime.entry import daemon_main
+from inhand_tracker.service import TrackerSettings, run
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the daemon until SIGTERM or Ctrl-C; returns its exit code."""
+    return daemon_main("tracker", TrackerSettings, run, arguments)

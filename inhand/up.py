@@ -1,0 +1,42 @@
+"""``inhand up``: run every process that the config names, supervised, until SIGTERM or Ctrl-C."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.logs import configure_logs
+from inhand_runtime.settings import RigFile, load_rig_file
+
+from inhand.supervisor import Child, Supervisor
+
+STOP_ORDER = ("capture", "tracker", "recorder")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The verb's arguments."""
+    parser.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Supervise until the end; raises SettingsError when there is nothing to run."""
+    rig_file = load_rig_file(arguments.config)
+    stages = [_children(rig_file, arguments.config, service) for service in STOP_ORDER]
+    if not any(stages):
+        raise SettingsError(
+            f"{arguments.config or 'the settings'} names no process: add a table such as "
+            "[capture.front], or give --config"
+        )
+    configure_logs(rig_file.log, "up")
+    return Supervisor(stages).run()
+
+
+def _children(rig_file: RigFile, config: Path | None, service: str) -> list[Child]:
+    file = [] if config is None else ["--config", str(config)]
+    return [
+        Child(
+            f"{service} {instance}",
+            [sys.executable, "-m", "inhand", service, *file, "--name", instance],
+        )
+        for instance in getattr(rig_file, service)
+    ]

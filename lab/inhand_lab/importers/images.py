@@ -1,0 +1,22 @@
+"""Image files of other people."""
+
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from inhand_lab.dataset import DatasetError
+
+
+def read_image(path: Path, flags: int) -> NDArray[Any]:
+    """The pixels as ``cv2.imdecode`` gives them for the flags; raises DatasetError."""
+    try:
+        data = np.frombuffer(path.read_bytes(), np.uint8)
+    except OSError as error:
+        raise DatasetError(f"cannot read {path}: {error.strerror}") from None
+    image = cv2.imdecode(data, flags) if data.size else None
+    if image is None:
+        raise DatasetError(f"{path} is no image that can be read: fetch it again")
+    return image

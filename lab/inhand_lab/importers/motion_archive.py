@@ -1,0 +1,133 @@
+"""Motion archives (.npz): a measured body and a measured object in some world frame.
+
+``joints`` (T, 20, 3) in metres, ``joint_names`` (20,), ``object_pose`` (T, 7) as x y z qw qx qy
+qz, ``vertices`` (M, 3) marked points in the object's frame, ``fps``, ``interaction``, ``object``,
+``participant``, ``handedness``. What was not measured is NaN.
+"""
+
+import logging
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from inhand_schemas.messages import JOINT_NAMES
+from inhand_tracker.body import PARTS, has_pelvis, part_lengths
+from numpy.typing import NDArray
+
+from inhand_lab.dataset import DatasetError
+from inhand_lab.importers.shapes import object_name
+
+Array = NDArray[np.float64]
+
+LONGEST_PART_M = 0.75
+"""Longer than anybody's shank, thigh or trunk."""
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One archive: ``joints`` (T, 20, 3), in the order of ``JOINT_NAMES``, and the object's
+    ``translations`` (T, 3) and ``orientations`` (T, 4) in the world frame."""
+
+    path: Path
+    joints: Array
+    translations: Array
+    orientations: Array
+    marked_vertices: Array
+    recorded_rate: float
+    interaction: str
+    object: str
+    participant: str
+    handedness: Literal["left", "right"]
+
+
+def read_motion(path: Path) -> Motion:
+    """Read one archive, and warn of a body that cannot be; raises DatasetError."""
+    values = _read_archive(path)
+    names = _array(path, values, "joint_names", "U", (20,)).tolist()
+    if sorted(names) != sorted(JOINT_NAMES):
+        raise DatasetError(f"{path}: joint_names are not the 20 joints of a Kinect")
+    joints = _array(path, values, "joints", "f", (None, 20, 3)).astype(np.float64)
+    joints = joints[:, [names.index(name) for name in JOINT_NAMES]]
+    if not any(map(has_pelvis, joints)):
+        raise DatasetError(f"{path} has no frame with a body: its hips and spine are never seen")
+    _warn_of_odd_parts(path, joints)
+    poses = _array(path, values, "object_pose", "f", (len(joints), 7)).astype(np.float64)
+    measured = np.isfinite(poses).all(axis=1)
+    if not measured.any():
+        raise DatasetError(f"{path} has no frame with an object: object_pose is nowhere measured")
+    if (np.abs(np.linalg.norm(poses[measured, 3:], axis=1) - 1.0) > 1e-3).any():
+        raise DatasetError(f"{path}: object_pose holds rotations that are no unit quaternions")
+    marked = _array(path, values, "vertices", "f", (None, 3)).astype(np.float64)
+    if len(marked) < 3 or not np.isfinite(marked).all():
+        raise DatasetError(f"{path}: vertices must be 3 or more finite points")
+    recorded_rate = float(_array(path, values, "fps", "fiu", ()))
+    if not 0.0 < recorded_rate < np.inf:
+        raise DatasetError(f"{path}: fps is {recorded_rate:g}, and must be above 0")
+    return Motion(
+        path,
+        joints,
+        poses[:, :3],
+        poses[:, 3:],
+        marked,
+        recorded_rate,
+        str(_array(path, values, "interaction", "U", ())),
+        object_name(str(_array(path, values, "object", "U", ()))),
+        str(_array(path, values, "participant", "U", ())),
+        _handedness(path, str(_array(path, values, "handedness", "U", ()))),
+    )
+
+
+def _warn_of_odd_parts(path: Path, joints: Array) -> None:
+    lengths = part_lengths(joints)
+    for part, name in enumerate(PARTS):
+        seen = lengths[np.isfinite(lengths[:, part]), part]
+        if seen.size and np.median(seen) > LONGEST_PART_M:
+            log.warning(
+                "%s: %s is %.2f m from its parent joint, as in nobody: its joints seem to be "
+                "misnamed, so its body poses mean little",
+                path,
+                name,
+                np.median(seen),
+            )
+            return
+
+
+def _read_archive(path: Path) -> dict[str, Any]:
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            return {name: archive[name] for name in archive.files}
+    except Exception as error:  # noqa: BLE001 - a reader of foreign files may raise anything
+        raise DatasetError(f"{path} is no motion archive that can be read: {error}") from None
+
+
+def _array(
+    path: Path,
+    values: dict[str, Any],
+    name: str,
+    kinds: str,
+    shape: tuple[int | None, ...],
+) -> NDArray[Any]:
+    array = values.get(name)
+    if not isinstance(array, np.ndarray):
+        raise DatasetError(f"{path} is no motion archive: it has no {name!r}")
+    fits = len(array.shape) == len(shape) and all(
+        wanted is None or size == wanted for size, wanted in zip(array.shape, shape, strict=True)
+    )
+    if not fits or array.dtype.kind not in kinds:
+        wanted = " × ".join("any" if size is None else str(size) for size in shape) or "one value"
+        raise DatasetError(
+            f"{path}: {name!r} is {array.dtype} of shape {array.shape}; it should be "
+            f"{'text' if kinds == 'U' else 'numbers'}, {wanted}"
+        )
+    return array
+
+
+def _handedness(path: Path, text: str) -> Literal["left", "right"]:
+    if text == "left":
+        return "left"
+    if text == "right":
+        return "right"
+    raise DatasetError(f"{path}: handedness is {text!r}, and should be left or right")

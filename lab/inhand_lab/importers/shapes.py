@@ -1,0 +1,82 @@
+"""Shapes of measured objects, from a mesh or from points alone.
+
+The data do not tell an object's plane of symmetry, so the shapes take its x axis for the normal;
+that matters only where a right-handed person's recordings teach a left-handed one's.
+"""
+
+import itertools
+import re
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from inhand_schemas.errors import KeyFormatError
+from inhand_schemas.keys import require_name
+from inhand_tracker.shape import ObjectShape
+from numpy.typing import NDArray
+
+from inhand_lab.dataset import DatasetError
+
+Array = NDArray[np.float64]
+
+THINNEST_M = 0.01
+MIRROR_NORMAL = np.array([1.0, 0.0, 0.0])
+
+_CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+_TETRAHEDRON = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) * THINNEST_M / 2.0
+
+
+def object_name(text: str) -> str:
+    """A name for keys: ``golfClub`` → ``golf_club``; raises DatasetError."""
+    name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", text).lower()
+    name = re.sub(r"[^a-z0-9]+", "_", name).strip("_")
+    try:
+        require_name("object", name)
+    except KeyFormatError as error:
+        raise DatasetError(str(error)) from None
+    return name
+
+
+def shape_of_mesh(name: str, path: Path, marked_vertices: Array | None = None) -> ObjectShape:
+    """The mesh in a file, in metres, with the extreme points marked where nothing else is.
+
+    Raises DatasetError.
+    """
+    try:
+        mesh = trimesh.load_mesh(path, process=False)
+        vertices = np.asarray(mesh.vertices, np.float64)
+        faces = np.asarray(mesh.faces, np.int64)
+    except Exception as error:  # noqa: BLE001 - a reader of foreign files may raise anything
+        raise DatasetError(f"{path} is no mesh that can be read: {error}") from None
+    if len(faces) == 0 or not np.isfinite(vertices).all():
+        raise DatasetError(f"{path} is no mesh that can be used: it has no finite triangles")
+    marked = extreme_points(vertices) if marked_vertices is None else marked_vertices
+    return ObjectShape(name, vertices, faces, marked, MIRROR_NORMAL)
+
+
+def shape_of_points(name: str, points: Array, marked_vertices: Array | None = None) -> ObjectShape:
+    """The convex hull of points (N, 3): all that is known of an object without a mesh.
+
+    It fills hollows and lacks what no point covers. Points that are flat to within 1 cm (or on a
+    line, or a single one) become a body all the same: each is replaced by the corners of a
+    tetrahedron, which reach 9 mm from it, 5 mm along each axis.
+    """
+    centred = points - points.mean(axis=0)
+    axes = np.linalg.eigh(centred.T @ centred)[1]
+    flat = np.ptp(centred @ axes, axis=0).min() < THINNEST_M
+    body = (points[:, None] + _TETRAHEDRON).reshape(-1, 3) if flat else points
+    hull = trimesh.convex.convex_hull(body)
+    return ObjectShape(
+        name,
+        np.asarray(hull.vertices, np.float64),
+        np.asarray(hull.faces, np.int64),
+        extreme_points(points) if marked_vertices is None else marked_vertices,
+        MIRROR_NORMAL,
+    )
+
+
+def extreme_points(points: Array) -> Array:
+    """Of points (N, 3) those that reach farthest to the corners of their box, (M ≤ 8, 3)."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    scaled = (points - (low + high) / 2.0) / np.maximum(high - low, 1e-9)
+    return points[np.unique(np.argmax(scaled @ _CORNERS.T, axis=0))]

@@ -1,0 +1,48 @@
+"""Shapes of YCB-Video's objects: their models, or what the frames show of them."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import cv2
+import numpy as np
+from inhand_tracker.shape import ObjectShape
+from numpy.typing import NDArray
+
+from inhand_lab.importers.images import read_image
+from inhand_lab.importers.matlab import read_mat
+from inhand_lab.importers.shapes import shape_of_mesh, shape_of_points
+from inhand_lab.importers.ycb_annotations import CLASS_NAMES, META_SUFFIX
+
+LABEL_SUFFIX = "-label.png"
+MODEL_FILES = ("textured.obj", "textured_simple.obj")
+FEWEST_POINTS = 100
+
+
+def find_shape(name: str, root: Path, frames: Sequence[Path]) -> ObjectShape | None:
+    """``models/NAME/textured.obj``, or else the hull of the surface that the first frame shows.
+
+    Only a ``-meta.mat`` tells the surface (``vertmap``, the object's coordinates pixel by pixel).
+    None where there is neither. Raises DatasetError.
+    """
+    for file in MODEL_FILES:
+        path = root / "models" / name / file
+        if path.is_file():
+            return shape_of_mesh(name, path)
+    for frame in frames:
+        points = _visible_surface(name, frame)
+        if len(points) >= FEWEST_POINTS:
+            return shape_of_points(name, points)
+    return None
+
+
+def _visible_surface(name: str, frame: Path) -> NDArray[np.float64]:
+    meta = frame.with_name(frame.name + META_SUFFIX)
+    labels = frame.with_name(frame.name + LABEL_SUFFIX)
+    if not (meta.is_file() and labels.is_file()):
+        return np.empty((0, 3))
+    (surface,) = read_mat(meta, "vertmap")
+    shown = read_image(labels, cv2.IMREAD_UNCHANGED) == CLASS_NAMES.index(name) + 1
+    if shown.shape != surface.shape[:2]:
+        return np.empty((0, 3))
+    points = surface[shown].astype(np.float64)
+    return points[np.isfinite(points).all(axis=1)]

@@ -1,0 +1,139 @@
+"""YCB-Video: a moving RGB-D camera and objects that lie still, with true poses (Xiang et al. 2017).
+
+A source is the data set's folder, or an excerpt of it: ``data/0000/000001-color.png`` and
+``-depth.png`` (uint16), aligned; the poses as ``ycb_annotations`` finds them, the objects' shapes
+as ``ycb_shapes`` does.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from inhand_runtime.pixels import encode_colour, encode_depth
+from inhand_schemas.messages import CameraInfo, Message, RgbdFrame
+
+from inhand_lab.dataset import Dataset, DatasetError, DatasetWriter, Entry
+from inhand_lab.importers.images import read_image
+from inhand_lab.importers.messages import label_message
+from inhand_lab.importers.timing import FRAME_RATE, Timing, thin
+from inhand_lab.importers.ycb_annotations import Annotation, read_annotation, read_poses_file
+from inhand_lab.importers.ycb_shapes import find_shape
+
+RECORDED_RATE = 30.0
+COLOUR_SUFFIX = "-color.png"
+DEPTH_SUFFIX = "-depth.png"
+INTERACTION = "none"
+PARTICIPANT = "nobody"
+
+
+@dataclass(frozen=True)
+class Clip:
+    """One video. ``frames`` are paths without their endings; ``numbers`` count from the first."""
+
+    folder: Path
+    frames: tuple[Path, ...]
+    numbers: tuple[int, ...]
+    annotations: tuple[Annotation, ...]
+
+
+def import_ycb_video(
+    sources: Sequence[Path], folder: Path, frame_rate: float = FRAME_RATE
+) -> Dataset:
+    """Data-set folders as a dataset of images and labels without people, one recording a video.
+
+    A recording labels every object of its video, each on a topic of its own, so that its entry
+    names none. Raises DatasetError or InhandError.
+    """
+    timing = thin(sources[0], RECORDED_RATE, frame_rate)
+    clips = [clip for root in sources for clip in read_clips(root, timing.step)]
+    writer = DatasetWriter(folder)
+    for clip in clips:
+        for name in dict.fromkeys(n for a in clip.annotations for n in a.camera_from_objects):
+            shape = find_shape(name, clip.folder.parent.parent, clip.frames)
+            if shape is not None:
+                writer.add_shape(shape)
+        entry = Entry(
+            file=f"recordings/{clip.folder.name}.mcap",
+            interaction=INTERACTION,
+            participant=PARTICIPANT,
+            frame_rate=timing.frame_rate,
+        )
+        writer.add_recording(entry, _messages(clip, timing))
+    return writer.finish({"importer": "ycb-video"})
+
+
+def read_clips(root: Path, step: int = 1) -> list[Clip]:
+    """The videos of a data-set folder, every ``step``-th frame; raises DatasetError."""
+    folders = sorted({path.parent for path in root.glob(f"data/*/*{COLOUR_SUFFIX}")})
+    if not folders:
+        raise DatasetError(
+            f"{root} holds no data/0000/000001{COLOUR_SUFFIX}: name the folder of YCB-Video"
+        )
+    # The excerpt's file of poses does not say of which video a frame is.
+    poses = read_poses_file(root) if len(folders) == 1 else {}
+    clips = []
+    for folder in folders:
+        frames = _numbered_frames(folder)
+        first = min(frames)
+        kept = {n - first: path for n, path in frames.items() if (n - first) % step == 0}
+        annotations = tuple(read_annotation(path, poses) for path in kept.values())
+        numbers = tuple(number // step for number in kept)
+        clips.append(Clip(folder, tuple(kept.values()), numbers, annotations))
+    return clips
+
+
+def _numbered_frames(folder: Path) -> dict[int, Path]:
+    frames = {}
+    for path in sorted(folder.glob(f"*{COLOUR_SUFFIX}")):
+        stem = path.name.removesuffix(COLOUR_SUFFIX)
+        if not stem.isdecimal():
+            raise DatasetError(f"{path} is not named by a frame's number: 000001{COLOUR_SUFFIX}")
+        depth = path.with_name(stem + DEPTH_SUFFIX)
+        if not depth.is_file():
+            raise DatasetError(f"{depth} is missing beside {path.name}")
+        frames[int(stem)] = path.with_name(stem)
+    return frames
+
+
+def _messages(clip: Clip, timing: Timing) -> Iterator[Message]:
+    yield _camera_info(clip, timing)
+    for number, path, annotation in zip(clip.numbers, clip.frames, clip.annotations, strict=True):
+        time_ns = timing.time_ns(number)
+        colour = read_image(path.with_name(path.name + COLOUR_SUFFIX), cv2.IMREAD_COLOR_RGB)
+        depth = read_image(path.with_name(path.name + DEPTH_SUFFIX), cv2.IMREAD_UNCHANGED)
+        if depth.dtype != np.uint16 or depth.shape != colour.shape[:2]:
+            raise DatasetError(
+                f"{path}{DEPTH_SUFFIX} is {depth.dtype} {depth.shape}, and should be uint16 "
+                f"{colour.shape[:2]} as its colour image"
+            )
+        yield RgbdFrame(
+            sequence=number,
+            time_ns=time_ns,
+            colour=encode_colour(colour),
+            depth=encode_depth(depth),
+        )
+        for name, (translation, rotation) in annotation.camera_from_objects.items():
+            yield label_message(number, time_ns, name, translation, rotation)
+
+
+def _camera_info(clip: Clip, timing: Timing) -> CameraInfo:
+    first = clip.annotations[0]
+    colour = read_image(
+        clip.frames[0].with_name(clip.frames[0].name + COLOUR_SUFFIX), cv2.IMREAD_COLOR_RGB
+    )
+    height, width = colour.shape[:2]
+    return CameraInfo(
+        sequence=0,
+        time_ns=timing.time_ns(0),
+        width=width,
+        height=height,
+        fx=float(first.camera_matrix[0, 0]),
+        fy=float(first.camera_matrix[1, 1]),
+        cx=float(first.camera_matrix[0, 2]),
+        cy=float(first.camera_matrix[1, 2]),
+        depth_scale=1.0 / first.depth_divisor,
+        frame_rate=timing.frame_rate,
+        description=f"camera of YCB-Video, {clip.folder.name}",
+    )

@@ -1,0 +1,157 @@
+"""What an interaction hands to the world, and how people stand while they perform it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inhand_lab.kinematics import Posture, Trunk
+from inhand_lab.motions.furniture import Box
+from inhand_lab.motions.timeline import drift
+from inhand_lab.person import Person, hip_height
+from inhand_lab.transforms import (
+    MIRROR,
+    Floats,
+    Transform,
+    normalised,
+    rotation_about,
+    rotation_from_axes,
+)
+
+
+class Contact(IntEnum):
+    """What carries the object."""
+
+    RESTING = 0
+    RIGHT_HAND = 1
+    LEFT_HAND = 2
+    BOTH_HANDS = 3
+    WORN = 4
+
+
+@dataclass(frozen=True)
+class Performance:
+    """An interaction as a right-handed person means to do it, over T frames.
+
+    The hands are targets, world_from_hand; contact (T,) holds values of Contact.
+    """
+
+    posture: Posture
+    right_hand: Transform
+    left_hand: Transform
+    world_from_object: Transform
+    contact: NDArray[np.uint8]
+    furniture: tuple[Box, ...]
+
+
+@dataclass(frozen=True)
+class Stance:
+    """Where the body is meant to be, before sway and habit.
+
+    The feet (T, 3) are the soles under the ankles; heading (T,) is the body's turn to the left in
+    radians; shift (T, 3) moves the hips from the middle of the feet, in metres; the angles (T, 3)
+    are those of Posture.
+    """
+
+    right_foot: Floats
+    left_foot: Floats
+    heading: Floats
+    shift: Floats
+    trunk_angles: Floats
+    head_angles: Floats
+
+
+STANCE_HALF_WIDTH = 0.09
+TOES_OUT = 0.15
+EASY_KNEES = 0.985
+"""Straightness of the legs in easy standing, as a share of their length."""
+
+
+def feet_apart(count: int, half_width: float = STANCE_HALF_WIDTH) -> tuple[Floats, Floats]:
+    """Right and left soles (T, 3) side by side on the floor."""
+    right = np.tile([half_width, 0.0, 0.0], (count, 1))
+    return right, right * MIRROR
+
+
+def contacts(times: Floats, changes: list[tuple[float, Contact]]) -> NDArray[np.uint8]:
+    """What carries the object (T,): from each time, in order, on."""
+    starts = [start for start, _ in changes]
+    values = np.array([contact for _, contact in changes], np.uint8)
+    return np.asarray(values[np.searchsorted(starts, times, side="right") - 1])
+
+
+def stand(person: Person, times: Floats, random: np.random.Generator, stance: Stance) -> Posture:
+    """A posture on those feet: hips within the legs' reach, with the person's stoop and sway.
+
+    A lean is shared between hips and back, and the hips go back to keep the balance.
+    """
+    manner, body = person.manner, person.proportions
+    sway = np.stack([drift(times, random, manner.sway, 4.0) for _ in range(2)], axis=1)
+    wander = np.stack([drift(times, random, 0.02, 5.0) for _ in range(3)], axis=1)
+    glances = np.stack([drift(times, random, 0.05, 3.0) for _ in range(3)], axis=1)
+    trunk = stance.trunk_angles + wander + np.array([manner.stoop, 0.0, 0.0])
+    head = stance.head_angles + glances + np.array([manner.head_pitch, 0.0, 0.0])
+    heading = rotation_about("z", stance.heading)
+    hips = 0.5 * (stance.right_foot + stance.left_foot) + stance.shift
+    hips[:, :2] += sway
+    hips -= heading[:, :, 1] * (0.30 * body.chest * np.sin(0.5 * trunk[:, :1]))
+    hips[:, 2] = stance.shift[:, 2] + _hip_reach(person, hips, heading, stance) + body.hip_drop
+    pelvis = heading @ rotation_about("xz", -0.5 * trunk[:, 0], 0.3 * trunk[:, 2])
+    trunk = trunk * np.array([0.5, 1.0, 0.7])
+    return Posture(
+        Transform(hips, pelvis),
+        trunk,
+        head,
+        Transform(stance.right_foot, rotation_about("z", stance.heading - TOES_OUT)),
+        Transform(stance.left_foot, rotation_about("z", stance.heading + TOES_OUT)),
+    )
+
+
+def _hip_reach(person: Person, hips: Floats, heading: Floats, stance: Stance) -> Floats:
+    """Height (T,) of the hip joints above the floor at which the further leg is nearly straight."""
+    body = person.proportions
+    length = EASY_KNEES * (hip_height(body) - body.ankle)
+    aside = heading[:, :, 0] * body.hip_half_width
+    spans = [
+        np.linalg.norm((hips + side * aside - foot)[:, :2], axis=1)
+        for side, foot in ((1.0, stance.right_foot), (-1.0, stance.left_foot))
+    ]
+    return np.asarray(body.ankle + np.sqrt(length**2 - np.maximum(*spans) ** 2))
+
+
+def hanging_hands(
+    person: Person, trunk: Trunk, random: np.random.Generator
+) -> tuple[Transform, Transform]:
+    """The right and the left hand (T) hanging at ease beside the thighs."""
+    heading = heading_of(trunk.world_from_chest)
+    right = _hang(person, trunk.right_shoulder, heading, random)
+    left = _hang(person, trunk.left_shoulder * MIRROR, -heading, random)
+    return right, left.mirrored()
+
+
+def _hang(
+    person: Person, shoulder: Floats, heading: Floats, random: np.random.Generator
+) -> Transform:
+    body = person.proportions
+    reach = 0.965 * (body.upper_arm + body.forearm) + body.palm
+    ahead, aside = random.normal(0.10, 0.03), random.normal(0.12, 0.02)
+    downwards = normalised([aside, ahead, -1.0])
+    hand = rotation_from_axes([-0.05, 0.15 + ahead, -1.0], [-0.35, 1.0, 0.0])
+    upright = rotation_about("z", heading)
+    return Transform(shoulder + upright @ (downwards * reach), upright @ hand)
+
+
+def heading_of(frame: Transform) -> Floats:
+    """Turn (T,) to the left of a frame's y axis, radians."""
+    forward = frame.rotation[:, :, 1]
+    return np.asarray(np.arctan2(-forward[:, 0], forward[:, 1]))
+
+
+def mouth(person: Person, trunk: Trunk) -> Floats:
+    """The lips (T, 3) in the world."""
+    body = person.proportions
+    point = np.array([0.0, 0.93 * body.head_half_depth, -0.54 * body.head_half_height])
+    return trunk.world_from_head.apply(point)

@@ -1,0 +1,175 @@
+"""Stages of an interaction in time, and smooth movement through key poses.
+
+Movement between rests is minimum-jerk (Flash & Hogan, 1985).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from inhand_lab.person import Person
+from inhand_lab.transforms import Floats, Transform, blend
+
+JITTER = 0.10
+"""Standard deviation of the duration of one movement between repetitions."""
+
+SHORTEST_PAUSE = 0.4
+"""A pause is at least this share of its usual duration."""
+
+
+@dataclass(frozen=True)
+class Movement:
+    """A stage in which something moves; its duration is for a person of average tempo."""
+
+    name: str
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Pause:
+    """A stage of rest: whatever time the movements leave goes to the pauses."""
+
+    name: str
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage with its place in time, in seconds; repetition counts the rounds of use from 0."""
+
+    name: str
+    repetition: int
+    start: float
+    end: float
+
+
+Step = Movement | Pause
+
+
+def schedule(
+    person: Person,
+    random: np.random.Generator,
+    duration: float,
+    opening: Sequence[Step],
+    use: Sequence[Step],
+    closing: Sequence[Step],
+) -> list[Stage]:
+    """Stages that fill the duration, in seconds: opening, as many uses as fit, closing."""
+
+    def timed(steps: Sequence[Step]) -> list[float]:
+        variation = np.exp(JITTER * random.normal(size=len(steps)))
+        return [
+            step.seconds
+            * float(factor)
+            * (person.manner.restlessness if isinstance(step, Pause) else 1 / person.manner.tempo)
+            for step, factor in zip(steps, variation, strict=True)
+        ]
+
+    def least(steps: Sequence[Step], seconds: list[float]) -> float:
+        return sum(
+            second * (SHORTEST_PAUSE if isinstance(step, Pause) else 1.0)
+            for step, second in zip(steps, seconds, strict=True)
+        )
+
+    first, last = timed(opening), timed(closing)
+    rounds = [timed(use)]
+    used = least(opening, first) + least(closing, last) + least(use, rounds[0])
+    while used + least(use, following := timed(use)) < duration:
+        rounds.append(following)
+        used += least(use, following)
+    steps = [*opening, *(step for _ in rounds for step in use), *closing]
+    seconds = [*first, *(second for one in rounds for second in one), *last]
+    repetitions = [
+        *[0] * len(opening),
+        *(number for number in range(len(rounds)) for _ in use),
+        *[len(rounds) - 1] * len(closing),
+    ]
+    filled = _fill(steps, seconds, duration)
+    ends = np.cumsum(filled)
+    return [
+        Stage(step.name, repetition, float(end - second), float(end))
+        for step, repetition, second, end in zip(steps, repetitions, filled, ends, strict=True)
+    ]
+
+
+def _fill(steps: Sequence[Step], seconds: Sequence[float], duration: float) -> list[float]:
+    """Pauses stretched to fill the duration; where movements alone exceed it, all is hurried."""
+    pauses = sum(s for step, s in zip(steps, seconds, strict=True) if isinstance(step, Pause))
+    movements = sum(seconds) - pauses
+    stretch = max((duration - movements) / pauses, SHORTEST_PAUSE)
+    hurry = duration / (movements + stretch * pauses)
+    return [
+        second * hurry * (stretch if isinstance(step, Pause) else 1.0)
+        for step, second in zip(steps, seconds, strict=True)
+    ]
+
+
+def minimum_jerk(share: ArrayLike) -> Floats:
+    """Progress from 0 to 1 of a movement with rest at both ends, by the share of its time."""
+    s = np.clip(np.asarray(share, float), 0.0, 1.0)
+    return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s**2))
+
+
+def ramp(times: Floats, stage: Stage) -> Floats:
+    """0 before the stage, 1 after it, minimum-jerk between."""
+    return minimum_jerk((times - stage.start) / (stage.end - stage.start))
+
+
+def track(times: Floats, keys: Sequence[tuple[float, float]]) -> Floats:
+    """Values (T,) through keys (time, value) in order of time, at rest at every key."""
+    values = np.full(len(times), keys[0][1])
+    for (start, first), (end, second) in pairwise(keys):
+        values += (second - first) * minimum_jerk((times - start) / (end - start))
+    return values
+
+
+@dataclass(frozen=True)
+class Key:
+    """A pose to be in at a time; its transform is a series (T, ...), for what it hangs on moves.
+
+    bow is how far (metres, in the world) the way to this key swings out at its middle. by is a
+    pose the way bends towards without stopping there: a quadratic Bezier curve's middle point.
+    """
+
+    time: float
+    pose: Transform
+    bow: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    by: Transform | None = None
+
+
+def follow(times: Floats, keys: Sequence[Key]) -> Transform:
+    """The poses (T, ...) through the keys, in order of time, at rest relative to each of them."""
+    here = keys[0].pose
+    translation, rotation = here.translation.copy(), here.rotation.copy()
+    for first, second in pairwise(keys):
+        inside = times >= first.time
+        if not np.any(inside):
+            break
+        span = max(second.time - first.time, 1e-9)
+        share = minimum_jerk((times[inside] - first.time) / span)
+        passed = _pass(first.pose[inside], second, inside, share)
+        swing = np.outer(16.0 * (share * (1.0 - share)) ** 2, second.bow)
+        translation[inside] = passed.translation + swing
+        rotation[inside] = passed.rotation
+    return Transform(translation, rotation)
+
+
+def _pass(here: Transform, key: Key, inside: NDArray[np.bool_], share: Floats) -> Transform:
+    there = key.pose[inside]
+    if key.by is None:
+        return blend(here, there, share)
+    between = key.by[inside]
+    return blend(blend(here, between, share), blend(between, there, share), share)
+
+
+def drift(times: Floats, random: np.random.Generator, deviation: float, period: float) -> Floats:
+    """A slow wander (T,) about zero: sinusoids of random phase at and above the period, seconds."""
+    periods = period * np.exp(random.uniform(-0.7, 0.7, 5))
+    phases = random.uniform(0.0, 2.0 * np.pi, 5)
+    waves = np.sin(2.0 * np.pi * times[:, None] / periods + phases)
+    return np.asarray(deviation * np.sqrt(2.0 / 5.0) * waves.sum(axis=1))

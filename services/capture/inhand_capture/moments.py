@@ -1,0 +1,57 @@
+"""A recording's messages put together again as the moments at which they were captured."""
+
+from collections.abc import Iterable, Iterator
+from functools import partial
+
+from inhand_runtime.recording import RecordedMessage
+from inhand_runtime.source import Captured, Pixels
+from inhand_schemas.messages import Message, ObjectPose, RgbdFrame, Skeletons
+
+LOOK_AHEAD_NS = 500_000_000
+
+Moment = list[RecordedMessage]
+
+
+def moments(recorded: Iterable[RecordedMessage], camera: str) -> Iterator[Captured]:
+    """What a camera captured, in the order of capture.
+
+    Messages of one sequence number and time belong together; they may lie as far apart in the
+    recording as was received within half a second. Raises MessageError.
+    """
+    waiting: dict[tuple[int, int], Moment] = {}
+    for message in recorded:
+        if message.topic.stream != "label" and message.name != camera:
+            continue
+        complete = message.received_ns - LOOK_AHEAD_NS
+        for key in sorted(waiting):
+            if waiting[key][0].received_ns > complete:
+                break
+            yield from _captured(waiting.pop(key), camera)
+        waiting.setdefault((message.captured_ns, message.sequence), []).append(message)
+    for key in sorted(waiting):
+        yield from _captured(waiting[key], camera)
+
+
+def _captured(moment: Moment, camera: str) -> Iterator[Captured]:
+    """The moment of these messages; none where only another camera's labels belong to it."""
+    frame: RgbdFrame | None = None
+    skeletons: Skeletons | None = None
+    labels: list[ObjectPose] = []
+    messages: list[Message] = [recorded.message() for recorded in moment]
+    for message in messages:
+        match message:
+            case RgbdFrame():
+                frame = message
+            case Skeletons():
+                skeletons = message
+            case ObjectPose(camera=seen_by) if seen_by == camera:
+                labels.append(message)
+    if frame is None and skeletons is None and not labels:
+        return
+    yield Captured(
+        time_ns=messages[0].time_ns,
+        time_uncertainty_ns=0 if frame is None else frame.time_uncertainty_ns,
+        pixels=None if frame is None else partial(Pixels, frame.colour, frame.depth),
+        people=None if skeletons is None else skeletons.people,
+        labels=tuple(labels),
+    )

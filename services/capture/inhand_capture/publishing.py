@@ -1,0 +1,101 @@
+"""A source's moments as messages on a camera's topics, as far as somebody listens."""
+
+import time
+from typing import Protocol, TypeVar
+
+from inhand_runtime.pixels import encode_colour, encode_depth
+from inhand_runtime.source import Captured, Pixels
+from inhand_schemas.messages import (
+    CameraInfo,
+    ColourImage,
+    DepthImage,
+    Message,
+    ObjectPose,
+    RgbdFrame,
+    Skeletons,
+)
+from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS, Topic
+from msgspec.structs import replace
+
+T = TypeVar("T", bound=Message)
+T_contra = TypeVar("T_contra", bound=Message, contravariant=True)
+
+
+class Outlet(Protocol[T_contra]):
+    """Where one topic's messages go."""
+
+    def put(self, message: T_contra) -> None:
+        """Send a message."""
+
+    def wanted(self) -> bool:
+        """Whether anybody listens now."""
+
+
+class Outlets(Protocol):
+    """What makes outlets, such as a daemon."""
+
+    def publisher(self, topic: Topic[T], name: str) -> Outlet[T]:
+        """The outlet of a topic under one name."""
+
+
+class CameraPublisher:
+    """Publishes what one camera captures; what belongs together shares its sequence number."""
+
+    def __init__(self, outlets: Outlets, camera: str) -> None:
+        self._outlets = outlets
+        self._camera = camera
+        self._info = outlets.publisher(INFO, camera)
+        self._skeletons = outlets.publisher(SKELETONS, camera)
+        self._rgbd = outlets.publisher(RGBD, camera)
+        self._labels: dict[str, Outlet[ObjectPose]] = {}
+        self._introductions = 0
+        self._sequence = 0
+
+    def introduce(self, info: CameraInfo) -> None:
+        """Tell how the camera sees, to all who listen and will listen."""
+        time_ns = info.time_ns or time.time_ns()
+        self._info.put(replace(info, sequence=self._introductions, time_ns=time_ns))
+        self._introductions += 1
+
+    def has_readers(self) -> bool:
+        """Whether anybody listens to skeletons or pictures now."""
+        return self._skeletons.wanted() or self._rgbd.wanted()
+
+    def wants_pixels(self) -> bool:
+        """Whether anybody listens to pictures now."""
+        return self._rgbd.wanted()
+
+    def publish(self, captured: Captured) -> None:
+        """Send one moment, the small messages first, so that pixels never hold them up."""
+        sequence = self._sequence
+        self._sequence += 1
+        if captured.people is not None and self._skeletons.wanted():
+            self._skeletons.put(
+                Skeletons(sequence=sequence, time_ns=captured.time_ns, people=captured.people)
+            )
+        for label in captured.labels:
+            self._publish_label(label, sequence, captured.time_ns)
+        if captured.pixels is not None and self._rgbd.wanted():
+            self._rgbd.put(_rgbd_frame(captured, captured.pixels(), sequence))
+
+    def _publish_label(self, label: ObjectPose, sequence: int, time_ns: int) -> None:
+        if label.object not in self._labels:
+            self._labels[label.object] = self._outlets.publisher(LABEL, label.object)
+        outlet = self._labels[label.object]
+        if outlet.wanted():
+            outlet.put(replace(label, sequence=sequence, time_ns=time_ns, camera=self._camera))
+
+
+def _rgbd_frame(captured: Captured, pixels: Pixels, sequence: int) -> RgbdFrame:
+    colour, depth = pixels.colour, pixels.depth
+    if colour is not None and not isinstance(colour, ColourImage):
+        colour = encode_colour(colour)
+    if depth is not None and not isinstance(depth, DepthImage):
+        depth = encode_depth(depth)
+    return RgbdFrame(
+        sequence=sequence,
+        time_ns=captured.time_ns,
+        time_uncertainty_ns=captured.time_uncertainty_ns,
+        colour=colour,
+        depth=depth,
+    )

@@ -1,0 +1,90 @@
+"""The capture service: the only file of capture that touches a session."""
+
+import logging
+import threading
+import time
+from collections.abc import Callable
+from typing import Annotated, Any
+
+from inhand_runtime.daemon import Daemon, running_daemon
+from inhand_runtime.errors import InhandError
+from inhand_runtime.settings import Section, Settings
+from inhand_runtime.source import Source, SourceError, require_source, source_factory
+from inhand_schemas.messages import CameraInfo
+from pydantic import AfterValidator, Field, model_validator
+
+from inhand_capture.publishing import CameraPublisher
+from inhand_capture.reopening import captures
+
+log = logging.getLogger(__name__)
+
+READER_POLL_S = 0.01
+
+NO_CAMERA = (
+    'no camera is configured: write [capture.front] with source = "simulator", which needs none, '
+    'or source = "replay" and the recording as options.file'
+)
+
+
+def _installed(source: str) -> str:
+    try:
+        require_source(source)
+    except SourceError as error:
+        raise ValueError(str(error)) from None
+    return source
+
+
+class CaptureSettings(Section):
+    """``[capture.NAME]``: which source publishes as the camera ``NAME``.
+
+    ``options`` is the source's own table. The source starts as soon as somebody listens, at the
+    latest after ``wait_for_reader_s`` seconds.
+    """
+
+    source: Annotated[str, AfterValidator(_installed)]
+    options: dict[str, Any] = {}
+    wait_for_reader_s: Annotated[float, Field(ge=0, le=3600)] = 2.0
+
+    @model_validator(mode="before")
+    @classmethod
+    def _require_source(cls, table: Any) -> Any:
+        if not table:
+            raise ValueError(NO_CAMERA)
+        return table
+
+
+def run(settings: Settings[CaptureSettings]) -> None:
+    """Publish until the source ends or a signal comes; raises InhandError."""
+    chosen = settings.service
+    with running_daemon("capture", settings) as daemon:
+        try:
+            _publish(daemon, chosen, lambda: source_factory(chosen.source)(chosen.options))
+        except SourceError as error:
+            raise InhandError(f"source {chosen.source}: {error}") from error
+
+
+def _publish(daemon: Daemon, chosen: CaptureSettings, open_source: Callable[[], Source]) -> None:
+    camera = CameraPublisher(daemon, daemon.instance)
+
+    def opened(info: CameraInfo) -> None:
+        camera.introduce(info)
+        _wait_until(camera.has_readers, chosen.wait_for_reader_s, daemon.stop)
+
+    def lost(error: SourceError) -> None:
+        daemon.health.state = "degraded"
+        daemon.health.error(f"source {chosen.source}: {error}")
+
+    for captured in captures(
+        open_source, camera.wants_pixels, daemon.stop, opened=opened, lost=lost
+    ):
+        camera.publish(captured)
+        daemon.health.state = "running"
+        daemon.health.latency(captured.time_ns)
+    if not daemon.stop.is_set():
+        log.info("source %s has come to its end", chosen.source)
+
+
+def _wait_until(happened: Callable[[], bool], seconds: float, stop: threading.Event) -> None:
+    deadline = time.monotonic() + seconds
+    while not happened() and time.monotonic() < deadline and not stop.wait(READER_POLL_S):
+        pass

@@ -1,0 +1,10 @@
+"""``python -m inhand_tracker``: one tracker daemon."""
+
+import sys
+
+from inhand_runtime.entry import daemon_main
+
+from inhand_tracker.service import TrackerSettings, run
+
+if __name__ == "__main__":
+    sys.exit(daemon_main("tracker", TrackerSettings, run))

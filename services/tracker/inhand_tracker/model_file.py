@@ -1,0 +1,121 @@
+"""A learned model in one file: a zip of NumPy arrays and a JSON description, with checksums.
+
+Any zip tool and NumPy can open it. Nothing in it is executed.
+"""
+
+import json
+import zipfile
+import zlib
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from inhand_runtime.errors import InhandError
+
+from inhand_tracker.mapping import Mapping
+from inhand_tracker.shape import ObjectShape, Symmetry
+from inhand_tracker.viewpoints import Viewpoints
+
+FORMAT = "inhand-model"
+VERSION = 1
+
+
+class ModelError(InhandError):
+    """A model file that cannot be used; the message says the mend."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """What a tracker needs to know of one object in one interaction."""
+
+    interaction: str
+    shape: ObjectShape
+    mapping: Mapping
+    viewpoints: Viewpoints
+
+
+def save_model(model: Model, path: Path) -> None:
+    """Write a model; an existing file is replaced only when all is written."""
+    shape, mapping = model.shape, model.mapping
+    description = {
+        "format": FORMAT,
+        "version": VERSION,
+        "interaction": model.interaction,
+        "object": shape.name,
+        "participants": mapping.participants,
+        "symmetries": [[s.axis, s.centre, s.order] for s in shape.symmetries],
+    }
+    arrays = {
+        "shape.vertices": shape.vertices,
+        "shape.faces": shape.faces,
+        "shape.marked_vertices": shape.marked_vertices,
+        "shape.mirror_normal": shape.mirror_normal,
+        "viewpoints.directions": model.viewpoints.directions,
+        "viewpoints.boundaries": model.viewpoints.boundaries,
+        **{f"mapping.{name}": getattr(mapping, name) for name in _mapping_arrays()},
+    }
+    temporary = path.with_name(path.name + ".part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with temporary.open("wb") as file:
+            np.savez_compressed(file, model=np.array(json.dumps(description)), **arrays)
+        temporary.replace(path)
+    except OSError as error:
+        raise ModelError(f"cannot write {path}: {error.strerror}") from None
+
+
+def load_model(path: Path) -> Model:
+    """Read a model; raises ModelError for a missing, foreign, newer or damaged file."""
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            if "model" not in archive:
+                raise ModelError(f"{path} is no Inhand model: make one with `inhand train`")
+            description = json.loads(str(archive["model"]))
+            _check(description, path)
+            arrays = {name: archive[name] for name in archive.files}
+        return _assemble(description, arrays)
+    except OSError as error:
+        raise ModelError(f"cannot read {path}: {error.strerror or error}") from None
+    except (zipfile.BadZipFile, zlib.error, EOFError, ValueError, KeyError, TypeError) as error:
+        if not zipfile.is_zipfile(path) and not _starts_like_zip(path):
+            raise ModelError(f"{path} is no Inhand model: make one with `inhand train`") from None
+        raise ModelError(
+            f"{path} is damaged ({error}): copy it again, or make it anew with `inhand train`"
+        ) from None
+
+
+def _check(description: Any, path: Path) -> None:
+    if not isinstance(description, dict) or description.get("format") != FORMAT:
+        raise ModelError(f"{path} is no Inhand model: make one with `inhand train`")
+    if description["version"] != VERSION:
+        raise ModelError(
+            f"{path} is a model of version {description['version']}, and this release reads "
+            f"version {VERSION}: update Inhand, or train again"
+        )
+
+
+def _assemble(description: dict[str, Any], arrays: dict[str, Any]) -> Model:
+    shape = ObjectShape(
+        description["object"],
+        arrays["shape.vertices"],
+        arrays["shape.faces"],
+        arrays["shape.marked_vertices"],
+        arrays["shape.mirror_normal"],
+        tuple(Symmetry(tuple(a), tuple(c), o) for a, c, o in description["symmetries"]),
+    )
+    mapping = Mapping(
+        participants=tuple(description["participants"]),
+        **{name: arrays[f"mapping.{name}"] for name in _mapping_arrays()},
+    )
+    viewpoints = Viewpoints(arrays["viewpoints.directions"], arrays["viewpoints.boundaries"])
+    return Model(description["interaction"], shape, mapping, viewpoints)
+
+
+def _mapping_arrays() -> tuple[str, ...]:
+    return tuple(field.name for field in fields(Mapping) if field.name != "participants")
+
+
+def _starts_like_zip(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(2) == b"PK"

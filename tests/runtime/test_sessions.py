@@ -1,0 +1,150 @@
+"""Processes that find each other, and readers that do not disturb each other."""
+
+import os
+import signal
+import socket
+import time
+from pathlib import Path
+
+import pytest
+from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.inbox import Inbox, Received
+from inhand_runtime.session import open_session, subscribe
+from inhand_runtime.settings import ZenohSettings
+from inhand_schemas.messages import CameraInfo, ColourImage, RgbdFrame, Skeletons
+from inhand_schemas.topics import INFO, RGBD, SKELETONS
+from running_rig import RunningRig, eventually
+from wire import Wire
+
+PEER = Path(__file__).with_name("peer.py")
+OPENS_WITHIN_S = 5.0
+
+INFO_MESSAGE = CameraInfo(
+    sequence=0, time_ns=1, width=64, height=48, fx=50.0, fy=50.0, cx=32.0, cy=24.0
+)
+
+
+def test_peers_that_start_together_find_each_other(rig: RunningRig) -> None:
+    for peer in [rig.python(PEER, rig.meeting) for _ in range(3)]:
+        peer.said("knows 2")
+
+
+def test_peers_find_a_new_one_after_the_first_was_killed(rig: RunningRig) -> None:
+    first = rig.python(PEER, rig.meeting)
+    first.said("knows 0")
+    others = [rig.python(PEER, rig.meeting) for _ in range(2)]
+    for peer in (first, *others):
+        peer.said("knows 2")
+    first.stop(signal.SIGKILL)
+    for peer in others:
+        peer.said("knows 2\nknows 1")
+    rig.python(PEER, rig.meeting).said("knows 2")
+    for peer in others:
+        peer.said("knows 2\nknows 1\nknows 2")
+
+
+def test_a_foreign_program_at_the_meeting_address_delays_nobody_for_long() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as foreign:
+        begin = time.monotonic()
+        with open_session(ZenohSettings(meeting=_address(foreign))):
+            pass
+        assert time.monotonic() - begin < OPENS_WITHIN_S
+
+
+def test_a_listen_port_in_use_is_refused_with_the_mend(rig: RunningRig) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        settings = ZenohSettings(meeting=rig.meeting, listen=(_address(other),))
+        with (
+            pytest.raises(SettingsError, match=r"cannot listen on .*in use.*change zenoh\.listen"),
+            open_session(settings),
+        ):
+            pass
+
+
+def test_a_client_without_a_hub_is_told_so(rig: RunningRig) -> None:
+    settings = ZenohSettings(mode="client", connect=(rig.meeting,))
+    with (
+        pytest.raises(InhandError, match=f"no hub answers at {rig.meeting}"),
+        open_session(settings),
+    ):
+        pass
+
+
+def test_a_client_that_names_no_hub_is_refused() -> None:
+    with (
+        pytest.raises(SettingsError, match=r"needs zenoh\.connect"),
+        open_session(ZenohSettings(mode="client")),
+    ):
+        pass
+
+
+def test_a_kept_topic_reaches_those_who_come_late(wire: Wire, rig: RunningRig) -> None:
+    publisher = wire.publisher(INFO, "front")
+    publisher.put(INFO_MESSAGE)
+    with Wire.at(rig.meeting) as late:
+        heard = late.hear(INFO)
+        eventually("the kept message", lambda: heard)
+        assert [INFO.decode(each.payload, each.encoding) for each in heard] == [INFO_MESSAGE]
+
+
+def test_a_kept_topic_reaches_those_who_came_before(wire: Wire, rig: RunningRig) -> None:
+    heard = wire.hear(INFO)
+    with Wire.at(rig.meeting) as late:
+        publisher = late.publisher(INFO, "front")
+        publisher.put(INFO_MESSAGE)
+        eventually("the message", lambda: heard)
+
+
+def test_a_publisher_knows_whether_anybody_listens(wire: Wire, rig: RunningRig) -> None:
+    publisher = wire.publisher(SKELETONS, "front")
+    assert not publisher.wanted()
+    with Wire.at(rig.meeting) as reader:
+        reader.hear(SKELETONS)
+        eventually("a reader", publisher.wanted)
+    eventually("no reader", lambda: not publisher.wanted())
+
+
+def test_the_last_message_before_a_session_closes_arrives(wire: Wire, rig: RunningRig) -> None:
+    heard = wire.hear(SKELETONS)
+    with Wire.at(rig.meeting) as speaker:
+        publisher = speaker.publisher(SKELETONS, "front")
+        eventually("the reader", publisher.wanted)
+        for number in range(100):
+            publisher.put(Skeletons(sequence=number, time_ns=number))
+    eventually("the last message", lambda: len(heard) == 100)
+
+
+def test_a_slow_reader_keeps_the_newest_and_slows_nobody(wire: Wire, rig: RunningRig) -> None:
+    frames, room = 40, 4
+    inbox = Inbox()
+    dropped: list[str] = []
+    lane = inbox.lane(samples=room, on_drop=dropped.append)
+    publisher = wire.publisher(RGBD, "front")
+    image = ColourImage("jpeg", 640, 480, os.urandom(300_000))
+    first = RgbdFrame(sequence=0, time_ns=0, colour=image)
+    with Wire.at(rig.meeting) as fast, Wire.at(rig.meeting) as slow:
+        fast_heard, slow_heard = fast.hear(RGBD), slow.hear(RGBD)
+
+        def both_hear() -> bool:
+            publisher.put(first)
+            return bool(fast_heard and slow_heard)
+
+        eventually("both readers", both_hear)
+        keep = subscribe(slow.session, RGBD.pattern(slow.site), RGBD.delivery, lane.put)
+        for number in range(1, frames + 1):
+            publisher.put(RgbdFrame(sequence=number, time_ns=number, colour=image))
+            eventually("the frame", lambda number=number: number in _sequences(fast_heard))
+        eventually("the last frame", lambda: frames in _sequences(slow_heard))
+        eventually("the full lane", lambda: len(dropped) >= frames - room)
+        kept = [sample for _ in range(room) if (sample := inbox.get(0))]
+        assert _sequences(kept) == [frames - 3, frames - 2, frames - 1, frames]
+        assert inbox.get(0) is None
+        keep.undeclare()
+
+
+def _sequences(samples: list[Received]) -> list[int]:
+    return [RGBD.decode(sample.payload, sample.encoding).sequence for sample in samples]
+
+
+def _address(server: socket.socket) -> str:
+    return f"tcp/127.0.0.1:{server.getsockname()[1]}"

@@ -1,0 +1,170 @@
+"""Settings from file and environment, and the lines about what is wrong with them."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.settings import Section, Settings, load_rig_file, load_settings
+from inhand_schemas.keys import Site
+
+
+class CameraSettings(Section):
+    """A daemon's settings."""
+
+    source: str
+    rate: float = 1.0
+    options: dict[str, Any] = {}
+
+
+Load = Callable[..., Settings[CameraSettings]]
+
+
+@pytest.fixture
+def load(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Load:
+    """Load the camera's settings from a text and variables, and nothing else."""
+    for variable in os.environ:
+        if variable.upper().startswith("INHAND_"):
+            monkeypatch.delenv(variable)
+    monkeypatch.chdir(tmp_path)
+
+    def load_text(text: str, name: str | None = None, **env: str) -> Settings[CameraSettings]:
+        Path("rig.toml").write_text(text)
+        for variable, value in env.items():
+            monkeypatch.setenv(variable, value)
+        return load_settings(Path("rig.toml"), "capture", CameraSettings, name)
+
+    return load_text
+
+
+def test_an_instance_gets_its_own_table_and_the_shared_ones(load: Load) -> None:
+    settings = load(
+        'realm = "home"\nrig = "kitchen"\n'
+        '[zenoh]\nconnect = ["tcp/10.0.0.1:7447"]\n'
+        '[capture.front]\nsource = "simulator"\n[capture.front.options]\nseed = 3\n'
+    )
+    assert settings.site == Site("home", "kitchen")
+    assert settings.zenoh.connect == ("tcp/10.0.0.1:7447",)
+    assert settings.instance == "front"
+    assert settings.service == CameraSettings(source="simulator", options={"seed": 3})
+
+
+def test_the_environment_goes_over_the_file_value_by_value(load: Load) -> None:
+    settings = load(
+        '[capture.front]\nsource = "simulator"\nrate = 2\n',
+        INHAND_CAPTURE__FRONT__SOURCE="replay",
+        INHAND_CAPTURE__FRONT__OPTIONS__FILE="/data/A.mcap",
+        INHAND_LOG__LEVEL="debug",
+    )
+    expected = CameraSettings(source="replay", rate=2, options={"file": "/data/A.mcap"})
+    assert settings.service == expected
+    assert settings.log.level == "debug"
+
+
+def test_without_a_file_an_instance_is_called_like_its_service() -> None:
+    class AllDefaults(Section):
+        speed: int = 1
+
+    assert load_settings(None, "tracker", AllDefaults).instance == "tracker"
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (
+            '[capture.front]\nsource = "x"\n\nratte = 2\n',
+            "rig.toml:4: unknown setting capture.front.ratte (did you mean rate?)",
+        ),
+        ("[capture.front]\nrate = 1\n", "rig.toml:1: setting capture.front.source is missing"),
+        (
+            '[capture.front]\nsource = "x"\nrate = "fast"\n',
+            "rig.toml:3: setting capture.front.rate: "
+            "Input should be a valid number, unable to parse string as a number",
+        ),
+        ("[zenho]\n", "rig.toml:1: unknown setting zenho (did you mean zenoh?)"),
+        (
+            '[zenoh]\nmoode = "peer"\n',
+            "rig.toml:2: unknown setting zenoh.moode (did you mean mode?)",
+        ),
+        (
+            '[zenoh]\nmeeting = "localhost"\n',
+            "rig.toml:2: setting zenoh.meeting: 'localhost' is no address; "
+            "write it as tcp/127.0.0.1:7447",
+        ),
+        (
+            '[capture]\nsource = "x"\n',
+            "rig.toml:2: capture.source stands in no instance: write it below [capture.NAME]",
+        ),
+        (
+            "[log]\nxyz = 1\n",
+            "rig.toml:2: unknown setting log.xyz (there are: format, level)",
+        ),
+        (
+            'realm = "My home"\n',
+            "rig.toml: realm 'My home' is no name: "
+            "use 1 to 64 of the letters a-z, digits and underscore",
+        ),
+        (
+            '[capture.Front]\nsource = "x"\n',
+            "rig.toml: instance 'Front' is no name: "
+            "use 1 to 64 of the letters a-z, digits and underscore",
+        ),
+        (
+            '[capture.a]\nsource = "x"\n[capture.b]\nsource = "x"\n',
+            "rig.toml names several instances of capture; add --name with one of: a, b",
+        ),
+        ("a = = 1\n", "rig.toml is no TOML: Invalid value (at line 1, column 5)"),
+    ],
+)
+def test_a_wrong_file_is_told_with_line_and_mend(load: Load, text: str, line: str) -> None:
+    with pytest.raises(SettingsError) as refused:
+        load(text)
+    assert str(refused.value) == line
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "line"),
+    [
+        (
+            "INHAND_CAPTRE__FRONT__SOURCE",
+            "x",
+            "environment variable INHAND_CAPTRE__FRONT__SOURCE sets nothing: "
+            "'captre' is no setting (did you mean capture?)",
+        ),
+        (
+            "INHAND_ZENOH__MOODE",
+            "peer",
+            "environment variable INHAND_ZENOH__MOODE: "
+            "unknown setting zenoh.moode (did you mean mode?)",
+        ),
+        (
+            "INHAND_CAPTURE__FRONT__RATE",
+            "fast",
+            "environment variable INHAND_CAPTURE__FRONT__RATE: setting capture.front.rate: "
+            "Input should be a valid number, unable to parse string as a number",
+        ),
+    ],
+)
+def test_a_wrong_variable_is_told_by_its_name(
+    load: Load, variable: str, value: str, line: str
+) -> None:
+    with pytest.raises(SettingsError) as refused:
+        load('[capture.front]\nsource = "x"\n', **{variable: value})
+    assert str(refused.value) == line
+
+
+def test_a_list_in_the_environment_must_be_json(load: Load) -> None:
+    with pytest.raises(SettingsError, match="write lists and tables as JSON"):
+        load("", INHAND_ZENOH__CONNECT="tcp/10.0.0.1:7447")
+
+
+def test_an_instance_that_the_file_does_not_name_is_refused(load: Load) -> None:
+    with pytest.raises(SettingsError, match=r"rig\.toml has no \[capture\.back\]"):
+        load('[capture.front]\nsource = "x"\n', "back")
+
+
+def test_a_missing_file_is_named() -> None:
+    with pytest.raises(SettingsError, match="cannot read /nowhere/rig.toml: No such file"):
+        load_rig_file(Path("/nowhere/rig.toml"))
