@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inhand_lab.kinematics import Body, Joint
+from inhand_lab.joints import Joint
+from inhand_lab.kinematics import Body
 from inhand_lab.person import Person
 from inhand_lab.surfaces import Colour, Surface, ellipsoid, joined, limb
 from inhand_lab.transforms import MIRROR, Floats, Transform, normalised

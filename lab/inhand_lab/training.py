@@ -9,7 +9,8 @@ from inhand_tracker.viewpoints import find_viewpoints
 
 from inhand_lab.dataset import Dataset, DatasetError, Entry, labelled_sequence
 
-LONGEST_STEP_M = 0.5
+FASTEST_M_PER_S = 60.0
+"""Faster than the head of a golf club."""
 
 
 def entries_for(
@@ -60,7 +61,7 @@ def checked_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
             "dataset.toml"
         )
     steps = np.linalg.norm(np.diff(sequence.translations, axis=0), axis=1)
-    jumps = np.flatnonzero(steps > LONGEST_STEP_M)
+    jumps = np.flatnonzero(steps * entry.frame_rate > FASTEST_M_PER_S)
     if len(jumps):
         raise DatasetError(
             f"{entry.file}: the label jumps by {steps[jumps[0]]:.2f} m after frame {jumps[0]}: "

@@ -42,10 +42,6 @@ class Transform:
         """The transform between the two frames once both are reflected in their plane x = 0."""
         return Transform(self.translation * MIRROR, self.rotation * np.outer(MIRROR, MIRROR))
 
-    def moved(self, offset: ArrayLike) -> Transform:
-        """The same orientation, offset (..., 3) in a away."""
-        return Transform(self.translation + np.asarray(offset, float), self.rotation)
-
     def repeated(self, count: int) -> Transform:
         """A single transform as a constant series (count, ...)."""
         return Transform(

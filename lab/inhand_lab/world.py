@@ -2,7 +2,7 @@
 
 simulation = simulate("drinkFromMug", participant=0, seed=1)
 simulation.joints_in_camera            # what a skeleton tracker says
-simulation.camera_from_object_at(100)  # where the mug truly is
+simulation.camera_from_object[100]     # where the mug truly is
 frame = simulation.render(100)         # what the camera sees
 """
 
@@ -40,7 +40,7 @@ USUAL_SECONDS = 12.0
 CAMERA_HEIGHT = (1.0, 1.4)
 CAMERA_DISTANCE = (2.2, 3.0)
 CAMERA_ASIDE = np.radians(30.0)
-HEADROOM = 0.45
+HEADROOM = 0.60
 """How much more than the person, in metres, is in the image from top to bottom."""
 
 
@@ -233,7 +233,7 @@ def _place_camera(
     distance = max(random.uniform(*CAMERA_DISTANCE), fitting)
     ahead = rotation_about("z", facing)[:, 1]
     position = ahead * distance + np.array([0.0, 0.0, random.uniform(*CAMERA_HEIGHT)])
-    target = np.array([0.0, 0.0, 0.47 * person.height + random.normal(0.0, 0.02)])
+    target = np.array([0.0, 0.0, 0.43 * person.height + random.normal(0.0, 0.02)])
     forward = normalised(target - position)
     right = normalised(np.cross(forward, [0.0, 0.0, 1.0]))
     world_from_camera = np.stack([right, np.cross(forward, right), forward], axis=1)

@@ -14,7 +14,7 @@ PERSON = 0
 
 def skeletons_message(sequence: int, time_ns: int, joints: Array) -> Skeletons:
     """One person's joints (20, 3) in the camera frame; those that are not finite are missing."""
-    seen = np.isfinite(joints).all(axis=1)
+    seen = np.asarray(np.isfinite(joints).all(axis=1))
     if not seen.any():
         return Skeletons(sequence=sequence, time_ns=time_ns)
     positions = np.where(seen[:, None], joints, 0.0).tolist()

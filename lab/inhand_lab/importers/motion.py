@@ -86,7 +86,7 @@ def _messages(motion: Motion, timing: Timing) -> Iterator[Message]:
         time_ns = timing.time_ns(sequence)
         yield skeletons_message(sequence, time_ns, joints[frame])
         translation, orientation = translations[frame], orientations[frame]
-        if np.isfinite(translation).all() and np.isfinite(orientation).all():
+        if np.isfinite(translation).all():
             yield label_message(sequence, time_ns, motion.object, translation, orientation, PERSON)
 
 

@@ -46,23 +46,8 @@ class Motion:
 def read_motion(path: Path) -> Motion:
     """Read one archive, and warn of a body that cannot be; raises DatasetError."""
     values = _read_archive(path)
-    names = _array(path, values, "joint_names", "U", (20,)).tolist()
-    if sorted(names) != sorted(JOINT_NAMES):
-        raise DatasetError(f"{path}: joint_names are not the 20 joints of a Kinect")
-    joints = _array(path, values, "joints", "f", (None, 20, 3)).astype(np.float64)
-    joints = joints[:, [names.index(name) for name in JOINT_NAMES]]
-    if not any(map(has_pelvis, joints)):
-        raise DatasetError(f"{path} has no frame with a body: its hips and spine are never seen")
-    _warn_of_odd_parts(path, joints)
-    poses = _array(path, values, "object_pose", "f", (len(joints), 7)).astype(np.float64)
-    measured = np.isfinite(poses).all(axis=1)
-    if not measured.any():
-        raise DatasetError(f"{path} has no frame with an object: object_pose is nowhere measured")
-    if (np.abs(np.linalg.norm(poses[measured, 3:], axis=1) - 1.0) > 1e-3).any():
-        raise DatasetError(f"{path}: object_pose holds rotations that are no unit quaternions")
-    marked = _array(path, values, "vertices", "f", (None, 3)).astype(np.float64)
-    if len(marked) < 3 or not np.isfinite(marked).all():
-        raise DatasetError(f"{path}: vertices must be 3 or more finite points")
+    joints = _joints(path, values)
+    poses = _object_poses(path, values, len(joints))
     recorded_rate = float(_array(path, values, "fps", "fiu", ()))
     if not 0.0 < recorded_rate < np.inf:
         raise DatasetError(f"{path}: fps is {recorded_rate:g}, and must be above 0")
@@ -71,13 +56,44 @@ def read_motion(path: Path) -> Motion:
         joints,
         poses[:, :3],
         poses[:, 3:],
-        marked,
+        _marked_vertices(path, values),
         recorded_rate,
         str(_array(path, values, "interaction", "U", ())),
         object_name(str(_array(path, values, "object", "U", ()))),
         str(_array(path, values, "participant", "U", ())),
         _handedness(path, str(_array(path, values, "handedness", "U", ()))),
     )
+
+
+def _joints(path: Path, values: dict[str, Any]) -> Array:
+    names = _array(path, values, "joint_names", "U", (20,)).tolist()
+    if sorted(names) != sorted(JOINT_NAMES):
+        raise DatasetError(f"{path}: joint_names are not the 20 joints of a Kinect")
+    measured = _array(path, values, "joints", "f", (None, 20, 3)).astype(np.float64)
+    ordered = measured[:, [names.index(name) for name in JOINT_NAMES]]
+    joints = np.where(np.isfinite(ordered), ordered, np.nan)
+    if not any(map(has_pelvis, joints)):
+        raise DatasetError(f"{path} has no frame with a body: its hips and spine are never seen")
+    _warn_of_odd_parts(path, joints)
+    return joints
+
+
+def _object_poses(path: Path, values: dict[str, Any], frames: int) -> Array:
+    measured = _array(path, values, "object_pose", "f", (frames, 7)).astype(np.float64)
+    poses = np.where(np.isfinite(measured).all(axis=1, keepdims=True), measured, np.nan)
+    if np.isnan(poses).all():
+        raise DatasetError(f"{path} has no frame with an object: object_pose is nowhere measured")
+    lengths = np.linalg.norm(poses[:, 3:], axis=1)
+    if (np.abs(lengths[np.isfinite(lengths)] - 1.0) > 1e-3).any():
+        raise DatasetError(f"{path}: object_pose holds rotations that are no unit quaternions")
+    return poses
+
+
+def _marked_vertices(path: Path, values: dict[str, Any]) -> Array:
+    marked = _array(path, values, "vertices", "f", (None, 3)).astype(np.float64)
+    if len(marked) < 3 or not np.isfinite(marked).all():
+        raise DatasetError(f"{path}: vertices must be 3 or more finite points")
+    return marked
 
 
 def _warn_of_odd_parts(path: Path, joints: Array) -> None:
@@ -97,7 +113,7 @@ def _warn_of_odd_parts(path: Path, joints: Array) -> None:
 
 def _read_archive(path: Path) -> dict[str, Any]:
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             return {name: archive[name] for name in archive.files}
     except Exception as error:  # noqa: BLE001 - a reader of foreign files may raise anything
         raise DatasetError(f"{path} is no motion archive that can be read: {error}") from None

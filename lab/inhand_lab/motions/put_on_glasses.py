@@ -45,11 +45,11 @@ CLOSING = (
 )
 
 FACE_GRIP = rotation_from_axes([-0.20, -0.60, 0.75], [-0.2, -0.75, -0.6])
-TABLE_GRIP = rotation_from_axes([-0.35, 0.80, -0.40], [-0.9, -0.2, 0.5])
+TABLE_GRIP = rotation_from_axes([-0.30, 0.70, -0.65], [-0.9, -0.2, 0.5])
 """The right hand's rotation in the glasses' frame: fingers up at the face, ahead at the table."""
 
 RAISED = Transform(
-    np.array([0.17, 0.42, -0.22]), rotation_from_axes([-0.15, 0.9, 0.3], [0, 0, 1.0])
+    np.array([0.20, 0.28, -0.06]), rotation_from_axes([-0.15, 0.9, 0.3], [0, 0, 1.0])
 )
 """Where the right hand passes on its way between thigh and face, from the upright chest."""
 
@@ -84,13 +84,13 @@ def _right_keys(
     keys = []
     for stage in stages:
         if stage.name == "reach":
-            keys += [Key(stage.start, rest), Key(stage.end, held, bow=(0.05, 0.0, 0.12))]
+            keys += [Key(stage.start, rest), Key(stage.end, held, bow=(0.0, -0.06, 0.12))]
         if stage.name == "let go":
             keys += [Key(stage.start, held), Key(stage.end, rest, by=raised)]
         if stage.name == "take hold":
             keys += [Key(stage.start, rest), Key(stage.end, held, by=raised)]
         if stage.name == "withdraw":
-            keys += [Key(stage.start, held), Key(stage.end, rest, bow=(0.05, -0.03, 0.10))]
+            keys += [Key(stage.start, held), Key(stage.end, rest, bow=(0.0, -0.12, 0.12))]
     return keys
 
 
@@ -158,7 +158,7 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
     size = person.height / 1.75
     x, y = np.array([0.24, 0.37]) * size + random.normal(0.0, 0.015, 2)
     top = 0.53 * person.height + random.normal(0.0, 0.015)
-    return side_table(x + 0.15, y + 0.06, top), np.array([x, y, top + EAR_DROP + 0.004])
+    return side_table(x + 0.15, y + 0.09, top), np.array([x, y, top + EAR_DROP + 0.004])
 
 
 def _grip(
@@ -170,7 +170,7 @@ def _grip(
     """
     back = 0.022 + 0.012 * person.manner.grip_slide
     point = np.array([TEMPLE_OFFSET, -back, 0.006])
-    turn = rotation_about("y", person.manner.grip_turn)
+    turn = rotation_about("y", 0.6 * person.manner.grip_turn)
     at_table = pinch(times, random, point, turn @ TABLE_GRIP)
     at_face = pinch(times, random, point, turn @ FACE_GRIP)
     between = blend(at_table, at_face, np.full(len(times), 0.5))

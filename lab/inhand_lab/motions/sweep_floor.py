@@ -45,8 +45,8 @@ CLOSING = (
     Pause("wait", 0.4),
 )
 
-RIGHT_HAND_UP = 0.54
-LEFT_HAND_UP = 0.72
+RIGHT_HAND_UP = 0.58
+LEFT_HAND_UP = 0.75
 """Where the hands are along the broom from the bristles' tips, as shares of the stature."""
 HIGHEST_GRIP = 1.32
 RIGHT_ELBOW = np.array([0.06, -0.08, -0.28])
@@ -115,7 +115,7 @@ def _brush_track(
     person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
 ) -> Floats:
     """Where the brush is (T,) to the right of the body, metres: across to the left and back."""
-    reach = 0.27 * person.manner.amplitude
+    reach = 0.15 * person.height * person.manner.amplitude
 
     def right_end() -> float:
         return 0.10 + reach + float(random.normal(0.0, 0.03))
@@ -200,9 +200,9 @@ def _sweep(
 ) -> Transform:
     """The broom at work, world_from_object (T): its head on the floor but on the way back."""
     hips = trunk.world_from_pelvis.translation
-    ahead = 0.55 + drift(times, random, 0.02, 4.0)
+    ahead = 0.31 * person.height + drift(times, random, 0.02, 4.0)
     head = np.stack([hips[:, 0] + brush, hips[:, 1] + ahead], axis=1)
-    end = hips + np.array([0.0, 0.40, 0.14 * person.height])
+    end = hips + np.array([0.0, 0.26, 0.14]) * person.height
     end[:, 0] -= 0.12 * brush
     foot = np.concatenate([head, np.zeros((len(times), 1))], axis=1)
     raised = np.zeros(len(times))

@@ -90,10 +90,10 @@ def schedule(
         *[len(rounds) - 1] * len(closing),
     ]
     filled = _fill(steps, seconds, duration)
-    ends = np.cumsum(filled)
+    bounds = [0.0, *(float(end) for end in np.cumsum(filled))]
     return [
-        Stage(step.name, repetition, float(end - second), float(end))
-        for step, repetition, second, end in zip(steps, repetitions, filled, ends, strict=True)
+        Stage(step.name, repetition, start, end)
+        for step, repetition, (start, end) in zip(steps, repetitions, pairwise(bounds), strict=True)
     ]
 
 
@@ -113,11 +113,6 @@ def minimum_jerk(share: ArrayLike) -> Floats:
     """Progress from 0 to 1 of a movement with rest at both ends, by the share of its time."""
     s = np.clip(np.asarray(share, float), 0.0, 1.0)
     return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s**2))
-
-
-def ramp(times: Floats, stage: Stage) -> Floats:
-    """0 before the stage, 1 after it, minimum-jerk between."""
-    return minimum_jerk((times - stage.start) / (stage.end - stage.start))
 
 
 def track(times: Floats, keys: Sequence[tuple[float, float]]) -> Floats:
