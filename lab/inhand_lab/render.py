@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from inhand_lab.figure import Figure
 from inhand_lab.kinematics import Body
-from inhand_lab.objects import ObjectModel
+from inhand_lab.objects.model import ObjectModel
 from inhand_lab.rasteriser import Canvas, Intrinsics, draw
 from inhand_lab.surfaces import Surface, from_mesh, lit
 from inhand_lab.transforms import Transform

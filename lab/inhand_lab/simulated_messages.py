@@ -5,7 +5,7 @@ from inhand_schemas.messages import CameraInfo, JointState, ObjectPose, Person
 from inhand_tracker.conversion import pose_message
 from inhand_tracker.shape import ObjectShape, Symmetry
 
-from inhand_lab.objects import ObjectModel
+from inhand_lab.objects.model import ObjectModel
 from inhand_lab.rasteriser import Intrinsics
 from inhand_lab.world import Simulation
 

@@ -20,7 +20,7 @@ from inhand_lab.kinematics import Body, place_body
 from inhand_lab.motions import INTERACTIONS as PERFORMED
 from inhand_lab.motions.furniture import Box
 from inhand_lab.motions.performance import Contact
-from inhand_lab.objects import ObjectModel
+from inhand_lab.objects.model import ObjectModel
 from inhand_lab.person import Person, sample_person
 from inhand_lab.rasteriser import KINECT, Canvas, Intrinsics
 from inhand_lab.render import Drawing, draw_frame, draw_room, object_surface

@@ -9,7 +9,7 @@ from inhand_lab.kinematics import BALL_HEIGHT, place_trunk
 from inhand_lab.motions import INTERACTIONS
 from inhand_lab.motions.performance import Contact, mouth
 from inhand_lab.motions.timeline import Movement, Pause, minimum_jerk, schedule
-from inhand_lab.objects import MUG_HEIGHT, MUG_RADIUS
+from inhand_lab.objects.mug import MUG_HEIGHT, MUG_RADIUS
 from inhand_lab.person import sample_person
 from performers import FRAME_RATE, angles_at, depth_in_head, object_points, performed
 

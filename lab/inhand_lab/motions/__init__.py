@@ -9,7 +9,10 @@ import numpy as np
 
 from inhand_lab.motions import drink_from_mug, put_on_glasses, sweep_floor
 from inhand_lab.motions.performance import Performance
-from inhand_lab.objects import ObjectModel, broom, glasses, mug
+from inhand_lab.objects.broom import broom
+from inhand_lab.objects.glasses import glasses
+from inhand_lab.objects.model import ObjectModel
+from inhand_lab.objects.mug import mug
 from inhand_lab.person import Person
 from inhand_lab.transforms import Floats
 

@@ -28,7 +28,7 @@ from inhand_lab.motions.timeline import (
     schedule,
     track,
 )
-from inhand_lab.objects import MUG_HANDLE_REACH, MUG_HEIGHT, MUG_RADIUS
+from inhand_lab.objects.mug import MUG_HANDLE_REACH, MUG_HEIGHT, MUG_RADIUS
 from inhand_lab.person import Person
 from inhand_lab.transforms import Floats, Transform, rotation_about
 

@@ -18,7 +18,7 @@ from inhand_lab.motions.performance import (
     stand,
 )
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, follow, schedule, track
-from inhand_lab.objects import EAR_DROP, TEMPLE_OFFSET
+from inhand_lab.objects.glasses import EAR_DROP, TEMPLE_OFFSET
 from inhand_lab.person import Person
 from inhand_lab.transforms import Floats, Transform, blend, rotation_about, rotation_from_axes
 

@@ -27,7 +27,7 @@ from inhand_lab.motions.timeline import (
     schedule,
     track,
 )
-from inhand_lab.objects import BROOM_HALF_LENGTH, broom
+from inhand_lab.objects.broom import BROOM_HALF_LENGTH, broom
 from inhand_lab.person import Person
 from inhand_lab.transforms import MIRROR, Floats, Transform, normalised, rotation_about
 

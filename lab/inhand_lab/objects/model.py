@@ -1,0 +1,98 @@
+"""What an object of the simulated world is, and how meshes are put together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from inhand_lab.transforms import MIRROR, Floats, normalised
+
+TUBE_SECTIONS = 10
+
+
+@dataclass(frozen=True)
+class ObjectModel:
+    """An object: mesh in metres in the object's frame, and what tracking needs to know of it.
+
+    marked_vertices (M, 3) are vertices of the mesh for the error score. symmetries lists axes
+    (3,) about which any rotation leaves the object looking the same. colour (3,) and
+    vertex_colours (V, 3) are RGB, 0 to 255.
+    """
+
+    name: str
+    mesh: trimesh.Trimesh
+    vertex_colours: NDArray[np.uint8]
+    marked_vertices: Floats
+    symmetries: tuple[tuple[float, float, float], ...]
+    colour: tuple[int, int, int]
+    mirror_normal: tuple[float, float, float] = (1.0, 0.0, 0.0)
+
+    @property
+    def vertices(self) -> Floats:
+        """(V, 3) metres."""
+        return np.asarray(self.mesh.vertices, float)
+
+    @property
+    def faces(self) -> NDArray[np.int64]:
+        """(F, 3) indices of vertices, counter-clockwise from outside."""
+        return np.asarray(self.mesh.faces, np.int64)
+
+
+def reflected(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
+    """The mirror image in the plane x = 0."""
+    return trimesh.Trimesh(mesh.vertices * MIRROR, mesh.faces[:, ::-1], process=False)
+
+
+def tube(path: Floats, radius: float) -> trimesh.Trimesh:
+    """A round rod along a path of points (K, 3) in metres that nowhere doubles back, closed."""
+    tangents = normalised(np.gradient(path, axis=0))
+    sideways = normalised(np.cross(tangents, np.cross([1.0, 0.02, 0.2], tangents)))
+    angles = 2.0 * np.pi * np.arange(TUBE_SECTIONS) / TUBE_SECTIONS
+    rings = path[:, None] + radius * (
+        np.cos(angles)[:, None] * sideways[:, None]
+        + np.sin(angles)[:, None] * np.cross(tangents, sideways)[:, None]
+    )
+    around = np.arange(TUBE_SECTIONS)
+    beside = (around + 1) % TUBE_SECTIONS
+    faces = [
+        face
+        for ring in TUBE_SECTIONS * np.arange(len(path) - 1)
+        for face in (
+            *zip(ring + around, ring + beside, ring + TUBE_SECTIONS + beside, strict=True),
+            *zip(
+                ring + around,
+                ring + TUBE_SECTIONS + beside,
+                ring + TUBE_SECTIONS + around,
+                strict=True,
+            ),
+        )
+    ]
+    last = TUBE_SECTIONS * (len(path) - 1)
+    faces += [(0, b + 1, b) for b in range(1, TUBE_SECTIONS - 1)]
+    faces += [(last, last + b, last + b + 1) for b in range(1, TUBE_SECTIONS - 1)]
+    return trimesh.Trimesh(rings.reshape(-1, 3), np.array(faces), process=False)
+
+
+def build_model(
+    name: str,
+    parts: list[tuple[trimesh.Trimesh, tuple[int, int, int]]],
+    marks: list[tuple[float, float, float]],
+) -> ObjectModel:
+    """Parts with their colours as one mesh; each mark is moved to the nearest vertex."""
+    mesh = trimesh.util.concatenate([part for part, _ in parts])
+    if not isinstance(mesh, trimesh.Trimesh):
+        raise TypeError("parts of an object must be triangle meshes")
+    vertices = np.asarray(mesh.vertices, np.float64)
+    colours = np.concatenate([np.tile(colour, (len(part.vertices), 1)) for part, colour in parts])
+    distances = np.linalg.norm(vertices[None] - np.array(marks)[:, None], axis=2)
+    return ObjectModel(
+        name,
+        mesh,
+        colours.astype(np.uint8),
+        vertices[distances.argmin(axis=1)],
+        symmetries=(),
+        colour=parts[0][1],
+    )
