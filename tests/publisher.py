@@ -55,6 +55,7 @@ def main() -> int:
         while not (frames.wanted() and poses.wanted()) and not stop.wait(0.02):
             pass
         start = time.monotonic()
+        published = 0
         for number in range(chosen.frames):
             if stop.wait(max(0.0, start + number / chosen.rate - time.monotonic())):
                 break
@@ -69,7 +70,8 @@ def main() -> int:
                 session.put(POSE.key(site, OBJECT).replace("@v1", "@v2"), b"\x80")
                 encoding = POSE.encoding.replace(".v1", ".v2")
                 session.put(POSE.key(site, "newer"), b"\x80", encoding=encoding)
-        print(f"published {number + 1 - len(chosen.skip)}", flush=True)
+            published += 1
+        print(f"published {published}", flush=True)
         stop.wait()
     return 0
 

@@ -2,7 +2,9 @@
 
 import json
 import signal
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
@@ -10,8 +12,8 @@ from inhand_recorder.inspection import inspect_recording
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
 from inhand_runtime.recording import RecordingWriter, read_recording
 from inhand_schemas.keys import Site
-from inhand_schemas.messages import ObjectPose
-from inhand_schemas.topics import POSE, RGBD
+from inhand_schemas.messages import CameraInfo, ObjectPose
+from inhand_schemas.topics import INFO, POSE, RGBD
 from running_rig import RunningRig, eventually
 
 from inhand.__main__ import DAEMONS, VERBS, main
@@ -26,6 +28,13 @@ def test_every_verb_has_help(verb: str, capsys: pytest.CaptureFixture[str]) -> N
         main([verb, "--help"])
     assert end.value.code == 0
     assert f"usage: inhand {verb}" in capsys.readouterr().out
+
+
+def test_the_release_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(["--version"])
+    assert end.value.code == 0
+    assert capsys.readouterr().out.startswith("inhand 0.")
 
 
 def test_the_help_lists_every_verb(capsys: pytest.CaptureFixture[str]) -> None:
@@ -223,6 +232,30 @@ def test_a_recording_of_nothing_that_can_be_replayed_is_one_line(
     assert line.startswith(f"inhand replay: {path} holds no camera's info")
 
 
+@pytest.mark.parametrize(
+    ("more", "line"),
+    [
+        ([], "holds several cameras; add --camera with one of: front, side"),
+        (["--camera", "top"], "holds no camera 'top'; there are: front, side"),
+    ],
+)
+def test_which_of_several_cameras_is_replayed_must_be_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], more: list[str], line: str
+) -> None:
+    path = tmp_path / "two.mcap"
+    with RecordingWriter(path) as writer:
+        info = INFO.encode(
+            CameraInfo(
+                sequence=0, time_ns=0, width=64, height=48, fx=50.0, fy=50.0, cx=32.0, cy=24.0
+            )
+        )
+        for camera in ("front", "side"):
+            key = INFO.key(Site(), camera)
+            writer.write(key, info, received_ns=0, captured_ns=0, sequence=0)
+    assert main(["replay", str(path), *more]) == 2
+    assert capsys.readouterr().err == f"inhand replay: {path} {line}\n"
+
+
 @pytest.mark.long
 def test_a_replay_publishes_what_was_recorded_with_its_capture_times(rig: RunningRig) -> None:
     first = recorded(rig, "first", lambda: rig.publisher("--frames", "30"))
@@ -287,6 +320,41 @@ def test_up_starts_a_killed_process_again(rig: RunningRig) -> None:
     up.said("recorder a ended with -9; starting it again")
     eventually("a second start", lambda: up.stderr.count("recorder a is up") == 2)
     assert up.stop() == 0
+
+
+@pytest.mark.long
+def test_up_stops_what_publishes_before_what_records_so_that_nothing_is_lost(
+    rig: RunningRig,
+) -> None:
+    played = recorded(rig, "first", lambda: rig.publisher("--frames", "30"))
+    rig.configure(
+        f'[capture.front]\nsource = "replay"\noptions = {{ file = "{played}", loop = true }}\n'
+        f'[recorder.disk]\nfolder = "{rig.folder}/again"'
+    )
+    up = rig.inhand("up", "--config", rig.config)
+    up.said("recorder disk is up")
+    eventually("a file", lambda: list((rig.folder / "again").glob("*.part")))
+    eventually("60 frames", lambda: published(rig.health("front")) >= 60)
+    assert up.stop() == 0
+    (path,) = (rig.folder / "again").glob("*.mcap")
+    last_words = [m.message() for m in read_recording(path, streams=("health",))]
+    (front,) = (h for h in last_words if h.instance == "front" and h.state == "stopping")
+    frames = list(read_recording(path, streams=("rgbd",)))
+    assert len(frames) == front.topics[RGBD_KEY].published
+
+
+def published(health: dict[str, Any]) -> int:
+    """How many frames an instance published."""
+    return int(health["topics"].get(RGBD_KEY, {"published": 0})["published"])
+
+
+@pytest.mark.long
+def test_up_ends_with_0_when_all_has_come_to_its_end(rig: RunningRig) -> None:
+    played = recorded(rig, "first", lambda: rig.publisher("--frames", "30"))
+    rig.configure(f'[capture.front]\nsource = "replay"\noptions.file = "{played}"')
+    up = rig.inhand("up", "--config", rig.config)
+    assert up.wait() == 0
+    assert "capture front ended with exit code 0" in up.stderr
 
 
 @pytest.mark.long

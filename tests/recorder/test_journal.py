@@ -108,6 +108,17 @@ def test_what_a_failed_file_held_only_in_memory_goes_into_the_next(tmp_path: Pat
     assert numbers(folder, INFO_KEY) == [[0]]
 
 
+def test_calibration_that_a_failed_file_gave_back_is_not_written_twice(tmp_path: Path) -> None:
+    folder = tmp_path / "disk"
+    one = journal(folder)
+    one.write(info())
+    next(folder.iterdir()).unlink()
+    with pytest.raises(RecordingError):
+        one.sync()
+    one.close()
+    assert numbers(folder, INFO_KEY) == [[0]]
+
+
 def test_a_folder_that_cannot_be_made_loses_nothing_that_was_handed_in(tmp_path: Path) -> None:
     folder = tmp_path / "disk"
     folder.write_text("in the way")

@@ -166,5 +166,5 @@ def test_an_instance_that_the_file_does_not_name_is_refused(load: Load) -> None:
 
 
 def test_a_missing_file_is_named() -> None:
-    with pytest.raises(SettingsError, match="cannot read /nowhere/rig.toml: No such file"):
+    with pytest.raises(SettingsError, match=r"cannot read /nowhere/rig\.toml: No such file"):
         load_rig_file(Path("/nowhere/rig.toml"))

@@ -129,6 +129,4 @@ def wave_model() -> Model:
     """A model of the wedge, learned from three participants."""
     sequences = [sequence(f"p{seed}", seed=seed) for seed in range(3)]
     shape = wedge()
-    return Model(
-        "wave", shape, learn(sequences, shape.mirror_normal), find_viewpoints(shape)
-    )
+    return Model("wave", shape, learn(sequences, shape.mirror_normal), find_viewpoints(shape))

@@ -122,9 +122,7 @@ def test_parts_that_nearly_point_backwards_have_a_proper_basis(tilt: float) -> N
         axes = hand_basis(direction)
         np.testing.assert_allclose(axes.T @ axes, np.eye(3), atol=1e-9)
         assert np.linalg.det(axes) == pytest.approx(1.0)
-        np.testing.assert_allclose(
-            axes[:, 2], direction / np.linalg.norm(direction), atol=1e-6
-        )
+        np.testing.assert_allclose(axes[:, 2], direction / np.linalg.norm(direction), atol=1e-6)
 
 
 @pytest.mark.parametrize("aside", AROUND)
@@ -344,7 +342,9 @@ def test_the_mirrored_pose_places_a_symmetric_object_where_the_mirror_shows_it(
     half = np.random.default_rng(seed).normal(size=(5, 3))
     other_half = half - 2 * np.outer(half @ normal, normal)
     placed = Rotation.from_rotvec(turn).apply(half) + shift
-    translation, rotation = body.mirror_pose(shift, quaternion_of(Rotation.from_rotvec(turn)), normal)
+    translation, rotation = body.mirror_pose(
+        shift, quaternion_of(Rotation.from_rotvec(turn)), normal
+    )
     shown = scipy_rotation(rotation).apply(other_half) + translation
     np.testing.assert_allclose(shown, placed @ mirrors, atol=1e-9)
 

@@ -32,9 +32,7 @@ def test_a_smaller_image_shows_the_same_view() -> None:
 
 
 def test_intrinsics_come_from_the_camera_info() -> None:
-    info = CameraInfo(
-        sequence=0, time_ns=0, width=8, height=6, fx=1.5, fy=2.5, cx=3.5, cy=4.5
-    )
+    info = CameraInfo(sequence=0, time_ns=0, width=8, height=6, fx=1.5, fy=2.5, cx=3.5, cy=4.5)
     assert intrinsics_of(info) == Intrinsics(1.5, 2.5, 3.5, 4.5, 8, 6)
 
 

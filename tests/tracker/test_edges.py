@@ -1,4 +1,3 @@
-import hypothesis.strategies as st
 import numpy as np
 import pytest
 from hypothesis import given

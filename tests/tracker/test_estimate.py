@@ -111,7 +111,10 @@ def test_a_quarter_turn_moves_each_vertex_along_its_chord() -> None:
 def test_vertex_errors_of_a_sequence_are_those_of_its_frames() -> None:
     vertices = np.array([[0.1, 0.0, 0.0], [0.0, 0.2, 0.0]])
     truth = (np.zeros((3, 3)), np.tile(IDENTITY, (3, 1)))
-    estimates = (np.array([[0, 0, 0], [0, 0, 0.5], [0, 0, 0]]), np.array([IDENTITY, IDENTITY, about_z(180)]))
+    estimates = (
+        np.array([[0, 0, 0], [0, 0, 0.5], [0, 0, 0]]),
+        np.array([IDENTITY, IDENTITY, about_z(180)]),
+    )
     np.testing.assert_allclose(vertex_error(estimates, truth, vertices), [0, 0.5, 0.3], atol=1e-12)
 
 

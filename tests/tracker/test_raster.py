@@ -83,6 +83,8 @@ def test_a_triangle_too_thin_for_pixel_centres_is_drawn_as_a_line() -> None:
 
 
 def test_triangles_outside_the_image_draw_nothing() -> None:
-    pixels = np.array([[-9.0, -9.0], [-2.0, -9.0], [-9.0, -2.0], [30.0, 30.0], [40.0, 30.0], [30.0, 40.0]])
+    pixels = np.array(
+        [[-9.0, -9.0], [-2.0, -9.0], [-9.0, -2.0], [30.0, 30.0], [40.0, 30.0], [30.0, 40.0]]
+    )
     depths = nearest_depths(pixels, np.ones(6), np.array([[0, 1, 2], [3, 4, 5]]), 20)
     assert not np.isfinite(depths).any()

@@ -43,7 +43,9 @@ def test_matrices_agree_with_scipy(q: np.ndarray) -> None:
 @given(units(1), vectors)
 def test_the_conjugate_undoes_a_rotation(q: np.ndarray, vector: np.ndarray) -> None:
     there = rotations.rotate(q[0], vector)
-    np.testing.assert_allclose(rotations.rotate(rotations.conjugate(q[0]), there), vector, atol=1e-9)
+    np.testing.assert_allclose(
+        rotations.rotate(rotations.conjugate(q[0]), there), vector, atol=1e-9
+    )
 
 
 @given(units(3))
@@ -74,7 +76,9 @@ def test_rotation_vectors_are_the_short_way_round(q: np.ndarray) -> None:
 
 def test_tiny_rotation_vectors_keep_their_digits() -> None:
     vector = np.array([3e-10, -4e-10, 0.0])
-    np.testing.assert_allclose(rotations.to_vector(rotations.from_vector(vector)), vector, rtol=1e-9)
+    np.testing.assert_allclose(
+        rotations.to_vector(rotations.from_vector(vector)), vector, rtol=1e-9
+    )
     np.testing.assert_array_equal(rotations.to_vector(np.array([1.0, 0, 0, 0])), np.zeros(3))
 
 

@@ -83,7 +83,9 @@ def test_boundary_points_lie_on_the_side_that_is_seen() -> None:
     shape, views = views_of("sphere")
     for direction, points in zip(views.directions[::16], views.boundaries[::16], strict=True):
         np.testing.assert_allclose(np.linalg.norm(points, axis=1), 0.1, rtol=0.03)
-        assert (points @ direction > -2.0 * pixel_of(shape)).all()
+        towards_viewer = points @ direction
+        assert towards_viewer.min() > -0.015
+        assert np.median(towards_viewer) > 0.0
 
 
 @pytest.mark.parametrize("name", ["box", "wedge"])

@@ -19,6 +19,7 @@ from inhand_capture.reopening import captures
 log = logging.getLogger(__name__)
 
 READER_POLL_S = 0.01
+READER_SETTLES_S = 0.25
 
 NO_CAMERA = (
     'no camera is configured: write [capture.front] with source = "simulator", which needs none, '
@@ -68,7 +69,7 @@ def _publish(daemon: Daemon, chosen: CaptureSettings, open_source: Callable[[], 
 
     def opened(info: CameraInfo) -> None:
         camera.introduce(info)
-        _wait_until(camera.has_readers, chosen.wait_for_reader_s, daemon.stop)
+        _wait_for_readers(camera, chosen.wait_for_reader_s, daemon.stop)
 
     def lost(error: SourceError) -> None:
         daemon.health.state = "degraded"
@@ -84,7 +85,10 @@ def _publish(daemon: Daemon, chosen: CaptureSettings, open_source: Callable[[], 
         log.info("source %s has come to its end", chosen.source)
 
 
-def _wait_until(happened: Callable[[], bool], seconds: float, stop: threading.Event) -> None:
+def _wait_for_readers(camera: CameraPublisher, seconds: float, stop: threading.Event) -> None:
+    """Wait until somebody listens, and then for the rest of what that reader asks for."""
     deadline = time.monotonic() + seconds
-    while not happened() and time.monotonic() < deadline and not stop.wait(READER_POLL_S):
-        pass
+    while time.monotonic() < deadline and not stop.wait(READER_POLL_S):
+        if camera.has_readers():
+            stop.wait(READER_SETTLES_S)
+            return

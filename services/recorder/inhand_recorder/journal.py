@@ -82,10 +82,14 @@ class Journal:
             raise RecordingError(
                 f"cannot create {self._folder}: {error.strerror}: bring its disk or folder back"
             ) from error
-        file = RecordingFile(self._free_path(now_ns), now_ns)
+        try:
+            file = RecordingFile(self._free_path(now_ns), now_ns)
+        except RecordingError as error:
+            raise self._left_no_file(error) from error.__cause__
         with self._giving_up_on_failure(file):
             for entry in self._kept.values():
-                file.repeat(entry)
+                if entry not in self._waiting:
+                    file.repeat(entry)
         return file
 
     def _finish(self, file: RecordingFile) -> None:
@@ -99,10 +103,20 @@ class Journal:
     def _giving_up_on_failure(self, file: RecordingFile) -> Iterator[None]:
         try:
             yield
-        except RecordingError:
+        except RecordingError as error:
             self._file = None
             self._waiting.extendleft(reversed(file.give_up()))
-            raise
+            if file.worth_keeping:
+                raise
+            raise self._left_no_file(error) from error.__cause__
+
+    def _left_no_file(self, error: RecordingError) -> RecordingError:
+        if not isinstance(error.__cause__, OSError):
+            return error
+        return RecordingError(
+            f"cannot write to {self._folder}: {error.__cause__.strerror}: make room or use another "
+            "disk; until then what arrives waits in memory"
+        )
 
     def _free_path(self, now_ns: int) -> Path:
         time = datetime.fromtimestamp(now_ns / 1e9, UTC).strftime("%Y%m%dT%H%M%SZ")

@@ -35,15 +35,23 @@ class Limits:
 
 
 class RecordingFile:
-    """Writes entries and counts losses; every method but ``give_up`` raises RecordingError."""
+    """Writes entries and counts losses; every method but ``give_up`` raises RecordingError.
+
+    It is ``worth_keeping`` as soon as the disk holds an entry that memory does not.
+    """
 
     def __init__(self, path: Path, opened_ns: int) -> None:
         self._part = path.with_name(path.name + PART_SUFFIX)
         self._opened_ns = opened_ns
         self._losses = LossCounter()
         self._in_memory: list[Entry] = []
-        self._saved = False
-        self._writer = RecordingWriter(path)
+        self.worth_keeping = False
+        try:
+            self._writer = RecordingWriter(path)
+        except RecordingError as error:
+            if isinstance(error.__cause__, OSError):
+                self._remove_part()
+            raise
 
     def full(self, limits: Limits, now_ns: int) -> bool:
         """Whether it has reached a limit."""
@@ -63,18 +71,20 @@ class RecordingFile:
         if self._writer.bytes_written > before and len(self._in_memory) > 1:
             # The chunk that went to the file may or may not hold the newest entry.
             del self._in_memory[:-1]
-            self._saved = True
+            self.worth_keeping = True
 
     def sync(self) -> None:
         """Bring everything to the disk, and make sure that the file is still there."""
         self._writer.sync()
-        if not self._part.exists():
+        self.worth_keeping = True
+        try:
+            self._part.stat()
+        except OSError as error:
             raise RecordingError(
-                f"{self._part} was removed while it was written: "
+                f"{self._part} was removed while it was written ({error.strerror}): "
                 "bring its disk or folder back; a new file is begun"
-            )
+            ) from error
         self._in_memory.clear()
-        self._saved = True
 
     def finish(self, dropped: Mapping[str, int]) -> Path:
         """Write the losses (with the drops of a queue by key) and give the file its name."""
@@ -84,13 +94,17 @@ class RecordingFile:
     def give_up(self) -> list[Entry]:
         """Close a file that failed, and return what would be lost otherwise.
 
-        The ``.part`` stays, except when all that it holds is returned.
+        The ``.part`` stays, except when it is not ``worth_keeping``.
         """
         with contextlib.suppress(RecordingError):  # it failed already, and says so again
             self._writer.close()
-        if not self._saved:
-            self._part.unlink(missing_ok=True)
+        if not self.worth_keeping:
+            self._remove_part()
         return self._in_memory
+
+    def _remove_part(self) -> None:
+        with contextlib.suppress(OSError):  # then a file stays that holds nothing
+            self._part.unlink()
 
     def _write(self, entry: Entry) -> None:
         self._losses.count(entry.key, entry.sequence)

@@ -24,7 +24,7 @@ SYNC_PERIOD_S = 0.75
 IDLE_S = 0.1
 FIRST_RETRY_S, LAST_RETRY_S = 1.0, 30.0
 QUEUE_SAMPLES = 1 << 16
-FRAMES_SHARE = 0.75
+FRAMES_WEIGHT = 3 * (len(TOPICS) - 1)
 SMALLEST_SPLIT_BYTES = 1 << 20
 SMALLEST_SPLIT_S = 1.0
 
@@ -88,16 +88,13 @@ def run(settings: Settings[RecorderSettings]) -> None:
 
 
 def queue_shares(streams: tuple[str, ...], queue_bytes: int) -> dict[str, int]:
-    """How many bytes of each stream may wait: three quarters for frames, the rest evenly.
+    """How many bytes of each stream may wait: three quarters are for frames among all streams.
 
     Small messages have room of their own, so that no flood of frames pushes a pose out.
     """
-    others = [stream for stream in streams if stream != RGBD.stream]
-    frames = 0 if len(others) == len(streams) else queue_bytes
-    if frames and others:
-        frames = int(FRAMES_SHARE * queue_bytes)
-    shares = {stream: (queue_bytes - frames) // len(others) for stream in others}
-    return shares | ({RGBD.stream: frames} if frames else {})
+    weights = {stream: FRAMES_WEIGHT if stream == RGBD.stream else 1 for stream in streams}
+    total = sum(weights.values())
+    return {stream: queue_bytes * weight // total for stream, weight in weights.items()}
 
 
 def _require_writable(folder: Path) -> None:

@@ -13,11 +13,14 @@ from inhand_tracker.estimate import Estimate
 
 Array = NDArray[np.float64]
 
+FARTHEST_M = 1000.0
+
 
 def joints_of(person: Person) -> Array:
-    """The joints (20, 3) in the camera frame; missing ones are NaN."""
+    """The joints (20, 3) in the camera frame; missing ones are NaN, and those beyond any room."""
     joints = np.array(person.joints)
     joints[[state == "missing" for state in person.states]] = np.nan
+    joints[(np.abs(joints) > FARTHEST_M).any(axis=1)] = np.nan
     return joints
 
 

@@ -28,7 +28,7 @@ def edge_log_weights(chamfer: NDArray[np.float32], pixels: Array) -> Array:
     """
     height, width = chamfer.shape
     rounded = np.rint(np.nan_to_num(pixels, nan=-1.0, posinf=-1.0, neginf=-1.0))
-    inside = ((rounded >= 0) & (rounded < [width, height])).all(axis=-1)
+    inside = np.all((rounded >= 0) & (rounded < [width, height]), axis=-1)
     column, row = np.where(inside[..., None], rounded, 0).astype(np.intp).transpose(2, 0, 1)
     nearness = np.where(inside, chamfer[row, column], 0.0)
     return -np.square(1.0 - nearness).mean(axis=-1)

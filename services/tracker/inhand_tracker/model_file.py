@@ -5,7 +5,6 @@ Any zip tool and NumPy can open it. Nothing in it is executed.
 
 import json
 import zipfile
-import zlib
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -68,16 +67,18 @@ def save_model(model: Model, path: Path) -> None:
 def load_model(path: Path) -> Model:
     """Read a model; raises ModelError for a missing, foreign, newer or damaged file."""
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             if "model" not in archive:
                 raise ModelError(f"{path} is no Inhand model: make one with `inhand train`")
             description = json.loads(str(archive["model"]))
             _check(description, path)
             arrays = {name: archive[name] for name in archive.files}
         return _assemble(description, arrays)
+    except ModelError:
+        raise
     except OSError as error:
         raise ModelError(f"cannot read {path}: {error.strerror or error}") from None
-    except (zipfile.BadZipFile, zlib.error, EOFError, ValueError, KeyError, TypeError) as error:
+    except Exception as error:  # noqa: BLE001 - a reader of damaged files may raise anything
         if not zipfile.is_zipfile(path) and not _starts_like_zip(path):
             raise ModelError(f"{path} is no Inhand model: make one with `inhand train`") from None
         raise ModelError(

@@ -32,17 +32,20 @@ class Pairing(Generic[T, F]):
         self._waiting: deque[_Waiting[T]] = deque()
         self._frames: dict[int, F] = {}
         self._last_frame_at = float("-inf")
+        self._last_skeleton = -1
 
     def add_skeleton(self, sequence: int, skeleton: T, now: float) -> None:
         """Take a skeleton; a sequence that went back tells of a restarted camera."""
-        if self._waiting and sequence <= self._waiting[-1].sequence:
+        if sequence < self._last_skeleton:
             self._frames.clear()
+        self._last_skeleton = sequence
         self._waiting.append(_Waiting(sequence, skeleton, now))
 
     def add_frame(self, sequence: int, frame: F, now: float) -> None:
         """Take a frame; only the newest few are kept."""
         if self._frames and sequence < next(reversed(self._frames)):
             self._frames.clear()
+            self._last_skeleton = -1
         self._frames[sequence] = frame
         while len(self._frames) > FRAMES_KEPT:
             del self._frames[next(iter(self._frames))]

@@ -115,6 +115,7 @@ def draw(
 def systematic_resample(weights: Array, random: np.random.Generator) -> Indices:
     """Indices (P,) of the particles that survive, in proportion to their weights."""
     positions = (random.random() + np.arange(len(weights))) / len(weights)
+    positions = np.minimum(positions, np.nextafter(1.0, 0.0))  # rounding may give 1
     cumulative = np.cumsum(weights)
     return np.searchsorted(cumulative / cumulative[-1], positions, side="right")
 

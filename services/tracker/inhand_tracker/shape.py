@@ -88,7 +88,7 @@ def load_shape(folder: Path) -> ObjectShape:
         symmetries = tuple(_symmetry(entry) for entry in values.get("symmetries", ()))
         if not np.linalg.norm(normal) > 0.0:
             raise ValueError("mirror_normal has no length")
-    except (ValueError, TypeError, KeyError) as error:
+    except (ValueError, TypeError, KeyError, OverflowError) as error:
         raise InhandError(f"{description}: {error}") from None
     if len(marked) < 3:
         raise InhandError(
@@ -110,6 +110,8 @@ def _load_mesh(folder: Path) -> tuple[Array, NDArray[np.int64]]:
         raise InhandError(f"{found[0]} is no mesh that can be read: {error}") from None
     if len(faces) == 0 or not np.isfinite(vertices).all():
         raise InhandError(f"{found[0]} is no mesh that can be used: it has no finite triangles")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise InhandError(f"{found[0]} is no mesh that can be used: a face has no such vertex")
     return vertices, faces
 
 
@@ -119,7 +121,10 @@ def _symmetry(entry: Mapping[str, Any]) -> Symmetry:
 
 
 def _vectors(values: Any) -> Array:
-    array = np.asarray(values, float).reshape(-1, 3)
+    array = np.asarray(values, float)
+    if array.size and array.shape[1:] != (3,):
+        raise ValueError("a vector is three numbers, [x, y, z]")
+    array = array.reshape(-1, 3)
     if not np.isfinite(array).all():
         raise ValueError("a vector holds a number that is not finite")
     return array

@@ -1,0 +1,23 @@
+"""The scripted source as an installed plugin."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+PLUGIN = Path(__file__).with_name("scripted_source.py")
+
+
+@pytest.fixture
+def plugin_folder(tmp_path: Path) -> Path:
+    """A folder for PYTHONPATH in which the source ``scripted`` is installed."""
+    folder = tmp_path / "plugins"
+    metadata = folder / "scripted-1.0.dist-info"
+    metadata.mkdir(parents=True)
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: scripted\nVersion: 1.0\n")
+    (metadata / "entry_points.txt").write_text(
+        "[inhand.sources]\nscripted = scripted_source:ScriptedSource\n"
+        "unusable = package_that_nobody_has:Source\n"
+    )
+    shutil.copy(PLUGIN, folder)
+    return folder

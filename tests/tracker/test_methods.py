@@ -1,0 +1,23 @@
+import pytest
+from inhand_tracker.methods import DEFAULT_METHOD, METHODS
+
+# Table 1 of the paper: re-initialises after the first frame, l_T, l_R.
+TABLE = {
+    "g-hand": (False, "hand", "hand"),
+    "gd-hand": (True, "hand", "hand"),
+    "gd-random": (True, "random", "random"),
+    "gd-stable": (True, "stable", "stable"),
+    "gd-stable-proximate": (True, "proximate", "stable"),
+}
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_the_methods_are_the_columns_of_the_table(name: str) -> None:
+    method = METHODS[name]
+    assert (method.reinitialises, method.translation_part, method.rotation_part) == TABLE[name]
+    assert method.name == name
+
+
+def test_the_best_of_the_paper_is_the_default() -> None:
+    assert set(METHODS) == set(TABLE)
+    assert DEFAULT_METHOD == "gd-stable-proximate"
