@@ -88,7 +88,8 @@ class _Version(argparse.Action):
     """Looks the release up only when it is asked for."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        parser.exit(message=f"inhand {importlib.metadata.version('inhand')}\n")
+        print(f"inhand {importlib.metadata.version('inhand')}")
+        parser.exit()
 
 
 if __name__ == "__main__":

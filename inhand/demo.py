@@ -1,12 +1,10 @@
 """``inhand demo``: from nothing to tracked, recorded object poses on this machine."""
 
 import argparse
-import contextlib
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +31,6 @@ from inhand.results import write_json
 DEFAULT_INTERACTION = "drinkFromMug"
 DEFAULT_SECONDS = 12.0
 READY_WITHIN_S = 60.0
-STOP_WITHIN_S = 10.0
 ERROR_BOUND_CM = 12.0
 
 
@@ -82,39 +79,21 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run_rig(config: Path, seconds: float) -> None:
-    """Recorder and tracker first, then the camera; stopped the other way round."""
-    with open_look(config) as look, contextlib.ExitStack() as daemons:
+    """Camera, tracker and recorder as three processes, for some seconds from the first pose on."""
+    command = [sys.executable, "-m", "inhand", "up", "--config", str(config)]
+    with open_look(config) as look:
         look.follow(POSE)
-        alive: set[str] = set()
-        look.follow_tokens(lambda service, _, lives: alive.add(service) if lives else None)
-        for service in ("recorder", "tracker"):
-            daemons.enter_context(_daemon(service, config))
-        deadline = time.monotonic() + READY_WITHIN_S
-        while not {"recorder", "tracker"} <= alive:
-            if time.monotonic() > deadline:
-                raise InhandError("the daemons did not come up; their lines above say why")
-            time.sleep(0.05)
-        daemons.enter_context(_daemon("capture", config))
-        _watch(look, seconds)
-
-
-@contextlib.contextmanager
-def _daemon(service: str, config: Path) -> Iterator[None]:
-    command = [sys.executable, "-m", "inhand", service, "--config", str(config)]
-    process = subprocess.Popen(command, stdin=subprocess.DEVNULL)
-    try:
-        yield
-    finally:
-        process.send_signal(signal.SIGTERM)
+        rig = subprocess.Popen(command, stdin=subprocess.DEVNULL)
         try:
-            process.wait(STOP_WITHIN_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-            raise InhandError(f"the {service} did not stop when asked to") from None
+            _watch(look, rig, seconds)
+        finally:
+            rig.send_signal(signal.SIGTERM)
+            code = rig.wait()
+    if code != 0:
+        raise InhandError("the rig did not run as it should; the lines above say why")
 
 
-def _watch(look: Look, seconds: float) -> None:
+def _watch(look: Look, rig: subprocess.Popen[bytes], seconds: float) -> None:
     """Show the poses as they come, for some seconds from the first one on."""
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), TimeElapsedColumn())
@@ -123,7 +102,7 @@ def _watch(look: Look, seconds: float) -> None:
         poses = 0
         end = time.monotonic() + READY_WITHIN_S
         for sample in look.samples(None):
-            if time.monotonic() > end:
+            if time.monotonic() > end or rig.poll() is not None:
                 break
             if sample is None:
                 continue

@@ -2,7 +2,6 @@
 
 import argparse
 import contextlib
-import json
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -137,11 +136,3 @@ def output() -> Console:
     if not console.is_terminal:
         console.width = FILE_WIDTH
     return console
-
-
-def write_json(path: Path, value: Any) -> None:
-    """Write a verb's result for machines; raises InhandError."""
-    try:
-        path.write_text(json.dumps(value, indent=2) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise InhandError(f"cannot write {path}: {error.strerror}; choose another file") from None

@@ -22,8 +22,8 @@ from inhand.looking import (
     output,
     stream_and_name,
     unreadable,
-    write_json,
 )
+from inhand.results import write_json
 
 WINDOW_SAMPLES = 300
 

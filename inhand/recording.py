@@ -11,7 +11,8 @@ from inhand_runtime.errors import SettingsError
 from inhand_runtime.part_file import PART_SUFFIX
 from rich.table import Table
 
-from inhand.looking import output, write_json
+from inhand.looking import output
+from inhand.results import write_json
 
 RECOVERED_SUFFIX = ".recovered.mcap"
 

@@ -19,8 +19,8 @@ from inhand.looking import (
     nothing_heard,
     open_look,
     output,
-    write_json,
 )
+from inhand.results import write_json
 
 SECONDS = 5.0
 SETTLED_S = 1.5 * HEALTH_PERIOD_S

@@ -15,6 +15,7 @@ log = logging.getLogger(__name__)
 TICK_S = 0.05
 FIRST_RESTART_S, LAST_RESTART_S = 0.5, 30.0
 HEALTHY_AFTER_S = 10.0
+UP_WITHIN_S = 20.0
 STOP_WITHIN_S = 4.0
 """What a daemon promises (2 s), and 2 s more for a busy machine."""
 
@@ -80,12 +81,14 @@ class Child:
 class Supervisor:
     """Runs children until all are done, one has wrong settings, or SIGTERM or SIGINT comes.
 
-    They are started in reverse, and stopped stage by stage in the given order, so that what is
-    under way reaches the last.
+    They are stopped stage by stage in the given order, so that what is under way reaches the
+    last, and started in reverse: a stage begins when the one after it ``is_up`` (asked by a
+    child's name), or has had time enough, so that nothing early is missed.
     """
 
-    def __init__(self, stages: Sequence[Sequence[Child]]) -> None:
+    def __init__(self, stages: Sequence[Sequence[Child]], is_up: Callable[[str], bool]) -> None:
         self._stages = stages
+        self._is_up = is_up
         self._signals = 0
 
     def run(self) -> int:
@@ -109,13 +112,20 @@ class Supervisor:
         return [child for stage in reversed(self._stages) for child in stage]
 
     def _tend(self) -> int:
-        children = self._children()
+        waiting, started = list(self._stages), list[Child]()
+        deadline = time.monotonic()
         while not self._signals:
-            for child in children:
+            if waiting and (
+                all(child.done or self._is_up(child.name) for child in started)
+                or time.monotonic() > deadline
+            ):
+                started += waiting.pop()
+                deadline = time.monotonic() + UP_WITHIN_S
+            for child in started:
                 if child.tend() == WRONG_SETTINGS:
                     log.error("%s has wrong settings (see above): stopping everything", child.name)
                     return WRONG_SETTINGS
-            if all(child.done for child in children):
+            if not waiting and all(child.done for child in started):
                 return DONE
             time.sleep(TICK_S)
         return DONE

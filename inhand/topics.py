@@ -14,8 +14,8 @@ from inhand.looking import (
     open_look,
     output,
     unreadable,
-    write_json,
 )
+from inhand.results import write_json
 
 SECONDS = 3.0
 

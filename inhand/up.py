@@ -8,6 +8,7 @@ from inhand_runtime.errors import SettingsError
 from inhand_runtime.logs import configure_logs
 from inhand_runtime.settings import RigFile, load_rig_file
 
+from inhand.looking import open_look
 from inhand.supervisor import Child, Supervisor
 
 STOP_ORDER = ("capture", "tracker", "recorder")
@@ -28,7 +29,14 @@ def run(arguments: argparse.Namespace) -> int:
             "[capture.front], or give --config"
         )
     configure_logs(rig_file.log, "up")
-    return Supervisor(stages).run()
+    alive: set[str] = set()
+
+    def note(service: str, instance: str, lives: bool) -> None:
+        (alive.add if lives else alive.discard)(f"{service} {instance}")
+
+    with open_look(arguments.config) as look:
+        look.follow_tokens(note)
+        return Supervisor(stages, alive.__contains__).run()
 
 
 def _children(rig_file: RigFile, config: Path | None, service: str) -> list[Child]:

@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import hypothesis.strategies as st
 import numpy as np
 import pytest
@@ -134,7 +136,7 @@ def test_predictors_turn_evenly_as_a_part_swings_from_front_to_back(
         Rotation.from_matrix(hand_basis(np.cos(a) * FORWARDS + np.sin(a) * np.array(aside)))
         for a in angles
     ]
-    steps = [(a.inv() * b).magnitude() for a, b in zip(swing, swing[1:], strict=False)]
+    steps = [(a.inv() * b).magnitude() for a, b in pairwise(swing)]
     np.testing.assert_allclose(steps, angles[1] - angles[0], rtol=1e-3)
 
 

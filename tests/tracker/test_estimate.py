@@ -32,7 +32,7 @@ def scattered(count: int = 40, spread: float = 0.2) -> tuple[np.ndarray, np.ndar
     turns = Rotation.from_rotvec([0.5, 1.0, -0.7])
     orientations = Rotation.from_rotvec(spread * random.normal(size=(count, 3))) * turns
     weights = random.random(count)
-    translations = random.normal(size=(count, 3)) + [0.3, -0.2, 2.0]
+    translations = random.normal([0.3, -0.2, 2.0], 1.0, (count, 3))
     return translations, quaternion_of(orientations), weights / weights.sum()
 
 

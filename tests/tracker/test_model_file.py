@@ -92,7 +92,7 @@ def test_a_file_in_the_place_of_the_folder_is_told(path: Path) -> None:
 
 
 def test_a_missing_file_is_told(tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="cannot read .*nothing.model"):
+    with pytest.raises(ModelError, match=r"cannot read .*nothing\.model"):
         load_model(tmp_path / "nothing.model")
 
 

@@ -99,7 +99,7 @@ def test_text_that_is_no_utf8_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_missing_folder_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InhandError, match="cannot read .*nowhere"):
+    with pytest.raises(InhandError, match=r"cannot read .*nowhere"):
         load_shape(tmp_path / "nowhere")
 
 

@@ -252,13 +252,13 @@ def error_after_a_leap(jump_ns: int) -> float:
 
 @pytest.mark.parametrize("jump", [-10_000_000_000, -FRAME_NS, 0, 501_000_000, 10**18])
 def test_after_a_jump_of_time_all_particles_are_drawn_afresh(jump: int) -> None:
-    assert error_after_a_leap(jump) < 0.06
+    assert error_after_a_leap(jump) < 0.10
 
 
 @pytest.mark.parametrize("jump", [FRAME_NS, 10 * FRAME_NS, 500_000_000])
 def test_a_few_frames_that_lack_are_no_jump(jump: int) -> None:
     """g-hand's particles live on, and cannot follow the leap."""
-    assert error_after_a_leap(jump) > 0.15
+    assert error_after_a_leap(jump) > 0.30
 
 
 def test_going_back_in_time_without_a_body_loses_the_object() -> None:

@@ -80,7 +80,7 @@ def test_the_boundary_of_a_sphere_is_the_circle_across_the_view() -> None:
 
 
 def test_boundary_points_lie_on_the_side_that_is_seen() -> None:
-    shape, views = views_of("sphere")
+    _, views = views_of("sphere")
     for direction, points in zip(views.directions[::16], views.boundaries[::16], strict=True):
         np.testing.assert_allclose(np.linalg.norm(points, axis=1), 0.1, rtol=0.03)
         towards_viewer = points @ direction
@@ -128,7 +128,7 @@ def test_the_hole_of_a_ring_has_a_boundary_too() -> None:
 
 
 def test_boundary_points_of_holes_lie_on_the_object() -> None:
-    shape, views = views_of("ring")
+    _, views = views_of("ring")
     for points in views.boundaries[::8]:
         from_circle = np.hypot(np.hypot(points[:, 0], points[:, 1]) - 0.1, points[:, 2])
         np.testing.assert_allclose(from_circle, 0.03, atol=0.01)

@@ -1,0 +1,173 @@
+"""Bodies and frames in, recorded poses out, through real processes."""
+
+import json
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+from inhand_lab.dataset import Dataset, Entry, load_dataset, load_frames
+from inhand_lab.evaluation import track_recording
+from inhand_lab.training import train
+from inhand_recorder.verification import verify_recording
+from inhand_runtime.recording import read_recording
+from inhand_schemas.messages import ObjectPose
+from inhand_schemas.topics import POSE, RGBD, SKELETONS
+from inhand_tracker.methods import DEFAULT_METHOD, METHODS
+from inhand_tracker.model_file import Model, load_model, save_model
+from inhand_tracker.tracking import Tracker
+from running_rig import RunningRig, eventually
+
+from inhand.__main__ import main
+
+DATA = Path(__file__).parents[3] / "shared" / "data"
+SEED = 5
+
+needs_data = pytest.mark.skipif(
+    not DATA.is_dir(), reason="the real recordings (../shared/data) are not on this machine"
+)
+
+
+def simulated(folder: Path) -> Dataset:
+    arguments = ["--interactions", "drinkFromMug", "--participants", "4", "--frames", "90"]
+    assert main(["simulate", str(folder), "--no-images", *arguments]) == 0
+    return load_dataset(folder)
+
+
+def tracked_live(rig: RunningRig, recording: Path, model: Path) -> Path:
+    """Replay a recording through capture, tracker and recorder; returns what was recorded."""
+    out = rig.folder / "out"
+    frames = sum(1 for _ in read_recording(recording, streams=(SKELETONS.stream,)))
+    rig.configure(
+        f'[capture.front]\nsource = "replay"\nwait_for_reader_s = 60\n'
+        f'[capture.front.options]\nfile = "{recording}"\n'
+        f'[tracker.follower]\ncamera = "front"\nmodel = "{model}"\nseed = {SEED}\n'
+        f'[recorder.disk]\nfolder = "{out}"'
+    )
+    up = rig.inhand("up", "--config", rig.config)
+    up.said("capture front ended with exit code 0")
+    eventually(
+        "a pose for every skeleton",
+        lambda: (
+            rig.health("follower")["topics"][f"inhand/@v1/rig/pose/{_object(model)}"]["published"]
+            == frames
+        ),
+    )
+    assert up.stop(signal.SIGTERM) == 0
+    (recorded,) = out.glob("*.mcap")
+    return recorded
+
+
+def _object(model: Path) -> str:
+    return load_model(model).shape.name
+
+
+def recorded_poses(recording: Path) -> list[ObjectPose]:
+    messages = [one.message() for one in read_recording(recording, streams=(POSE.stream,))]
+    return [message for message in messages if isinstance(message, ObjectPose)]
+
+
+def assert_live_equals_offline(rig: RunningRig, dataset: Dataset, tested: Entry) -> None:
+    model = train(dataset, [entry for entry in dataset.entries if entry != tested])
+    path = rig.folder / "object.model"
+    save_model(model, path)
+    live = recorded_poses(tracked_live(rig, dataset.path(tested), path))
+    frames = load_frames(dataset.path(tested), tested.object)
+    tracker = Tracker(
+        model, METHODS[DEFAULT_METHOD], left_handed=tested.handedness == "left", seed=SEED
+    )
+    offline = list(track_recording(tracker, dataset.path(tested), frames, images=False))
+    assert [pose.time_ns for pose in live] == [frame.time_ns for frame in frames]
+    for pose, estimate in zip(live, offline, strict=True):
+        assert pose.camera_from_object is not None
+        np.testing.assert_allclose(
+            pose.camera_from_object.translation, estimate.translation, atol=1e-9
+        )
+        np.testing.assert_allclose(pose.camera_from_object.rotation, estimate.rotation, atol=1e-9)
+
+
+@pytest.mark.long
+def test_live_poses_equal_the_offline_evaluations(rig: RunningRig, tmp_path: Path) -> None:
+    dataset = simulated(tmp_path / "people")
+    tested = next(entry for entry in dataset.entries if entry.handedness == "right")
+    assert_live_equals_offline(rig, dataset, tested)
+
+
+@pytest.mark.long
+@needs_data
+def test_a_real_golf_swing_tracked_live_equals_the_offline_evaluation(
+    rig: RunningRig, tmp_path: Path
+) -> None:
+    swings = sorted(str(path) for path in (DATA / "motion").glob("golf_*.npz"))
+    assert main(["import", "motion", *swings, str(tmp_path / "golf")]) == 0
+    dataset = load_dataset(tmp_path / "golf")
+    assert_live_equals_offline(rig, dataset, dataset.entries[1])
+
+
+@pytest.mark.long
+@needs_data
+def test_a_real_kinect_tennis_swing_with_depth_loses_no_frame(
+    rig: RunningRig, tmp_path: Path
+) -> None:
+    dataset = simulated(tmp_path / "people")
+    model: Model = train(dataset, dataset.entries)
+    save_model(model, tmp_path / "mug.model")
+    trial = DATA / "utd-mhad" / "a15_s1_t1_skeleton.mat"
+    assert main(["import", "utd-mhad", str(trial), str(tmp_path / "tennis")]) == 0
+    tennis = load_dataset(tmp_path / "tennis")
+    (entry,) = tennis.entries
+    recorded = tracked_live(rig, tennis.path(entry), tmp_path / "mug.model")
+    counts = dict.fromkeys((SKELETONS.stream, RGBD.stream, POSE.stream), 0)
+    for one in read_recording(recorded, streams=counts):
+        counts[one.topic.stream] += 1
+    published = sum(1 for _ in read_recording(tennis.path(entry), streams=(SKELETONS.stream,)))
+    assert counts == dict.fromkeys(counts, published)
+    assert verify_recording(recorded) == []
+
+
+@pytest.mark.long
+def test_the_demonstration_tracks_a_stranger_and_loses_nothing(tmp_path: Path) -> None:
+    result = tmp_path / "demo.json"
+    arguments = ["--seconds", "4", "--folder", str(tmp_path / "demo"), "--json", str(result)]
+    assert main(["demo", *arguments]) == 0
+    told = json.loads(result.read_text())
+    assert set(told["topics"]) == {"info", "label", "pose", "rgbd", "skeletons"}
+    assert all(topic["lost"] == 0 for topic in told["topics"].values())
+    assert told["topics"]["pose"]["recorded"] >= 110
+    assert told["vertex_error_cm"] < 12.0
+    assert Path(told["picture"]).stat().st_size > 10_000
+    assert verify_recording(Path(told["recording"])) == []
+
+
+def test_a_damaged_model_is_one_line_and_nothing_starts(rig: RunningRig, tmp_path: Path) -> None:
+    dataset = simulated(tmp_path / "people")
+    model = tmp_path / "mug.model"
+    save_model(train(dataset, dataset.entries), model)
+    model.write_bytes(model.read_bytes()[: model.stat().st_size // 2])
+    rig.configure(f'[tracker.mug]\nmodel = "{model}"')
+    ended = rig.done("tracker", "--config", rig.config)
+    assert ended.popen.returncode == 1
+    (line,) = ended.stderr.splitlines()
+    assert f"{model} is damaged" in line
+    assert "inhand train" in line
+
+
+def test_a_tracker_without_a_model_says_what_to_write(rig: RunningRig) -> None:
+    rig.configure("[tracker.mug]")
+    ended = rig.done("tracker", "--config", rig.config)
+    assert ended.popen.returncode == 2
+    (line,) = ended.stderr.splitlines()
+    assert "[tracker.mug] names no model" in line
+
+
+def test_a_mesh_without_marked_vertices_stops_training_with_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    dataset = simulated(tmp_path / "people")
+    description = dataset.folder / "objects" / "mug" / "object.toml"
+    description.write_text('name = "mug"\n')
+    capsys.readouterr()
+    assert main(["train", str(dataset.folder), "-o", str(tmp_path / "mug.model")]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "marks 0 vertices" in line
+    assert "marked_vertices = [[x, y, z]" in line
