@@ -11,11 +11,15 @@ from inhand_runtime.session import Publisher, open_session
 from inhand_runtime.settings import ZenohSettings
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import CameraInfo, ColourImage, ObjectPose, RgbdFrame
-from inhand_schemas.topics import INFO, POSE, RGBD
+from inhand_schemas.topics import INFO, POSE, RELIABLE, RGBD, Topic
 
 CAMERA = "front"
 OBJECT = "mug"
 WIDTH, HEIGHT = 640, 480
+
+# Waiting for the readers, so that a busy machine slows a test and loses it nothing.
+FRAMES = Topic(RGBD.stream, RgbdFrame, RELIABLE)
+POSES = Topic(POSE.stream, ObjectPose, RELIABLE)
 
 
 def main() -> int:
@@ -37,8 +41,8 @@ def main() -> int:
         def ignore(_key: str) -> None: ...
 
         info = Publisher(session, INFO, INFO.key(site, CAMERA), ignore)
-        frames = Publisher(session, RGBD, RGBD.key(site, CAMERA), ignore)
-        poses = Publisher(session, POSE, POSE.key(site, OBJECT), ignore)
+        frames = Publisher(session, FRAMES, FRAMES.key(site, CAMERA), ignore)
+        poses = Publisher(session, POSES, POSES.key(site, OBJECT), ignore)
         info.put(
             CameraInfo(
                 sequence=0,

@@ -248,9 +248,9 @@ def test_wild_frames_do_not_change_the_height() -> None:
 
 def test_the_running_height_follows_the_last_frames_only() -> None:
     running = body.RunningHeight()
-    for _ in range(body.HEIGHT_WINDOW):
+    for _ in range(300):
         running.update(STANDING)
-    for _ in range(body.HEIGHT_WINDOW):
+    for _ in range(300):
         height = running.update(0.5 * STANDING)
     assert height == pytest.approx(0.5 * STANDING_HEIGHT)
 

@@ -1,6 +1,6 @@
 """Learning against the spec's formulas, written out again in loops (section 2 of P14)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -311,6 +311,22 @@ def test_a_sequence_without_two_usable_frames_is_refused_by_name(usable: int) ->
     holed.joints[usable:, 7] = np.nan
     with pytest.raises(UnusableSequenceError, match=f"'anna' has {usable} frames"):
         learn([holed, sequence("p1", 5)], NORMAL)
+
+
+def test_labels_need_not_be_unit_quaternions_to_the_last_digit() -> None:
+    """A message's rotation may be 0.1 % off: as a separation that would be 2.6°."""
+    exact = [sequence(f"p{i}", 12, seed=i) for i in range(2)]
+    rough = [replace(one, rotations=0.9991 * one.rotations) for one in exact]
+    first, second = learn(exact, NORMAL), learn(rough, NORMAL)
+    np.testing.assert_allclose(second.rotation_variation, first.rotation_variation, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(second.rotations, axis=-1), 1.0)
+
+
+def test_labels_without_a_rotation_are_left_out() -> None:
+    odd = sequence("p0", 8)
+    odd.rotations[5] = 0.0
+    mapping = learn([odd, sequence("p1", 8, seed=1)], NORMAL)
+    assert mapping.starts.tolist() == [0, 7, 15]
 
 
 def test_frames_without_a_pelvis_are_left_out() -> None:

@@ -1,5 +1,6 @@
 """Model files: whole ones come back equal, all others are refused with ModelError."""
 
+import errno
 import io
 import json
 import os
@@ -70,6 +71,19 @@ def test_numpy_alone_can_read_it_without_pickle(path: Path) -> None:
 def test_a_new_model_replaces_the_old_one(path: Path) -> None:
     save_model(replace(small_model(), interaction="other"), path)
     assert load_model(path).interaction == "other"
+
+
+def test_a_model_stays_whole_when_another_cannot_be_written(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full_disk(file: io.BufferedWriter, **_: Any) -> None:
+        file.write(b"PK")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(np, "savez_compressed", full_disk)
+    with pytest.raises(ModelError, match=r"cannot write .*mug\.model: No space left on device"):
+        save_model(replace(small_model(), interaction="other"), path)
+    assert equal(load_model(path), small_model())
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")

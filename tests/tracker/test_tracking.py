@@ -319,6 +319,15 @@ def test_dolls_and_giants_are_tracked(size: float) -> None:
         assert np.linalg.norm(estimate.translation) < 10 * size
 
 
+def test_a_person_of_unknown_height_is_not_tracked_until_the_head_is_seen() -> None:
+    headless = STANDING.copy()
+    headless[3] = np.nan
+    tracker = Tracker(wave_model(), BEST)
+    assert tracker.step(headless, FRAME_NS).state == "lost"
+    assert_proper(tracker.step(STANDING, 2 * FRAME_NS))
+    assert_proper(tracker.step(headless, 3 * FRAME_NS))
+
+
 def test_a_degenerate_body_is_not_tracked() -> None:
     for joints in (np.zeros((20, 3)), np.full((20, 3), 2.0), np.full((20, 3), np.inf)):
         assert Tracker(wave_model(), BEST).step(joints, FRAME_NS).state == "lost"

@@ -105,11 +105,9 @@ class _Measures:
 
 
 def _relative_poses(sequence: LabelledSequence, mirror_normal: Array) -> _RelativePoses:
-    joints, translations, orientations = (
-        sequence.joints,
-        sequence.translations,
-        sequence.rotations,
-    )
+    joints, translations = sequence.joints, sequence.translations
+    with np.errstate(invalid="ignore", divide="ignore"):
+        orientations = rotations.normalise(sequence.rotations)
     if sequence.left_handed:
         joints = mirror_joints(joints)
         translations, orientations = mirror_pose(translations, orientations, mirror_normal)
