@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from inhand_lab.demonstration import (
-    NAME,
     TRAINED_PARTICIPANTS,
     draw_picture,
     train_demonstration,
@@ -149,7 +148,9 @@ def _result(seen: Review, recording: Path, picture: Path, seconds: float) -> dic
 
 
 def _table(seen: Review) -> Table:
-    table = Table("topic", "published", "received", "recorded", "lost", title=f"rig {NAME}")
+    table = Table(
+        "topic", "published", "received", "recorded", "lost", title="from capture to recorder"
+    )
     for stream, one in seen.traffic.items():
         counts = (one.published, one.received, one.recorded, one.lost)
         table.add_row(stream, *map(str, counts))

@@ -1,9 +1,13 @@
-"""``inhand simulate``: make a labelled dataset of simulated people."""
+"""``inhand simulate``: make a labelled dataset of simulated people, or a picture of what they do."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
+from inhand_lab.dataset import Dataset, load_dataset
+from inhand_lab.driven_dataset import generate_driven, pairs_for
 from inhand_lab.generation import generate
+from inhand_lab.sheet import write_sheet
 from inhand_lab.world import INTERACTIONS
 from inhand_runtime.errors import SettingsError
 from rich.console import Console
@@ -13,11 +17,10 @@ from inhand.progress import progress_bar
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's arguments."""
-    parser.add_argument("out", type=Path, metavar="OUT", help="the new dataset's folder")
+    parser.add_argument("out", type=Path, nargs="?", metavar="OUT", help="the new dataset's folder")
     parser.add_argument(
         "--interactions",
         nargs="+",
-        default=INTERACTIONS,
         metavar="I",
         help=f"what is done (default: all): {', '.join(INTERACTIONS)}",
     )
@@ -29,25 +32,67 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--no-images", action="store_true", help="skeletons and labels only: small and quick"
     )
+    parser.add_argument(
+        "--bodies",
+        type=Path,
+        metavar="DATASET",
+        help="objects in the hands of this dataset's people, who move and are tracked as recorded",
+    )
+    parser.add_argument(
+        "--sheet",
+        type=Path,
+        metavar="FILE",
+        help="a picture of what people do (.png or .jpg), instead of or beside a dataset",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the dataset; raises SettingsError or DatasetError."""
-    unknown = [name for name in arguments.interactions if name not in INTERACTIONS]
+    """Write what was asked for; raises SettingsError, DatasetError or RecordingError."""
+    chosen = arguments.interactions
+    unknown = [name for name in chosen or () if name not in INTERACTIONS]
     if unknown:
         raise SettingsError(f"no interaction {unknown[0]!r}; there are: {', '.join(INTERACTIONS)}")
     if arguments.participants < 1 or arguments.frames < 1 or arguments.seed < 0:
         raise SettingsError("participants and frames are 1 or more, and the seed is 0 or more")
-    total = len(arguments.interactions) * arguments.participants
-    with progress_bar("simulating", total) as advance:
-        dataset = generate(
+    if arguments.out is None and arguments.sheet is None:
+        raise SettingsError("name the new dataset's folder, or a picture with --sheet")
+    if arguments.sheet is not None:
+        _write_sheet(arguments, chosen or INTERACTIONS)
+    if arguments.out is not None:
+        dataset = _generate_driven(arguments) if arguments.bodies else _generate(arguments)
+        Console().print(f"{len(dataset.entries)} recordings in {dataset.folder}")
+    return 0
+
+
+def _write_sheet(arguments: argparse.Namespace, interactions: Sequence[str]) -> None:
+    with progress_bar("drawing", len(interactions)) as advance:
+        write_sheet(arguments.sheet, interactions, arguments.seed, on_progress=advance)
+    Console().print(f"{len(interactions)} interactions in {arguments.sheet}")
+
+
+def _generate(arguments: argparse.Namespace) -> Dataset:
+    interactions = arguments.interactions or INTERACTIONS
+    with progress_bar("simulating", len(interactions) * arguments.participants) as advance:
+        return generate(
             arguments.out,
-            arguments.interactions,
+            interactions,
             arguments.participants,
             arguments.seed,
             arguments.frames,
             images=not arguments.no_images,
             on_progress=advance,
         )
-    Console().print(f"{len(dataset.entries)} recordings in {dataset.folder}")
-    return 0
+
+
+def _generate_driven(arguments: argparse.Namespace) -> Dataset:
+    bodies = load_dataset(arguments.bodies)
+    total = len(pairs_for(bodies, arguments.interactions))
+    with progress_bar("simulating", total) as advance:
+        return generate_driven(
+            arguments.out,
+            bodies,
+            arguments.interactions,
+            arguments.seed,
+            images=not arguments.no_images,
+            on_progress=advance,
+        )

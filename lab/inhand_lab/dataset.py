@@ -7,6 +7,7 @@ included; ``objects/NAME/`` holds mesh and marked vertices.
 
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -26,7 +27,8 @@ from inhand_schemas.messages import (
 )
 from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS, AnyTopic
 from inhand_tracker.camera import Intrinsics, intrinsics_of
-from inhand_tracker.conversion import choose_person, joints_of
+from inhand_tracker.conversion import joints_of
+from inhand_tracker.following import Follower
 from inhand_tracker.learning import LabelledSequence
 from inhand_tracker.shape import ObjectShape, load_shape, save_shape
 from numpy.typing import NDArray
@@ -129,10 +131,8 @@ class DatasetWriter:
     def __init__(self, folder: Path) -> None:
         if (folder / "dataset.toml").exists():
             raise DatasetError(f"{folder} holds a dataset already: choose another folder")
-        try:
+        with _reporting(folder):
             (folder / "recordings").mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise DatasetError(f"cannot write {folder}: {error.strerror}") from None
         self.folder = folder
         self._entries: list[Entry] = []
         self._shapes: set[str] = set()
@@ -140,7 +140,8 @@ class DatasetWriter:
     def add_shape(self, shape: ObjectShape) -> None:
         """Write an object's folder, once."""
         if shape.name not in self._shapes:
-            save_shape(shape, self.folder / "objects" / shape.name)
+            with _reporting(self.folder):
+                save_shape(shape, self.folder / "objects" / shape.name)
             self._shapes.add(shape.name)
 
     def add_recording(self, entry: Entry, messages: Iterable[Message]) -> None:
@@ -168,7 +169,8 @@ class DatasetWriter:
             recordings=tuple(self._entries),
         )
         path = self.folder / "dataset.toml"
-        path.write_text(_toml(contents), encoding="utf-8")
+        with _reporting(self.folder):
+            path.write_text(_toml(contents), encoding="utf-8")
         return Dataset(self.folder, contents.recordings)
 
 
@@ -208,11 +210,10 @@ def labelled_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
     joints = np.full((len(frames), 20, 3), np.nan)
     translations = np.full((len(frames), 3), np.nan)
     orientations = np.full((len(frames), 4), np.nan)
-    followed: int | None = None
+    follower = Follower()
     for index, frame in enumerate(frames):
-        person = choose_person(frame.people, followed)
+        person = follower.choose(frame.people, frame.time_ns)
         if person is not None:
-            followed = person.id
             joints[index] = joints_of(person)
         if frame.label is not None and frame.label.camera_from_object is not None:
             translations[index] = frame.label.camera_from_object.translation
@@ -220,6 +221,14 @@ def labelled_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
     return LabelledSequence(
         entry.participant, entry.handedness == "left", joints, translations, orientations
     )
+
+
+@contextmanager
+def _reporting(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise DatasetError(f"cannot write {folder}: {error.strerror}") from None
 
 
 def _toml(contents: _DatasetFile) -> str:

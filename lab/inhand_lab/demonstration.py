@@ -11,7 +11,8 @@ from inhand_runtime.pixels import decode_colour
 from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import RgbdFrame, Skeletons
 from inhand_schemas.topics import RGBD, SKELETONS
-from inhand_tracker.conversion import choose_person, joints_of
+from inhand_tracker.conversion import joints_of
+from inhand_tracker.following import Follower
 from inhand_tracker.model_file import Model, save_model
 
 from inhand_lab.dataset import load_camera
@@ -24,7 +25,6 @@ SEED = 7
 TRAINED_PARTICIPANTS = 12
 UNSEEN_PARTICIPANT = 100
 TRAINED_FRAMES = 360
-NAME = "demo"
 
 
 def train_demonstration(
@@ -55,17 +55,17 @@ def write_rig_file(folder: Path, interaction: str, model: Path) -> Path:
         f'meeting = "tcp/127.0.0.1:{_free_port()}"',
         "[log]",
         'level = "warning"',
-        f"[capture.{NAME}]",
+        "[capture.camera]",
         'source = "simulator"',
         "wait_for_reader_s = 30",
-        f"[capture.{NAME}.options]",
+        "[capture.camera.options]",
         f'interaction = "{interaction}"',
         f"participant = {UNSEEN_PARTICIPANT}",
         f"seed = {SEED}",
-        f"[tracker.{NAME}]",
-        f'camera = "{NAME}"',
+        "[tracker.follower]",
+        'camera = "camera"',
         f'model = "{model}"',
-        f"[recorder.{NAME}]",
+        "[recorder.disk]",
         f'folder = "{folder / "recordings"}"',
     ]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -88,7 +88,7 @@ def draw_picture(recording: Path, seen: Review, model: Model, path: Path) -> Non
     if camera is None or frame.colour is None:
         raise InhandError(f"{recording} holds no picture to draw on")
     picture = picture_of(decode_colour(frame.colour), camera)
-    person = choose_person(skeletons.people, None)
+    person = Follower().choose(skeletons.people, skeletons.time_ns)
     if person is not None:
         picture.draw_skeleton(joints_of(person))
     for text, messages, colour in (

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from inhand_runtime.pixels import decode_grey
 from inhand_tracker import rotations
-from inhand_tracker.conversion import choose_person, joints_of
+from inhand_tracker.conversion import joints_of
 from inhand_tracker.estimate import Estimate, vertex_error
+from inhand_tracker.following import Follower
 from inhand_tracker.learning import LabelledSequence, learn
 from inhand_tracker.methods import METHODS
 from inhand_tracker.model_file import Model
@@ -128,7 +129,7 @@ def track_recording(
     camera = load_camera(path) if images else None
     pixels = iterate_pixels(path) if camera is not None else iter(())
     current = next(pixels, None)
-    followed: int | None = None
+    follower = Follower()
     for frame in frames:
         while current is not None and current.sequence < frame.sequence:
             current = next(pixels, None)
@@ -137,8 +138,10 @@ def track_recording(
             colour = current.colour
             if colour is not None:
                 image = Image(decode_grey(colour), camera.scaled_to(colour.width, colour.height))
-        person = choose_person(frame.people, followed)
-        followed = None if person is None else person.id
+        before = follower.person_id
+        person = follower.choose(frame.people, frame.time_ns)
+        if follower.person_id != before:
+            tracker.restart()
         joints = None if person is None else joints_of(person)
         yield tracker.step(joints, frame.time_ns, image)
 

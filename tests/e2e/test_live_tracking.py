@@ -128,12 +128,12 @@ def test_a_real_kinect_tennis_swing_with_depth_loses_no_frame(
 @pytest.mark.long
 def test_the_demonstration_tracks_a_stranger_and_loses_nothing(tmp_path: Path) -> None:
     result = tmp_path / "demo.json"
-    arguments = ["--seconds", "4", "--folder", str(tmp_path / "demo"), "--json", str(result)]
+    arguments = ["--folder", str(tmp_path / "demo"), "--json", str(result)]
     assert main(["demo", *arguments]) == 0
     told = json.loads(result.read_text())
     assert set(told["topics"]) == {"info", "label", "pose", "rgbd", "skeletons"}
     assert all(topic["lost"] == 0 for topic in told["topics"].values())
-    assert told["topics"]["pose"]["recorded"] >= 110
+    assert told["topics"]["pose"]["recorded"] >= 350
     assert told["vertex_error_cm"] < 12.0
     assert Path(told["picture"]).stat().st_size > 10_000
     assert verify_recording(Path(told["recording"])) == []

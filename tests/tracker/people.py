@@ -4,6 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 import trimesh
+from inhand_schemas.messages import Person
 from inhand_tracker.learning import LabelledSequence, learn
 from inhand_tracker.model_file import Model
 from inhand_tracker.shape import ObjectShape, Symmetry
@@ -130,3 +131,18 @@ def wave_model() -> Model:
     sequences = [sequence(f"p{seed}", seed=seed) for seed in range(3)]
     shape = wedge()
     return Model("wave", shape, learn(sequences, shape.mirror_normal), find_viewpoints(shape))
+
+
+def person(
+    number: int, depth: float = 2.0, missing: tuple[int, ...] = (), wild: float | None = None
+) -> Person:
+    """A message of somebody ``depth`` metres away; one joint may be ``wild`` metres off."""
+    joints = [(0.1 * j, -0.1 * j, depth) for j in range(20)]
+    if wild is not None:
+        joints[11] = (0.0, wild, depth)
+    return Person(
+        id=number,
+        joints=tuple(joints),
+        states=tuple("missing" if j in missing else "tracked" for j in range(20)),
+        confidences=(1.0,) * 20,
+    )

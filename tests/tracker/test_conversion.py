@@ -4,31 +4,16 @@ from inhand_schemas.messages import Box, Person, Pose
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.conversion import (
     box_around,
-    choose_person,
     compose,
     joints_of,
     object_pose_message,
     pose_message,
 )
 from inhand_tracker.estimate import LOST, Estimate
-from people import quaternion_of
+from people import person, quaternion_of
 from scipy.spatial.transform import Rotation
 
 CAMERA = Intrinsics(100.0, 100.0, 50.0, 40.0, 100, 80)
-
-
-def person(
-    number: int, depth: float = 2.0, missing: tuple[int, ...] = (), wild: float | None = None
-) -> Person:
-    joints = [(0.1 * j, -0.1 * j, depth) for j in range(20)]
-    if wild is not None:
-        joints[11] = (0.0, wild, depth)
-    return Person(
-        id=number,
-        joints=tuple(joints),
-        states=tuple("missing" if j in missing else "tracked" for j in range(20)),
-        confidences=(1.0,) * 20,
-    )
 
 
 def test_missing_joints_are_not_a_number() -> None:
@@ -53,22 +38,6 @@ def test_inferred_joints_are_used() -> None:
         confidences=(0.5,) * 20,
     )
     assert np.isfinite(joints_of(guessed)).all()
-
-
-def test_the_person_that_is_followed_stays_chosen() -> None:
-    people = [person(1, 1.0), person(2, 3.0)]
-    assert choose_person(people, 2) is people[1]
-
-
-def test_without_one_to_follow_the_nearest_is_chosen() -> None:
-    people = [person(1, 3.0), person(2, 1.0, missing=(0,)), person(3, 2.0)]
-    assert choose_person(people, None) is people[2]
-    assert choose_person(people, 9) is people[2]
-
-
-def test_nobody_is_chosen_from_nobody() -> None:
-    assert choose_person([], 1) is None
-    assert choose_person([person(2, missing=(0,))], None) is None
 
 
 def test_a_transform_becomes_a_message_with_a_unit_quaternion() -> None:

@@ -24,6 +24,8 @@ from pydantic_settings import SettingsError as UnreadableVariableError
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings_errors import ENVIRONMENT_PREFIX, NESTED, explain, suggestion
 
+SERVICES = ("capture", "tracker", "recorder")
+
 MEETING = "tcp/127.0.0.1:7447"
 
 _ADDRESS = re.compile(r"[a-z][a-z-]*/[^\s/?#]+:\d+")
@@ -132,6 +134,7 @@ def load_rig_file(path: Path | None) -> RigFile:
         ) from None
     except KeyFormatError as error:
         raise SettingsError(f"{path or 'settings'}: {error}") from None
+    _refuse_shared_names(rig_file, path)
     return rig_file
 
 
@@ -172,6 +175,19 @@ def instance_settings(
         raise SettingsError(explain(error, path, (service, instance), model)) from None
     site = Site(rig_file.realm, rig_file.rig)
     return Settings(site, rig_file.zenoh, rig_file.log, instance, checked)
+
+
+def _refuse_shared_names(rig_file: RigFile, path: Path | None) -> None:
+    services: dict[str, str] = {}
+    for service in SERVICES:
+        for instance in getattr(rig_file, service):
+            if instance in services:
+                raise SettingsError(
+                    f"{path or 'settings'}: [{services[instance]}.{instance}] and "
+                    f"[{service}.{instance}] have one name, which is their health's key too: "
+                    "give each its own"
+                )
+            services[instance] = service
 
 
 def _refuse_unknown_variables() -> None:

@@ -127,7 +127,6 @@ def _turn_z_to(direction: Array) -> Array:
     length = np.linalg.norm(direction, axis=-1, keepdims=True)
     unit = direction / np.where(length > 1e-9, length, 1.0)
     x, y, z = np.moveaxis(unit, -1, 0)
-    z = np.where(length[..., 0] > 1e-9, z, 1.0)
     turn = np.stack((1.0 + z, -y, x, np.zeros_like(z)), axis=-1)
     backwards = np.linalg.norm(turn, axis=-1, keepdims=True) <= 1e-9
     return rotations.normalise(np.where(backwards, np.array([0.0, 1.0, 0.0, 0.0]), turn))

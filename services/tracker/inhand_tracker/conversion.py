@@ -1,13 +1,10 @@
 """Messages to arrays and back."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from inhand_schemas.messages import Box, ObjectPose, Person, Pose
 from numpy.typing import NDArray
 
 from inhand_tracker import rotations
-from inhand_tracker.body import JOINT
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.estimate import Estimate
 
@@ -22,16 +19,6 @@ def joints_of(person: Person) -> Array:
     joints[[state == "missing" for state in person.states]] = np.nan
     joints[(np.abs(joints) > FARTHEST_M).any(axis=1)] = np.nan
     return joints
-
-
-def choose_person(people: Sequence[Person], followed: int | None) -> Person | None:
-    """The person with the id that is followed, or else the one nearest to the camera."""
-    for person in people:
-        if person.id == followed:
-            return person
-    hips = JOINT["HipCenter"]
-    candidates = [person for person in people if person.states[hips] != "missing"]
-    return min(candidates, key=lambda person: person.joints[hips][2], default=None)
 
 
 def pose_message(translation: Array, rotation: Array) -> Pose:

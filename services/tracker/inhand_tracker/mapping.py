@@ -56,5 +56,4 @@ class BodyPoseIndex:
         start, end = mapping.starts[sequence : sequence + 2]
         offsets = mapping.body_poses[start:end] - mapping.body_poses[frame]
         near = np.einsum("ij,ij->i", offsets, offsets) <= mapping.radii[sequence] ** 2
-        near[frame - start] = True
         return start + np.flatnonzero(near)

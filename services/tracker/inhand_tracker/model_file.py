@@ -3,6 +3,7 @@
 Any zip tool and NumPy can open it. Nothing in it is executed.
 """
 
+import contextlib
 import json
 import zipfile
 from dataclasses import dataclass, fields
@@ -61,6 +62,8 @@ def save_model(model: Model, path: Path) -> None:
             np.savez_compressed(file, model=np.array(json.dumps(description)), **arrays)
         temporary.replace(path)
     except OSError as error:
+        with contextlib.suppress(OSError):
+            temporary.unlink()
         raise ModelError(f"cannot write {path}: {error.strerror}") from None
 
 

@@ -18,10 +18,10 @@ from pydantic import Field, PositiveInt
 from inhand_tracker.camera import intrinsics_of
 from inhand_tracker.conversion import (
     box_around,
-    choose_person,
     joints_of,
     object_pose_message,
 )
+from inhand_tracker.following import Follower
 from inhand_tracker.methods import DEFAULT_METHOD, METHODS, MethodName
 from inhand_tracker.model_file import load_model
 from inhand_tracker.pairing import Pairing
@@ -55,7 +55,7 @@ class TrackerService:
         self._publisher: Publisher[ObjectPose] = daemon.publisher(POSE, name)
         self._pairing: Pairing[Skeletons, RgbdFrame] = Pairing()
         self._info: CameraInfo | None = None
-        self._person: int | None = None
+        self._follower = Follower()
         daemon.subscribe(INFO, settings.camera)
         daemon.subscribe(SKELETONS, settings.camera)
         if settings.images:
@@ -83,8 +83,10 @@ class TrackerService:
             self._pairing.add_skeleton(skeletons.sequence, skeletons, now)
 
     def _track(self, skeletons: Skeletons, frame: RgbdFrame | None) -> None:
-        person = choose_person(skeletons.people, self._person)
-        self._person = None if person is None else person.id
+        before = self._follower.person_id
+        person = self._follower.choose(skeletons.people, skeletons.time_ns)
+        if self._follower.person_id != before:
+            self._tracker.restart()
         estimate = self._tracker.step(
             None if person is None else joints_of(person),
             skeletons.time_ns,
@@ -101,7 +103,7 @@ class TrackerService:
                 time_ns=skeletons.time_ns,
                 name=self._object,
                 camera=self._camera,
-                person=self._person,
+                person=self._follower.person_id,
                 rig_from_camera=None if self._info is None else self._info.rig_from_camera,
                 box=box,
             )

@@ -99,7 +99,8 @@ def load_shape(folder: Path) -> ObjectShape:
 
 
 def _load_mesh(folder: Path) -> tuple[Array, NDArray[np.int64]]:
-    found = sorted(path for path in folder.glob("mesh.*") if path.suffix != ".mtl")
+    formats = trimesh.available_formats()
+    found = sorted(path for path in folder.glob("mesh.*") if path.suffix[1:] in formats)
     if not found:
         raise InhandError(f"{folder} holds no mesh: add mesh.ply, mesh.obj or mesh.stl")
     try:

@@ -80,11 +80,14 @@ class Tracker:
         self._random = np.random.default_rng(seed)
         self._index = BodyPoseIndex(model.mapping)
         self._projector = BoundaryProjector(model.viewpoints)
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget the person and the object: somebody else comes into view."""
         self._height = RunningHeight()
-        self._typical_pose = model.mapping.body_poses.mean(axis=0).reshape(20, 3)
-        self._known_pose = self._typical_pose
+        self._known_pose = self._mapping.body_poses.mean(axis=0).reshape(20, 3)
         self._particles: Particles | None = None
-        self._weights = np.full(particles, 1.0 / particles)
+        self._weights = np.full(self._count, 1.0 / self._count)
         self._estimate = LOST
         self._time_ns = 0
 

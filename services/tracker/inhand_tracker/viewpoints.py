@@ -76,15 +76,7 @@ def _boundary(shape: ObjectShape, view: Array) -> Array:
         return np.repeat(shape.vertices.mean(axis=0)[None], BOUNDARY_POINTS, axis=0)
     chosen = _equally_spaced(around)
     column, row = np.rint(chosen).astype(int).T
-    depth = depths[row, column]
-    # Contours of holes run just outside of the mask: take the nearest surface beside them.
-    for index in np.flatnonzero(~np.isfinite(depth)):
-        near = depths[
-            max(row[index] - 2, 0) : row[index] + 3, max(column[index] - 2, 0) : column[index] + 3
-        ]
-        finite = near[np.isfinite(near)]
-        depth[index] = finite.min() if len(finite) else seen[:, 2].mean()
-    in_view = np.column_stack(((chosen - MARGIN) / scale + low, depth))
+    in_view = np.column_stack(((chosen - MARGIN) / scale + low, depths[row, column]))
     points: Array = in_view @ axes
     return points
 
