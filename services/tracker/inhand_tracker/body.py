@@ -126,7 +126,7 @@ def _turn_z_to(direction: Array) -> Array:
     """The shortest rotation that takes the z axis to a direction, (..., 3) → (..., 4)."""
     length = np.linalg.norm(direction, axis=-1, keepdims=True)
     unit = direction / np.where(length > 1e-9, length, 1.0)
-    x, y, z = np.moveaxis(unit, -1, 0)
+    x, y, z = rotations.components(unit)
     turn = np.stack((1.0 + z, -y, x, np.zeros_like(z)), axis=-1)
     backwards = np.linalg.norm(turn, axis=-1, keepdims=True) <= 1e-9
     return rotations.normalise(np.where(backwards, np.array([0.0, 1.0, 0.0, 0.0]), turn))
