@@ -1,23 +1,21 @@
 """``inhand evaluate``: how well unseen people's objects are tracked."""
 
 import argparse
-import os
 import time
 from pathlib import Path
 from typing import Any
 
 from inhand_lab.dataset import load_dataset
-from inhand_lab.evaluation import (
-    SequenceScore,
-    evaluate,
-    leave_one_out,
-    summarise,
-    train_on_one_test_on_other,
-)
+from inhand_lab.evaluation import Protocol, Terms, Trial, evaluate
+from inhand_lab.folds import leave_one_out, train_on_one_test_on_other
+from inhand_lab.report import prepare_folder, write_report
+from inhand_lab.summary import summarise, terms_name, with_terms, worth
+from inhand_lab.tables import shown_grids
+from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
-from inhand_tracker.methods import METHODS
+from inhand_tracker.likelihood import DEFAULT_TERMS, TERMS
+from inhand_tracker.methods import METHODS, TABLE_1
 from rich.console import Console
-from rich.table import Table
 
 from inhand.progress import progress_bar
 from inhand.results import write_json
@@ -28,23 +26,52 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("dataset", type=Path, metavar="DATASET", help="learn from it")
     parser.add_argument("--test-on", type=Path, metavar="DATASET", help="test on another one")
     parser.add_argument(
-        "--methods", default=",".join(METHODS), metavar="a,b", help="(default: all of Table 1)"
+        "--methods", default=",".join(TABLE_1), metavar="a,b", help="(default: all of Table 1)"
     )
-    parser.add_argument("--no-images", action="store_true", help="from bodies alone")
+    images = parser.add_mutually_exclusive_group()
+    images.add_argument("--no-images", action="store_true", help="from bodies alone: --terms none")
+    images.add_argument(
+        "--terms",
+        default=terms_name(DEFAULT_TERMS),
+        metavar="a,b",
+        help="what of an image weighs: none, edges, depth or edges+depth (default: edges); the "
+        "first is reported, and how much better it is than the others",
+    )
     parser.add_argument("--seeds", type=int, default=1, metavar="N", help="repetitions (1)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
-    parser.add_argument("--report", type=Path, metavar="DIR", help="write table and sequences")
+    parser.add_argument("--report", type=Path, metavar="DIR", help="write tables and figures")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Evaluate and show the table; raises SettingsError or DatasetError."""
+    """Evaluate and show the tables; raises SettingsError, DatasetError or RecordingError."""
+    began = time.monotonic()
+    protocol = _protocol(arguments)
+    if arguments.report is not None:
+        prepare_folder(arguments.report)
+    cores = usable_cores()
+    with progress_bar("evaluating", protocol.trials()) as advance:
+        trials = evaluate(protocol, cores, advance)
+    result = _result(protocol, trials, time.monotonic() - began)
+    console = Console()
+    for grid in shown_grids(result):
+        console.print(grid.for_terminal(), "")
+    if arguments.json is not None:
+        write_json(arguments.json, result)
+    if arguments.report is not None:
+        with progress_bar("drawing", len(protocol.trained.interactions())) as advance:
+            write_report(arguments.report, protocol, trials, result, cores, advance)
+        console.print(f"the report is {arguments.report / 'report.md'}")
+    return 0
+
+
+def _protocol(arguments: argparse.Namespace) -> Protocol:
     methods = arguments.methods.split(",")
     unknown = [name for name in methods if name not in METHODS]
     if unknown:
         raise SettingsError(f"no method {unknown[0]!r}; there are: {', '.join(METHODS)}")
     if arguments.seeds < 1:
         raise SettingsError("--seeds is 1 or more")
-    began = time.monotonic()
+    terms = "none" if arguments.no_images else arguments.terms
     trained = load_dataset(arguments.dataset)
     tested = trained if arguments.test_on is None else load_dataset(arguments.test_on)
     folds = (
@@ -52,56 +79,32 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.test_on is None
         else train_on_one_test_on_other(trained, tested)
     )
-    with progress_bar("evaluating", len(folds)) as advance:
-        scores = evaluate(
-            trained,
-            tested,
-            folds,
-            methods,
-            arguments.seeds,
-            images=not arguments.no_images,
-            processes=len(os.sched_getaffinity(0)),
-            on_progress=advance,
-        )
-    result: dict[str, Any] = {
-        "methods": summarise(scores),
-        "frames": sum(score.frames for score in scores),
-        "seconds": time.monotonic() - began,
+    return Protocol(
+        trained,
+        tested,
+        tuple(folds),
+        tuple(dict.fromkeys(methods)),
+        tuple(dict.fromkeys(_terms(name) for name in terms.split(","))),
+        arguments.seeds,
+    )
+
+
+def _terms(name: str) -> Terms:
+    if name == "none":
+        return ()
+    named = name.split("+")
+    if unknown := [term for term in named if term not in TERMS]:
+        raise SettingsError(f"no term {unknown[0]!r}; there are: none, {', '.join(TERMS)}")
+    return tuple(term for term in TERMS if term in named)
+
+
+def _result(protocol: Protocol, trials: list[Trial], seconds: float) -> dict[str, Any]:
+    reported, *others = protocol.terms
+    return {
+        "methods": summarise(with_terms(trials, reported)),
+        "terms": terms_name(reported),
+        "compared": {terms_name(one): summarise(with_terms(trials, one)) for one in others},
+        "worth": {terms_name(one): worth(trials, reported, one) for one in others},
+        "frames": sum(trial.score.frames for trial in trials),
+        "seconds": seconds,
     }
-    Console().print(_table(result["methods"]))
-    if arguments.json is not None:
-        write_json(arguments.json, result)
-    if arguments.report is not None:
-        _write_report(arguments.report, result, scores)
-    return 0
-
-
-def _table(methods: dict[str, Any]) -> Table:
-    table = Table("interaction", title="vertex error in cm: mean ± sd over participants")
-    for name in methods:
-        table.add_column(name, justify="right")
-    interactions = next(iter(methods.values()))["interactions"]
-    for interaction in interactions:
-        cells = [method["interactions"][interaction] for method in methods.values()]
-        table.add_row(interaction, *(_cell(cell) for cell in cells))
-    table.add_section()
-    table.add_row("mean", *(_cell(method) for method in methods.values()))
-    return table
-
-
-def _cell(values: dict[str, float]) -> str:
-    return f"{values['vertex_error_cm']:.1f} ± {values['sd']:.1f}"
-
-
-def _write_report(folder: Path, result: dict[str, Any], scores: list[SequenceScore]) -> None:
-    folder.mkdir(parents=True, exist_ok=True)
-    write_json(folder / "evaluation.json", result)
-    with (folder / "table.txt").open("w", encoding="utf-8") as file:
-        Console(file=file, width=120).print(_table(result["methods"]))
-    lines = ["method\tinteraction\tparticipant\tseed\tframes\tvertex_error_cm"]
-    lines += [
-        f"{s.method}\t{s.interaction}\t{s.participant}\t{s.seed}\t{s.frames}"
-        f"\t{100 * s.vertex_error_m:.3f}"
-        for s in scores
-    ]
-    (folder / "sequences.tsv").write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -1,9 +1,10 @@
-"""``inhand simulate``: make a labelled dataset of simulated people, or a picture of what they do."""
+"""``inhand simulate``: a labelled dataset of simulated people, or a picture of what they do."""
 
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from inhand_lab.cameras import CAMERAS, KINECT
 from inhand_lab.dataset import Dataset, load_dataset
 from inhand_lab.driven_dataset import generate_driven, pairs_for
 from inhand_lab.generation import generate
@@ -13,6 +14,7 @@ from inhand_runtime.errors import SettingsError
 from rich.console import Console
 
 from inhand.progress import progress_bar
+from inhand.realism import USUAL_DATA, show_realism
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,6 +35,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--no-images", action="store_true", help="skeletons and labels only: small and quick"
     )
     parser.add_argument(
+        "--camera", choices=CAMERAS, default=KINECT.name, help=f"(default: {KINECT.name})"
+    )
+    parser.add_argument(
         "--bodies",
         type=Path,
         metavar="DATASET",
@@ -44,10 +49,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="a picture of what people do (.png or .jpg), instead of or beside a dataset",
     )
+    parser.add_argument(
+        "--realism", action="store_true", help="compare the sensors with real recordings"
+    )
+    parser.add_argument(
+        "--data",
+        type=Path,
+        default=USUAL_DATA,
+        metavar="FOLDER",
+        help=f"where real recordings are for --realism (default: {USUAL_DATA})",
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the realism table")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Write what was asked for; raises SettingsError, DatasetError or RecordingError."""
+    if arguments.realism:
+        return show_realism(arguments.data, arguments.json)
     chosen = arguments.interactions
     unknown = [name for name in chosen or () if name not in INTERACTIONS]
     if unknown:
@@ -81,6 +99,7 @@ def _generate(arguments: argparse.Namespace) -> Dataset:
             arguments.frames,
             images=not arguments.no_images,
             on_progress=advance,
+            camera=CAMERAS[arguments.camera],
         )
 
 
@@ -95,4 +114,5 @@ def _generate_driven(arguments: argparse.Namespace) -> Dataset:
             arguments.seed,
             images=not arguments.no_images,
             on_progress=advance,
+            camera=CAMERAS[arguments.camera],
         )

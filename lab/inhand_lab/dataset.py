@@ -175,33 +175,50 @@ class DatasetWriter:
 
 
 def load_frames(path: Path, object_name: str | None) -> list[Frame]:
-    """Skeletons and labels of a recording, in order, without pixels."""
-    labels: dict[int, ObjectPose] = {}
-    skeletons: list[Skeletons] = []
+    """Skeletons and labels of a recording, in order, without pixels.
+
+    Of several cameras' skeletons, those that the labels were made in; raises DatasetError where
+    the labels do not tell.
+    """
+    labels: dict[tuple[int, int], ObjectPose] = {}
+    labelled: set[str] = set()
+    skeletons: dict[str, list[Skeletons]] = {}
     for recorded in read_recording(path, streams=(LABEL.stream, SKELETONS.stream)):
         message = recorded.message()
         if isinstance(message, Skeletons):
-            skeletons.append(message)
+            skeletons.setdefault(recorded.name, []).append(message)
         elif isinstance(message, ObjectPose) and message.object == object_name:
-            labels[message.sequence] = message
-    return [Frame(s.sequence, s.time_ns, s.people, labels.get(s.sequence)) for s in skeletons]
+            labels[message.sequence, message.time_ns] = message
+            labelled.add(message.camera)
+    camera = _labelled_camera(path, labelled, set(skeletons))
+    return [
+        Frame(s.sequence, s.time_ns, s.people, labels.get((s.sequence, s.time_ns)))
+        for s in skeletons.get(camera, ())
+    ]
 
 
 def load_camera(path: Path) -> Intrinsics | None:
-    """The camera of a recording, where it says."""
+    """The first camera of a recording, where it says."""
+    info = load_camera_info(path)
+    return None if info is None else intrinsics_of(info)
+
+
+def load_camera_info(path: Path, camera: str | None = None) -> CameraInfo | None:
+    """What a recording says of the camera of that name, or of the first one."""
     for recorded in read_recording(path, streams=(INFO.stream,)):
         message = recorded.message()
-        if isinstance(message, CameraInfo):
-            return intrinsics_of(message)
+        if isinstance(message, CameraInfo) and camera in (None, recorded.name):
+            return message
     return None
 
 
-def iterate_pixels(path: Path) -> Iterator[RgbdFrame]:
-    """The frames of a recording, in order."""
+def iterate_pixels(path: Path, camera: str | None = None) -> Iterator[RgbdFrame]:
+    """The frames of a camera, or of all, of a recording, in order."""
     for recorded in read_recording(path, streams=(RGBD.stream,)):
-        message = recorded.message()
-        if isinstance(message, RgbdFrame):
-            yield message
+        if camera in (None, recorded.name):
+            message = recorded.message()
+            if isinstance(message, RgbdFrame):
+                yield message
 
 
 def labelled_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
@@ -221,6 +238,22 @@ def labelled_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
     return LabelledSequence(
         entry.participant, entry.handedness == "left", joints, translations, orientations
     )
+
+
+def _labelled_camera(path: Path, labelled: set[str], tracked: set[str]) -> str:
+    """The camera that a recording's labels and skeletons share."""
+    cameras = labelled or tracked
+    if len(cameras) > 1:
+        raise DatasetError(
+            f"{path}: {'labels were made in' if labelled else 'skeletons and no label are of'} "
+            f"{len(cameras)} cameras ({', '.join(sorted(cameras))}): label it in one"
+        )
+    if tracked and not cameras <= tracked:
+        raise DatasetError(
+            f"{path}: the labels were made in camera {min(cameras)!r}, and the skeletons are of "
+            f"{', '.join(sorted(tracked))}: label it in one of these"
+        )
+    return min(cameras, default=CAMERA)
 
 
 @contextmanager

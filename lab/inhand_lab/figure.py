@@ -68,8 +68,8 @@ def build_figure(person: Person, joints: Floats) -> Figure:
         for parent, child, root, tip, cover in LIMBS
     ]
     parts += [
-        _pelvis(person, palette["trousers"]),
-        _chest(person, palette["shirt"]),
+        ellipsoid(*pelvis(person), palette["trousers"]),
+        joined([ellipsoid(*part(person), palette["shirt"]) for part in (rib_cage, belly)]),
         _head(person, palette["skin"], palette["hair"]),
     ]
     hand = _right_hand(person, palette["skin"])
@@ -83,6 +83,26 @@ def head_radii(person: Person) -> Floats:
     """Half axes (3,) of the head's ellipsoid about its middle, metres."""
     body = person.proportions
     return np.array([body.head_half_width, body.head_half_depth, body.head_half_height])
+
+
+def rib_cage(person: Person) -> tuple[Floats, Floats]:
+    """Centre and half axes (3,) of an ellipsoid in the chest's frame, metres."""
+    size, trunk = person.height * person.girth, person.proportions.chest
+    radii = np.array([0.094 * size, 0.066 * size, 0.66 * trunk])
+    return np.array([0.0, 0.004, -0.45 * trunk]), radii
+
+
+def belly(person: Person) -> tuple[Floats, Floats]:
+    """Centre and half axes (3,) of an ellipsoid in the chest's frame, metres."""
+    size, trunk = person.height * person.girth, person.proportions.chest
+    radii = np.array([0.088 * size, 0.066 * size, 0.50 * trunk])
+    return np.array([0.0, 0.008, -0.90 * trunk]), radii
+
+
+def pelvis(person: Person) -> tuple[Floats, Floats]:
+    """Centre and half axes (3,) of an ellipsoid in the pelvis's frame, metres."""
+    size, drop = person.height * person.girth, person.proportions.hip_drop
+    return np.array([0.0, 0.0, -0.6 * drop]), np.array([0.093, 0.068, 0.075]) * size
 
 
 def _distance(joints: Floats, parent: Joint, child: Joint) -> float:
@@ -125,23 +145,6 @@ def _palette(person: Person) -> dict[str, Colour]:
         "trousers": cloth(),
         "shoes": cloth(),
     }
-
-
-def _pelvis(person: Person, colour: Colour) -> Surface:
-    size, drop = person.height * person.girth, person.proportions.hip_drop
-    return ellipsoid((0.0, 0.0, -0.6 * drop), np.array([0.093, 0.068, 0.075]) * size, colour)
-
-
-def _chest(person: Person, colour: Colour) -> Surface:
-    """Rib cage, shoulder girdle and belly as one part, in the chest's frame."""
-    size, trunk = person.height * person.girth, person.proportions.chest
-    ribs = ellipsoid(
-        (0.0, 0.004, -0.45 * trunk), (0.094 * size, 0.066 * size, 0.66 * trunk), colour
-    )
-    belly = ellipsoid(
-        (0.0, 0.008, -0.90 * trunk), (0.088 * size, 0.066 * size, 0.50 * trunk), colour
-    )
-    return joined([ribs, belly])
 
 
 def _head(person: Person, skin: Colour, hair: Colour) -> Surface:

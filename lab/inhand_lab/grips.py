@@ -29,19 +29,21 @@ def hold_bar(
     random: np.random.Generator,
     point: Floats,
     object_from_bar: Floats,
+    in_hand: Floats = BAR_IN_PALM,
 ) -> Transform:
     """A fist around a bar, object_from_hand (T).
 
-    point (3,) is a place on the bar in the object's frame; object_from_bar (3, 3) has the bar's
-    direction to the thumb as its third column and, as its second, where the fingers point in a
-    grip square to the bar. The person's obliqueness and the drift are added to it.
+    point (3,) is a place on the bar in the object's frame, and in_hand (3,) where that place is in
+    the hand's; object_from_bar (3, 3) has the bar's direction to the thumb as its third column
+    and, as its second, where the fingers point in a grip square to the bar. The person's
+    obliqueness and the drift are added to it.
     """
     turn = drift(times, random, TURN_DRIFT, DRIFT_PERIOD)
     tilt = person.manner.grip_tilt + drift(times, random, TURN_DRIFT, DRIFT_PERIOD)
     slide = drift(times, random, SLIDE_DRIFT, DRIFT_PERIOD)
     rotation = object_from_bar @ rotation_about("xz", tilt, turn)
     along = slide[:, None] * object_from_bar[:, 2]
-    return Transform(point + along - rotation @ BAR_IN_PALM, rotation)
+    return Transform(point + along - rotation @ in_hand, rotation)
 
 
 def pinch(

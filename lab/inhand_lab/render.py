@@ -13,6 +13,7 @@ from inhand_lab.objects.model import ObjectModel
 from inhand_lab.rasteriser import Canvas, Intrinsics, draw
 from inhand_lab.surfaces import Surface, from_mesh, lit
 from inhand_lab.transforms import Transform
+from inhand_lab.window import Window, window_around
 
 ROOM, PERSON, OBJECT = 1, 2, 3
 """Labels of pixels; 0 is nothing."""
@@ -56,11 +57,26 @@ def draw_frame(
     _draw_surface(canvas, intrinsics, figure.posed(body_in_camera, frame), PERSON)
     placed = object_surface.moved(camera_from_object)
     _draw_surface(canvas, intrinsics, placed, OBJECT)
-    alone = Canvas.blank(intrinsics)
-    _draw_surface(alone, intrinsics, placed, OBJECT)
-    whole = int(np.count_nonzero(alone.labels))
-    visible = int(np.count_nonzero(canvas.labels == OBJECT))
-    return Drawing(canvas, visible / whole if whole else 0.0)
+    window = window_around(intrinsics, placed.vertices)
+    return Drawing(canvas, _share_seen(window.cut(canvas), window, placed))
+
+
+def visible_fraction(
+    room: Canvas,
+    intrinsics: Intrinsics,
+    figure: Figure,
+    body_in_camera: Body,
+    frame: int,
+    object_surface: Surface,
+    camera_from_object: Transform,
+) -> float:
+    """What draw_frame would say, but only the part of the image that holds the object is drawn."""
+    placed = object_surface.moved(camera_from_object)
+    window = window_around(intrinsics, placed.vertices)
+    canvas = window.cut(room).copy()
+    _draw_silhouette(canvas, window.intrinsics, figure.posed(body_in_camera, frame), PERSON)
+    _draw_silhouette(canvas, window.intrinsics, placed, OBJECT)
+    return _share_seen(canvas, window, placed)
 
 
 def object_surface(model: ObjectModel) -> Surface:
@@ -78,3 +94,18 @@ def _draw_surface(canvas: Canvas, intrinsics: Intrinsics, surface: Surface, labe
         lit(surface.normals, surface.colours),
         label,
     )
+
+
+def _draw_silhouette(canvas: Canvas, intrinsics: Intrinsics, surface: Surface, label: int) -> None:
+    """Draw a surface without light: what it hides, and not how it looks."""
+    vertices = surface.vertices.astype(np.float32)
+    draw(canvas, intrinsics, vertices, surface.faces, surface.colours, label)
+
+
+def _share_seen(canvas: Canvas, window: Window, placed: Surface) -> float:
+    """The share of the object's pixels in a window that are its own on the canvas; 0 of none."""
+    alone = Canvas.blank(window.intrinsics)
+    _draw_silhouette(alone, window.intrinsics, placed, OBJECT)
+    whole = int(np.count_nonzero(alone.labels))
+    visible = int(np.count_nonzero(canvas.labels == OBJECT))
+    return visible / whole if whole else 0.0

@@ -1,15 +1,18 @@
 """A simulation told in messages."""
 
 import numpy as np
-from inhand_schemas.messages import CameraInfo, JointState, ObjectPose, Person
+from inhand_schemas.messages import CameraInfo, Contact, JointState, ObjectPose, Person, Vector3
 from inhand_tracker.conversion import pose_message
-from inhand_tracker.shape import ObjectShape, Symmetry
+from inhand_tracker.shape import ObjectShape
+from numpy.typing import NDArray
 
 from inhand_lab.objects.model import ObjectModel
 from inhand_lab.rasteriser import Intrinsics
 from inhand_lab.world import Simulation
 
 JOINT_STATES: tuple[JointState, ...] = ("missing", "inferred", "tracked")
+CONTACTS: tuple[Contact, ...] = ("resting", "right_hand", "left_hand", "both_hands", "worn")
+"""In the order of the world's numbers."""
 
 
 def camera_info(intrinsics: Intrinsics, frame_rate: float, time_ns: int = 0) -> CameraInfo:
@@ -45,9 +48,15 @@ def person_message(simulation: Simulation, frame: int) -> Person:
 
 
 def label_message(
-    simulation: Simulation, frame: int, *, sequence: int, time_ns: int, camera: str
+    simulation: Simulation,
+    frame: int,
+    *,
+    sequence: int,
+    time_ns: int,
+    camera: str,
+    visible_fraction: float | None = None,
 ) -> ObjectPose:
-    """The object's true pose in one frame."""
+    """The truth of one frame; how much of the object is visible is for the caller to find out."""
     return ObjectPose(
         sequence=sequence,
         time_ns=time_ns,
@@ -59,6 +68,9 @@ def label_message(
         camera_from_object=pose_message(
             simulation.translations[frame], simulation.rotations[frame]
         ),
+        visible_fraction=visible_fraction,
+        contact=CONTACTS[simulation.contact[frame]],
+        person_joints=_triples(simulation.true_joints_in_camera[frame]),
     )
 
 
@@ -70,5 +82,9 @@ def shape_of(model: ObjectModel) -> ObjectShape:
         model.faces,
         model.marked_vertices,
         np.array(model.mirror_normal),
-        tuple(Symmetry(axis) for axis in model.symmetries),
+        model.symmetries,
     )
+
+
+def _triples(joints: NDArray[np.float64]) -> tuple[Vector3, ...]:
+    return tuple((x, y, z) for x, y, z in joints.tolist())

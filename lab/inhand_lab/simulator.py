@@ -4,7 +4,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from inhand_runtime.settings import Section
 from inhand_runtime.settings_errors import explain
@@ -12,7 +12,7 @@ from inhand_runtime.source import Captured, Pixels, SourceError
 from inhand_schemas.messages import CameraInfo
 from pydantic import AfterValidator, Field, ValidationError
 
-from inhand_lab.rasteriser import KINECT
+from inhand_lab.cameras import CAMERAS
 from inhand_lab.simulated_messages import camera_info, label_message, person_message
 from inhand_lab.world import INTERACTIONS, Frame, Simulation, simulate
 
@@ -36,6 +36,7 @@ class SimulatorOptions(Section):
     """
 
     interaction: Annotated[str, AfterValidator(_known)] = "drinkFromMug"
+    camera: Literal["kinect", "oak_d"] = "kinect"
     participant: Annotated[int, Field(ge=0)] = 0
     seed: Annotated[int, Field(ge=0)] = 0
     frames: Annotated[int, Field(ge=1)] = 360
@@ -57,7 +58,7 @@ class SimulatorSource:
     @property
     def info(self) -> CameraInfo:
         """How the simulated camera sees."""
-        return camera_info(KINECT, self._options.frame_rate)
+        return camera_info(self._first.intrinsics, self._options.frame_rate)
 
     def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured]:
         """Frames when they are due, rendered before that if pixels are wanted."""
@@ -97,7 +98,8 @@ class SimulatorSource:
             options.seed,
             options.frames,
             options.frame_rate,
-            performance=performance,
+            CAMERAS[options.camera],
+            performance,
         )
         simulation.prepare()
         return simulation
@@ -108,5 +110,12 @@ def _captured(simulation: Simulation, frame: int, time_ns: int, ready: Frame | N
         seen = ready or simulation.render(frame)
         return Pixels(seen.colour, seen.depth)
 
-    label = label_message(simulation, frame, sequence=0, time_ns=time_ns, camera=CAMERA)
+    label = label_message(
+        simulation,
+        frame,
+        sequence=0,
+        time_ns=time_ns,
+        camera=CAMERA,
+        visible_fraction=ready.visible_fraction if ready else None,
+    )
     return Captured(time_ns, 0, pixels, (person_message(simulation, frame),), (label,))

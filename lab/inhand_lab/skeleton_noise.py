@@ -1,9 +1,9 @@
 """What a skeleton tracker makes of true joints.
 
-Errors are slow, as the tracker's own filter leaves them: a second-order Ornstein-Uhlenbeck process
-per joint, larger towards the hands and feet and in fast motion. Where the body hides a joint from
-the camera the tracker guesses: the error is larger and the joint is called inferred. In the eight
-people of UTD-MHAD bones vary by 3 % (trunk, legs) to 8 % (arms) and the hand by 36 %.
+It errs as skeleton_errors tells, guesses what the body hides from the camera, calls that inferred,
+and smooths all of it with tracker_filter. The sizes of errors are those of the eight people of
+UTD-MHAD, who were filmed by a Kinect (`inhand simulate --realism` prints both side by side). Their
+recordings hold no confidences and no losses; what is assumed of these stands here.
 """
 
 from __future__ import annotations
@@ -15,33 +15,45 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from inhand_lab.figure import LIMBS
+from inhand_lab.joints import PARENTS, Joint
 from inhand_lab.person import Person
+from inhand_lab.skeleton_errors import (
+    inherited,
+    lose_wrists,
+    misread_ends,
+    mistake,
+    speeds,
+    wander,
+)
+from inhand_lab.tracker_filter import smooth
 from inhand_lab.transforms import Floats
 
 MISSING, INFERRED, TRACKED = 0, 1, 2
 
-DEVIATIONS = 1e-3 * np.array(
-    [8, 8, 9, 9, 12, 16, 18, 22, 12, 16, 18, 22, 10, 13, 14, 18, 10, 13, 14, 18], float
-)
-"""Deviation of a tracked joint's error along each axis, metres, in the order of Joint."""
-
-MEMORY = 0.35
-"""Correlation time of errors, seconds."""
-SMOOTHING = 0.08
-"""Time constant of the tracker's own filter, seconds."""
-WHITE = 0.0006
-GUESS_FACTOR = 3.5
+SEEN_SHARE = {
+    Joint.HAND_LEFT: 0.85,
+    Joint.HAND_RIGHT: 0.85,
+    Joint.FOOT_LEFT: 0.5,
+    Joint.FOOT_RIGHT: 0.5,
+}
+"""Where on its bone a Kinect puts the end: short of the palm, and on the instep."""
+GUESS_FACTOR = 2.0
 """How much larger the error of an inferred joint is."""
+HESITATION = 0.08
+"""Time constant, seconds, of going over from seeing to guessing."""
 CLEARANCE = 0.05
 """A limb hides a joint only from at least this far in front of it, metres."""
-FAST = 1.2
-"""Speed of a joint, metres a second, at which its error has doubled."""
+SECONDS_BETWEEN_LOSSES, SECONDS_LOST = 120.0, 0.25
+"""How rarely the whole person is lost, and for how long, on average."""
 
 
 @dataclass(frozen=True)
 class SkeletonReading:
     """What the tracker says: joints (T, 20, 3) in metres, states (T, 20) as MISSING, INFERRED or
-    TRACKED, confidences (T, 20) in [0, 1], which know of the error but not all."""
+    TRACKED, confidences (T, 20) in [0, 1], which know of the error but not all.
+
+    Where the person is lost all joints are MISSING, without confidence, and as last seen.
+    """
 
     joints: Floats
     states: NDArray[np.uint8]
@@ -52,17 +64,41 @@ def read_skeleton(
     person: Person, true_joints: Floats, frame_rate: float, random: np.random.Generator
 ) -> SkeletonReading:
     """The tracker's reading of joints (T, 20, 3) in the camera's frame."""
-    shape = true_joints.shape
-    hidden = _soften(hidden_joints(person, true_joints), frame_rate)
-    travelled = np.diff(true_joints, axis=0, prepend=true_joints[:1])
-    speed = np.linalg.norm(travelled, axis=2) * frame_rate
-    size = DEVIATIONS * (1.0 + speed / FAST) * (1.0 + (GUESS_FACTOR - 1.0) * hidden)
-    error = size[..., None] * _wander(random, shape, frame_rate)
-    joints = true_joints + error + WHITE * random.normal(size=shape)
-    states = np.where(hidden > 0.5, INFERRED, TRACKED).astype(np.uint8)
-    surprise = np.linalg.norm(error, axis=2) / (3.0 * DEVIATIONS * np.sqrt(3.0))
-    opinion = 0.95 - 0.45 * hidden - 0.25 * surprise + 0.06 * random.normal(size=shape[:2])
-    return SkeletonReading(joints, states, np.clip(opinion, 0.05, 1.0))
+    seen = true_joints.copy()
+    for end, share in SEEN_SHARE.items():
+        root = true_joints[:, PARENTS[end]]
+        seen[:, end] = root + share * (true_joints[:, end] - root)
+    speed = speeds(seen, frame_rate)
+    guessed = _soften(hidden_joints(person, true_joints), frame_rate)
+    widened = 1.0 + (GUESS_FACTOR - 1.0) * guessed
+    error = mistake(person.appearance, seen) + wander(random, speed, frame_rate)
+    raw = seen + widened[..., None] * inherited(error)
+    raw = misread_ends(random, raw, speed, frame_rate)
+    raw = lose_wrists(random, raw, speed, frame_rate)
+    joints = smooth(raw, guessed)
+    states = np.where(guessed > 0.5, INFERRED, TRACKED).astype(np.uint8)
+    confidences = _opinion(random, np.linalg.norm(joints - seen, axis=2), guessed)
+    last_seen = _last_seen(random, len(joints), frame_rate)
+    lost = last_seen < np.arange(len(joints))
+    states[lost], confidences[lost] = MISSING, 0.0
+    return SkeletonReading(joints[last_seen], states, confidences)
+
+
+def _opinion(random: np.random.Generator, error: Floats, guessed: Floats) -> Floats:
+    """Confidences (T, 20) by a tracker that has an inkling of its errors (T, 20), in metres."""
+    surprise = np.minimum(error / 0.12, 1.0)
+    opinion = 0.95 - 0.40 * guessed - 0.35 * surprise + 0.08 * random.normal(size=error.shape)
+    return np.clip(opinion, 0.05, 1.0)
+
+
+def _last_seen(random: np.random.Generator, count: int, frame_rate: float) -> NDArray[np.int64]:
+    """For each frame the last one (T,) in which the person was not lost; never lost at first."""
+    losses = random.random(count) < 1.0 / (SECONDS_BETWEEN_LOSSES * frame_rate)
+    lost = np.zeros(count, bool)
+    for start in np.flatnonzero(losses):
+        length = 1 + random.geometric(1.0 / (SECONDS_LOST * frame_rate))
+        lost[max(start, 1) : start + length] = True
+    return np.maximum.accumulate(np.where(lost, 0, np.arange(count)))
 
 
 def hidden_joints(person: Person, joints: Floats) -> NDArray[np.bool_]:
@@ -102,17 +138,7 @@ def _crosses(joints: Floats, start: Floats, end: Floats, radius: float) -> NDArr
 
 def _soften(hidden: NDArray[np.bool_], frame_rate: float) -> Floats:
     """How far (T, 20), 0 to 1, the tracker has gone over from seeing to guessing."""
-    kept = np.exp(-1.0 / (frame_rate * SMOOTHING))
+    kept = np.exp(-1.0 / (frame_rate * HESITATION))
     values = hidden.astype(float)
     softened, _ = lfilter([1.0 - kept], [1.0, -kept], values, axis=0, zi=kept * values[:1])
     return np.asarray(softened)
-
-
-def _wander(random: np.random.Generator, shape: tuple[int, ...], frame_rate: float) -> Floats:
-    """A second-order Ornstein-Uhlenbeck process along the first axis, of unit deviation."""
-    slow, fast = (np.exp(-1.0 / (frame_rate * constant)) for constant in (MEMORY, SMOOTHING))
-    first, second = slow + fast, -slow * fast
-    variance = (1.0 - second) / ((1.0 + second) * ((1.0 - second) ** 2 - first**2))
-    settling = int(6.0 * MEMORY * frame_rate)
-    pushes = random.normal(size=(settling + shape[0], *shape[1:])) / np.sqrt(variance)
-    return np.asarray(lfilter([1.0], [1.0, -first, -second], pushes, axis=0)[settling:])

@@ -9,23 +9,33 @@ frame = simulation.render(100)         # what the camera sees
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from inhand_lab.cameras import KINECT, Camera
 from inhand_lab.figure import Figure, build_figure
 from inhand_lab.kinematics import Body, place_body
+from inhand_lab.motion_blur import blurred, scene_in_motion
 from inhand_lab.motions import INTERACTIONS as PERFORMED
 from inhand_lab.motions.furniture import Box
 from inhand_lab.motions.performance import Contact
+from inhand_lab.noise_fields import any_place
 from inhand_lab.objects.model import ObjectModel
 from inhand_lab.person import Person, sample_person
-from inhand_lab.rasteriser import KINECT, Canvas, Intrinsics
-from inhand_lab.render import Drawing, draw_frame, draw_room, object_surface
+from inhand_lab.rasteriser import Canvas, Intrinsics
+from inhand_lab.render import (
+    OBJECT,
+    Drawing,
+    draw_frame,
+    draw_room,
+    object_surface,
+    visible_fraction,
+)
 from inhand_lab.room import build_room
-from inhand_lab.sensor import sense
+from inhand_lab.sensor import brightness, sense
 from inhand_lab.skeleton_noise import read_skeleton
 from inhand_lab.surfaces import Surface
 from inhand_lab.transforms import Floats, Transform, normalised, quaternions, rotation_about
@@ -71,7 +81,7 @@ class Simulation:
     frame_rate: float
     person: Person
     object_model: ObjectModel
-    intrinsics: Intrinsics
+    camera: Camera
     joints_in_camera: Floats
     joint_states: NDArray[np.uint8]
     joint_confidences: Floats
@@ -81,6 +91,11 @@ class Simulation:
     camera_from_world: Transform
     facing: float
     furniture: tuple[Box, ...]
+
+    @property
+    def intrinsics(self) -> Intrinsics:
+        """The camera's."""
+        return self.camera.intrinsics
 
     @property
     def frames(self) -> int:
@@ -118,15 +133,50 @@ class Simulation:
             self.camera_from_object[frame],
         )
 
+    def visible_fraction(self, frame: int) -> float:
+        """The share of the object's pixels that nothing hides, quicker than by drawing it all."""
+        return visible_fraction(
+            self._room,
+            self.intrinsics,
+            self._figure,
+            self.body_in_camera,
+            frame,
+            self._object_surface,
+            self.camera_from_object[frame],
+        )
+
     def render(self, frame: int) -> Frame:
         """The frame as the sensor sees it; the same whenever and however often it is asked for."""
         drawing = self.draw(frame)
         random = self._random("pixels", self.performance, frame)
-        colour, depth = sense(drawing.canvas, self.intrinsics, random)
+        scene = scene_in_motion(
+            self._figure,
+            self.body_in_camera,
+            self._object_surface,
+            self.camera_from_object,
+            frame,
+            self.camera.exposure * self.frame_rate,
+        )
+        colour, depth = sense(
+            replace(
+                drawing.canvas,
+                colour=blurred(drawing.canvas, self._room, self.intrinsics, scene),
+            ),
+            self.camera,
+            random,
+            gains=self._gains[frame],
+            unseen=0 if self.object_model.returns_depth else OBJECT,
+            lasting=any_place(self._random("sensor")),
+        )
         return Frame(colour, depth, drawing.visible_fraction)
 
     def _random(self, purpose: str, *more: int) -> np.random.Generator:
         return _random(self.seed, self.participant, self.interaction, purpose, *more)
+
+    @cached_property
+    def _gains(self) -> Floats:
+        times = np.arange(self.frames) / self.frame_rate
+        return brightness(times, self._random("brightness", self.performance))
 
     @cached_property
     def _room(self) -> Canvas:
@@ -148,7 +198,7 @@ def simulate(
     seed: int,
     frames: int = 360,
     frame_rate: float = 30.0,
-    intrinsics: Intrinsics = KINECT,
+    camera: Camera = KINECT,
     performance: int = 0,
 ) -> Simulation:
     """Somebody's performance of an interaction; raises ValueError for one nobody knows.
@@ -173,7 +223,7 @@ def simulate(
         contact = MIRRORED_CONTACT[contact]
         furniture = tuple(box.mirrored() for box in furniture)
     facing, camera_from_world = _place_camera(
-        person, intrinsics, _random(seed, participant, interaction, "camera")
+        person, camera.intrinsics, _random(seed, participant, interaction, "camera")
     )
     shown = slice(0, frames)
     body_in_camera = body[shown].seen_from(camera_from_world)
@@ -191,7 +241,7 @@ def simulate(
         frame_rate,
         person,
         doing.object_model(),
-        intrinsics,
+        camera,
         reading.joints,
         reading.states,
         reading.confidences,

@@ -52,6 +52,7 @@ ColourCodec = Literal["jpeg", "rgb8"]
 DepthCodec = Literal["z16", "z16-zstd"]
 JointState = Literal["missing", "inferred", "tracked"]
 PoseState = Literal["tracked", "predicted", "lost"]
+Contact = Literal["resting", "right_hand", "left_hand", "both_hands", "worn"]
 ServiceState = Literal["starting", "running", "degraded", "stopping"]
 
 UNIT_TOLERANCE = 1e-3
@@ -188,6 +189,10 @@ class ObjectPose(Message, frozen=True, kw_only=True):
 
     ``covariance`` is 6 × 6, row by row, of (translation in the camera frame, rotation vector
     applied on the left), in metres and radians. A lost object has no pose.
+
+    A simulated world's truth says more on ``label``: ``visible_fraction``, the share of the
+    object's pixels that nothing hides, 0 where it is out of the image; ``contact``, what carries
+    it; and ``person_joints``, where the person's 20 joints truly are, in the camera frame.
     """
 
     object: Name
@@ -200,6 +205,9 @@ class ObjectPose(Message, frozen=True, kw_only=True):
     covariance: Annotated[tuple[float, ...], Meta(min_length=36, max_length=36)] | None = None
     box: Box | None = None
     class_probabilities: Annotated[dict[Name, Fraction], Meta(max_length=1024)] = {}
+    visible_fraction: Fraction | None = None
+    contact: Contact | None = None
+    person_joints: Annotated[tuple[Vector3, ...], Meta(min_length=20, max_length=20)] | None = None
 
     def __post_init__(self) -> None:
         if self.camera_from_object is None and self.state != "lost":
@@ -207,6 +215,10 @@ class ObjectPose(Message, frozen=True, kw_only=True):
         _require_finite("confidence", (self.confidence, *self.class_probabilities.values()))
         if self.covariance is not None:
             _require_finite("covariance", self.covariance)
+        if self.visible_fraction is not None:
+            _require_finite("visible fraction", (self.visible_fraction,))
+        for joint in self.person_joints or ():
+            _require_finite("joint", joint)
 
 
 class Event(Message, frozen=True, kw_only=True):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inhand_lab.dataset import Dataset, Entry, load_dataset, load_frames
-from inhand_lab.evaluation import track_recording
+from inhand_lab.observations import track_recording
 from inhand_lab.training import train
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import read_recording
@@ -76,7 +76,7 @@ def assert_live_equals_offline(rig: RunningRig, dataset: Dataset, tested: Entry)
     tracker = Tracker(
         model, METHODS[DEFAULT_METHOD], left_handed=tested.handedness == "left", seed=SEED
     )
-    offline = list(track_recording(tracker, dataset.path(tested), frames, images=False))
+    offline = list(track_recording(tracker, dataset.path(tested), frames))
     assert [pose.time_ns for pose in live] == [frame.time_ns for frame in frames]
     for pose, estimate in zip(live, offline, strict=True):
         assert pose.camera_from_object is not None

@@ -1,15 +1,14 @@
-"""Pictures: what is drawn where, and what the sensor makes of it."""
+"""Pictures: what is drawn where."""
 
 import cv2
 import numpy as np
 import pytest
 from inhand_lab.rasteriser import KINECT, Canvas, draw
 from inhand_lab.render import OBJECT, PERSON, Drawing
-from inhand_lab.sensor import sense
 from inhand_lab.surfaces import Surface, ellipsoid, limb
 from inhand_lab.transforms import Transform
-from inhand_lab.world import INTERACTIONS, Simulation, simulate
-from numpy.typing import NDArray
+from inhand_lab.world import INTERACTIONS, simulate
+from silhouettes import silhouette
 
 RED, BLUE = (200, 0, 0), (0, 0, 200)
 
@@ -20,30 +19,6 @@ def drawn(*surfaces: Surface) -> Canvas:
         vertices = surface.vertices.astype(np.float32)
         draw(canvas, KINECT, vertices, surface.faces, surface.colours, label)
     return canvas
-
-
-def wall(distance: float) -> Canvas:
-    canvas = Canvas.blank(KINECT)
-    canvas.inverse_depth[:] = 1.0 / distance
-    canvas.colour[:] = 120
-    return canvas
-
-
-def object_alone(simulation: Simulation, frame: int) -> NDArray[np.bool_]:
-    """The object's pixels by OpenCV: filled 32 times finer, then taken at pixel centres."""
-    finer = 32
-    pose = simulation.camera_from_object[frame]
-    points = simulation.object_model.vertices @ pose.rotation.T + pose.translation
-    pixels = points[:, :2] / points[:, 2:] * KINECT.fx + (KINECT.cx, KINECT.cy)
-    corner = np.floor(pixels.min(axis=0)).astype(int) - 2
-    width, height = np.ceil(pixels.max(axis=0)).astype(int) + 2 - corner
-    fine = np.zeros((height * finer, width * finer), np.uint8)
-    for triangle in pixels[simulation.object_model.faces]:
-        cv2.fillConvexPoly(fine, np.rint((triangle - corner) * finer).astype(np.int32), 1)
-    mask = np.zeros((KINECT.height + 400, KINECT.width + 400), bool)
-    top, left = corner[1] + 200, corner[0] + 200
-    mask[top : top + height, left : left + width] = fine[::finer, ::finer] > 0
-    return mask[200:-200, 200:-200]
 
 
 def test_depth_is_the_distance_along_the_optical_axis() -> None:
@@ -88,7 +63,7 @@ def test_the_drawn_object_covers_what_its_projection_covers(interaction: str) ->
         drawing = simulation.draw(0)
         if drawing.visible_fraction < 1.0:
             continue
-        expected, found = object_alone(simulation, 0), drawing.object_mask
+        expected, found = silhouette(simulation, 0), drawing.object_mask
         overlap = np.count_nonzero(expected & found) / np.count_nonzero(expected | found)
         assert overlap >= 0.95
 
@@ -117,35 +92,3 @@ def test_the_depth_of_the_object_is_its_geometry(interaction: str) -> None:
     z = simulation.object_model.vertices @ pose.rotation[2] + pose.translation[2]
     assert depth.min() >= z.min() - 1e-3
     assert depth.max() <= z.max() + 1e-3
-
-
-def test_depth_steps_and_noise_grow_with_the_distance() -> None:
-    deviations, steps = [], []
-    for distance in (1.0, 2.0, 4.0):
-        _, depth = sense(wall(distance), KINECT, np.random.default_rng(0))
-        measured = depth[depth > 0].astype(float)
-        assert measured.mean() == pytest.approx(1000 * distance, rel=0.005)
-        deviations.append(measured.std())
-        steps.append(np.diff(np.unique(measured)).max())
-    assert deviations[0] < deviations[1] < deviations[2]
-    assert steps == pytest.approx([3.0, 12.0, 46.0], rel=0.2)
-
-
-def test_the_projector_leaves_a_shadow_to_the_left_of_a_near_thing() -> None:
-    canvas = wall(4.0)
-    canvas.inverse_depth[200:280, 300:340] = 1.0 / 1.5
-    _, depth = sense(canvas, KINECT, np.random.default_rng(0))
-    width = 525 * 0.075 * (1 / 1.5 - 1 / 4.0)
-    assert (depth[210:270, 301 - int(width) : 298] == 0).mean() > 0.9
-    assert (depth[210:270, 345:360] == 0).mean() < 0.05
-
-
-def test_nothing_is_measured_beyond_the_range() -> None:
-    for distance in (0.3, 12.0):
-        assert not sense(wall(distance), KINECT, np.random.default_rng(0))[1].any()
-
-
-def test_colour_noise_has_no_bias() -> None:
-    colour, _ = sense(wall(2.0), KINECT, np.random.default_rng(0))
-    assert colour.mean() == pytest.approx(120.0, abs=0.2)
-    assert 3.0 < colour.std() < 7.0

@@ -69,6 +69,9 @@ EXAMPLES: tuple[Message, ...] = (
         covariance=tuple(float(i // 6 == i % 6) for i in range(36)),
         box=Box(10.5, 20.25, 30.0, 40.0),
         class_probabilities={"mug": 0.75, "glasses": 0.25},
+        visible_fraction=0.75,
+        contact="right_hand",
+        person_joints=PERSON.joints,
     ),
     Event(
         sequence=7,
@@ -97,3 +100,23 @@ EXAMPLES: tuple[Message, ...] = (
         last_error="none yet",
     ),
 )
+
+TRUTH = ObjectPose(
+    sequence=9,
+    time_ns=TIME_NS,
+    object="mug",
+    camera="kitchen",
+    state="tracked",
+    confidence=1.0,
+    person=3,
+    camera_from_object=POSE,
+    visible_fraction=0.75,
+    contact="right_hand",
+    person_joints=PERSON.joints,
+)
+
+GOLDEN_MESSAGES: dict[str, Message] = {
+    **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
+    "ObjectPose.v1.truth": TRUTH,
+}
+"""By the stem of their golden files: one of each type, and one more for fields it grew by."""

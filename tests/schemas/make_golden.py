@@ -6,7 +6,7 @@ Golden bytes are what old recordings hold, so they must decode for ever.
 from pathlib import Path
 
 import msgspec
-from examples import EXAMPLES
+from examples import GOLDEN_MESSAGES
 
 GOLDEN = Path(__file__).parent / "golden"
 
@@ -14,8 +14,7 @@ GOLDEN = Path(__file__).parent / "golden"
 def main(folder: Path) -> None:
     """Write the missing files of each example into ``folder``, and say so."""
     folder.mkdir(exist_ok=True)
-    for message in EXAMPLES:
-        stem = f"{type(message).__name__}.v1"
+    for stem, message in GOLDEN_MESSAGES.items():
         readable = msgspec.json.format(msgspec.json.encode(message), indent=2) + b"\n"
         for suffix, data in ((".msgpack", msgspec.msgpack.encode(message)), (".json", readable)):
             path = folder / (stem + suffix)

@@ -111,6 +111,9 @@ _estimates = {
     "covariance": st.none() | st.lists(finite, min_size=36, max_size=36).map(tuple),
     "box": st.none() | boxes,
     "class_probabilities": st.dictionaries(names, fractions, max_size=5),
+    "visible_fraction": st.none() | fractions,
+    "contact": st.sampled_from([None, "resting", "right_hand", "left_hand", "both_hands", "worn"]),
+    "person_joints": st.none() | _twenty(vectors),
 }
 object_poses = st.one_of(
     st.builds(

@@ -98,6 +98,11 @@ EXAMPLE = {type(message): message for message in EXAMPLES}
         {"box": {"left": 0, "top": 0, "width": -1, "height": 1}},
         {"class_probabilities": {"mug": 2}},
         {"class_probabilities": {"No Name": 0.5}},
+        {"visible_fraction": 1.5},
+        {"visible_fraction": math.nan},
+        {"contact": "foot"},
+        {"person_joints": [[0, 0, 1]] * 19},
+        {"person_joints": [[0, 0, math.inf]] * 20},
     ],
     ids=str,
 )

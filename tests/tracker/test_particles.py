@@ -199,7 +199,7 @@ def redrawn(name: str) -> Particles:
     random = np.random.default_rng(1)
     particles = replace(all_at(120), translation_parts=np.full(COUNT, 18))
     particles = replace(particles, rotation_parts=np.full(COUNT, 17))
-    return redraw(particles, mapping, BodyPoseIndex(mapping), NEAREST, METHODS[name], random)
+    return redraw(particles, drawn(name), mixing_fractions(mapping, NEAREST), random)
 
 
 def test_alpha_and_beta_are_the_shares_that_are_redrawn_independently() -> None:
@@ -226,15 +226,8 @@ def test_what_is_redrawn_takes_frame_and_part_together_and_the_rest_stays() -> N
 
 @pytest.mark.parametrize(("variation", "share"), [(0.0, 1.0), (1e3, 0.0)])
 def test_sure_moments_redraw_all_and_doubtful_ones_none(variation: float, share: float) -> None:
-    mapping = make_mapping(variation, variation)
-    particles = redraw(
-        all_at(120),
-        mapping,
-        BodyPoseIndex(mapping),
-        NEAREST,
-        METHODS["gd-hand"],
-        np.random.default_rng(2),
-    )
+    fractions = mixing_fractions(make_mapping(variation, variation), NEAREST)
+    particles = redraw(all_at(120), drawn("gd-hand"), fractions, np.random.default_rng(2))
     assert np.mean(particles.rotation_frames < 100) == share
     assert np.mean(particles.translation_frames < 100) == share
 
@@ -335,7 +328,5 @@ def test_one_particle_is_enough() -> None:
     index = BodyPoseIndex(mapping)
     one = draw(1, mapping, index, NEAREST, METHODS["gd-random"], random)
     one = one.take(systematic_resample(np.ones(1), random))
-    one = redraw(
-        propagate(one, mapping, random), mapping, index, NEAREST, METHODS["gd-random"], random
-    )
+    one = redraw(propagate(one, mapping, random), one, (0.5, 0.5), random)
     assert one.translation_frames.shape == (1,)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.estimate import Estimate
+from inhand_tracker.image import Image
 from inhand_tracker.learning import LabelledSequence, learn
 from inhand_tracker.methods import METHODS
 from inhand_tracker.model_file import Model
-from inhand_tracker.tracking import Image, Tracker
+from inhand_tracker.tracking import Tracker
 from people import (
     FRAME_NS,
     HAND,
@@ -312,7 +313,7 @@ def test_small_models_track(kind: str, method: str) -> None:
         assert np.linalg.norm(estimate.translation - STANDING[HAND]) < 0.8
 
 
-@pytest.mark.parametrize("size", [1e-2, 1e3])
+@pytest.mark.parametrize("size", [1e-2, 1e2])
 def test_dolls_and_giants_are_tracked(size: float) -> None:
     for estimate in tracked("gd-stable-proximate", size * unseen_person(4)):
         assert_proper(estimate)

@@ -11,8 +11,9 @@ from inhand_tracker.viewpoints import (
     BOUNDARY_POINTS,
     MARGIN,
     RASTER,
-    BoundaryProjector,
     Viewpoints,
+    VisiblePoints,
+    find_surfaces,
     find_viewpoints,
 )
 from people import quaternion_of, wedge
@@ -43,6 +44,14 @@ def views_of(name: str) -> tuple[ObjectShape, Viewpoints]:
     }
     shape = wedge() if name == "wedge" else shape_of(meshes[name]())
     return shape, find_viewpoints(shape)
+
+
+def project(
+    views: Viewpoints, translations: np.ndarray, orientations: np.ndarray, camera: Intrinsics
+) -> np.ndarray:
+    """Pixels of the boundaries of object poses."""
+    seen = VisiblePoints(views.directions, views.boundaries)
+    return camera.project(seen.place(translations, orientations))
 
 
 def flat(direction: np.ndarray) -> np.ndarray:
@@ -182,7 +191,7 @@ def test_projected_boundaries_lie_on_the_silhouette_in_the_image() -> None:
     random = np.random.default_rng(4)
     turns = Rotation.random(40, rng=random)
     shifts = random.uniform([-0.4, -0.3, 1.5], [0.4, 0.3, 3.0], (40, 3))
-    pixels = BoundaryProjector(views).project(shifts, quaternion_of(turns), CAMERA)
+    pixels = project(views, shifts, quaternion_of(turns), CAMERA)
     assert pixels.shape == (40, BOUNDARY_POINTS, 2)
     for turn, shift, points in zip(turns, shifts, pixels, strict=True):
         placed = turn.apply(shape.vertices) + shift
@@ -198,15 +207,13 @@ def test_the_viewers_side_is_projected_whatever_the_quaternions_sign() -> None:
     _, views = views_of("wedge")
     turn = quaternion_of(Rotation.from_rotvec([0.3, 0.2, 0.1]))
     both = np.array([turn, -turn])
-    pixels = BoundaryProjector(views).project(np.tile([0.1, 0.0, 2.0], (2, 1)), both, CAMERA)
+    pixels = project(views, np.tile([0.1, 0.0, 2.0], (2, 1)), both, CAMERA)
     np.testing.assert_allclose(pixels[0], pixels[1])
 
 
 def test_objects_behind_the_camera_or_on_it_have_no_pixels() -> None:
     _, views = views_of("wedge")
     upright = np.tile([1.0, 0.0, 0.0, 0.0], (2, 1))
-    pixels = BoundaryProjector(views).project(
-        np.array([[0.0, 0.0, -2.0], [0.0, 0.0, 0.0]]), upright, CAMERA
-    )
+    pixels = project(views, np.array([[0.0, 0.0, -2.0], [0.0, 0.0, 0.0]]), upright, CAMERA)
     assert np.isnan(pixels[0]).all()
     assert np.isnan(pixels[1]).any()

@@ -21,10 +21,10 @@ class Box:
         return Box((-x, y, z), self.size, self.colour)
 
 
-def side_table(x: float, y: float, height: float) -> tuple[Box, ...]:
-    """A small table on one leg, its top 40 cm square and at that height."""
+def side_table(x: float, y: float, height: float, width: float = 0.40) -> tuple[Box, ...]:
+    """A small table on one leg, its top 40 cm deep, of that width in metres and at that height."""
     return (
-        Box((x, y, height - 0.015), (0.40, 0.40, 0.03), WOOD),
+        Box((x, y, height - 0.015), (width, 0.40, 0.03), WOOD),
         Box((x, y, 0.5 * height), (0.06, 0.06, height - 0.06), WOOD),
         Box((x, y, 0.015), (0.30, 0.30, 0.03), WOOD),
     )

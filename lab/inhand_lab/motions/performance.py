@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from inhand_lab.kinematics import Posture, Trunk
 from inhand_lab.motions.furniture import Box
-from inhand_lab.motions.timeline import drift
+from inhand_lab.motions.timeline import drift, minimum_jerk
 from inhand_lab.person import Person, hip_height
 from inhand_lab.transforms import (
     MIRROR,
@@ -53,7 +53,8 @@ class Stance:
 
     The feet (T, 3) are the soles under the ankles; heading (T,) is the body's turn to the left in
     radians; shift (T, 3) moves the hips from the middle of the feet, in metres; the angles (T, 3)
-    are those of Posture.
+    are those of Posture. foot_turns (T, 2) are the right and the left foot's turns to the left,
+    where they differ from the heading.
     """
 
     right_foot: Floats
@@ -62,6 +63,7 @@ class Stance:
     shift: Floats
     trunk_angles: Floats
     head_angles: Floats
+    foot_turns: Floats | None = None
 
 
 STANCE_HALF_WIDTH = 0.09
@@ -74,6 +76,13 @@ def feet_apart(count: int, half_width: float = STANCE_HALF_WIDTH) -> tuple[Float
     """Right and left soles (T, 3) side by side on the floor."""
     right = np.tile([half_width, 0.0, 0.0], (count, 1))
     return right, right * MIRROR
+
+
+def step(times: Floats, start: float, end: float, way: Floats) -> Floats:
+    """One foot's displacement (T, 3) by a step of way (2,) metres over the floor."""
+    share = minimum_jerk((times - start) / (end - start))
+    lift = 0.6 * float(np.linalg.norm(way)) * 4.0 * share * (1.0 - share)
+    return np.concatenate([share[:, None] * way, lift[:, None]], axis=1)
 
 
 def contacts(times: Floats, changes: list[tuple[float, Contact]]) -> NDArray[np.uint8]:
@@ -101,25 +110,26 @@ def stand(person: Person, times: Floats, random: np.random.Generator, stance: St
     hips[:, 2] = stance.shift[:, 2] + _hip_reach(person, hips, heading, stance) + body.hip_drop
     pelvis = heading @ rotation_about("xz", -0.5 * trunk[:, 0], 0.3 * trunk[:, 2])
     trunk = trunk * np.array([0.5, 1.0, 0.7])
+    feet = stance.heading[:, None] if stance.foot_turns is None else stance.foot_turns
     return Posture(
         Transform(hips, pelvis),
         trunk,
         head,
-        Transform(stance.right_foot, rotation_about("z", stance.heading - TOES_OUT)),
-        Transform(stance.left_foot, rotation_about("z", stance.heading + TOES_OUT)),
+        Transform(stance.right_foot, rotation_about("z", feet[:, 0] - TOES_OUT)),
+        Transform(stance.left_foot, rotation_about("z", feet[:, -1] + TOES_OUT)),
     )
 
 
 def _hip_reach(person: Person, hips: Floats, heading: Floats, stance: Stance) -> Floats:
-    """Height (T,) of the hip joints above the floor at which the further leg is nearly straight."""
+    """Height (T,) of the hip joints above the floor at which the first leg is nearly straight."""
     body = person.proportions
     length = EASY_KNEES * (hip_height(body) - body.ankle)
     aside = heading[:, :, 0] * body.hip_half_width
-    spans = [
-        np.linalg.norm((hips + side * aside - foot)[:, :2], axis=1)
-        for side, foot in ((1.0, stance.right_foot), (-1.0, stance.left_foot))
-    ]
-    return np.asarray(body.ankle + np.sqrt(length**2 - np.maximum(*spans) ** 2))
+    heights = []
+    for side, foot in ((1.0, stance.right_foot), (-1.0, stance.left_foot)):
+        span = np.linalg.norm((hips + side * aside - foot)[:, :2], axis=1)
+        heights.append(foot[:, 2] + np.sqrt(length**2 - span**2))
+    return np.asarray(body.ankle + np.minimum(*heights))
 
 
 def hanging_hands(

@@ -15,6 +15,7 @@ from inhand_lab.motions.performance import (
     feet_apart,
     hanging_hands,
     stand,
+    step,
 )
 from inhand_lab.motions.timeline import (
     Key,
@@ -167,17 +168,10 @@ def _stance(
         elif stage.repetition % 2 == 1:
             there = random.uniform((-0.12, 0.0), (0.08, 0.12))
         middle = 0.5 * (stage.start + stage.end)
-        right_foot += _step(times, stage.start, middle, there - here)
-        left_foot += _step(times, middle, stage.end, there - here)
+        right_foot += step(times, stage.start, middle, there - here)
+        left_foot += step(times, middle, stage.end, there - here)
         here = there
     return Stance(right_foot, left_foot, np.zeros(count), shift, trunk, head)
-
-
-def _step(times: Floats, start: float, end: float, way: Floats) -> Floats:
-    """One foot's displacement (T, 3) by a step of way (2,) metres over the floor."""
-    share = minimum_jerk((times - start) / (end - start))
-    lift = 0.6 * float(np.linalg.norm(way)) * 4.0 * share * (1.0 - share)
-    return np.concatenate([share[:, None] * way, lift[:, None]], axis=1)
 
 
 def _lean_on_cupboard(random: np.random.Generator) -> tuple[tuple[Box, ...], Transform]:

@@ -11,6 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
 
 from inhand_lab.person import Person
 from inhand_lab.transforms import Floats, Transform, blend
@@ -121,6 +122,17 @@ def track(times: Floats, keys: Sequence[tuple[float, float]]) -> Floats:
     for (start, first), (end, second) in pairwise(keys):
         values += (second - first) * minimum_jerk((times - start) / (end - start))
     return values
+
+
+def flow(times: Floats, knots: Sequence[tuple[float, ArrayLike]]) -> Floats:
+    """Values (T, K) through knots (time, values (K,)) in order of time, without a halt at each.
+
+    Every value rests only where it turns back or stays, and does not overshoot (Fritsch & Butland,
+    1984); before the first knot and after the last it is as there.
+    """
+    at = np.array([time for time, _ in knots])
+    values = np.array([value for _, value in knots], float)
+    return np.asarray(PchipInterpolator(at, values)(np.clip(times, at[0], at[-1])))
 
 
 @dataclass(frozen=True)

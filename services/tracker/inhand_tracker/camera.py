@@ -41,6 +41,11 @@ class Intrinsics:
             plane = np.where(depth > NEAREST_M, points[..., :2] / depth, np.nan)
         return plane * [self.fx, self.fy] + [self.cx, self.cy]
 
+    def unproject(self, pixels: Array, depths: Array) -> Array:
+        """Points (N, 3) in the camera frame at pixels (N, 2) with depths (N,) in metres."""
+        across = (pixels - [self.cx, self.cy]) / [self.fx, self.fy]
+        return np.column_stack((across * depths[:, None], depths))
+
 
 def intrinsics_of(info: CameraInfo) -> Intrinsics:
     """The pinhole part of a camera's description."""

@@ -1,24 +1,44 @@
 """Messages to arrays and back."""
 
+from collections.abc import Collection
+
 import numpy as np
-from inhand_schemas.messages import Box, ObjectPose, Person, Pose
+from inhand_runtime.pixels import decode_depth, decode_grey
+from inhand_schemas.messages import Box, CameraInfo, ObjectPose, Person, Pose, RgbdFrame
 from numpy.typing import NDArray
 
 from inhand_tracker import rotations
-from inhand_tracker.camera import Intrinsics
+from inhand_tracker.body import without_impossible
+from inhand_tracker.camera import Intrinsics, intrinsics_of
 from inhand_tracker.estimate import Estimate
+from inhand_tracker.image import Image
+from inhand_tracker.likelihood import Term
 
 Array = NDArray[np.float64]
-
-FARTHEST_M = 1000.0
 
 
 def joints_of(person: Person) -> Array:
     """The joints (20, 3) in the camera frame; missing ones are NaN, and those beyond any room."""
     joints = np.array(person.joints)
     joints[[state == "missing" for state in person.states]] = np.nan
-    joints[(np.abs(joints) > FARTHEST_M).any(axis=1)] = np.nan
-    return joints
+    return without_impossible(joints)
+
+
+def image_of(frame: RgbdFrame, info: CameraInfo, terms: Collection[Term]) -> Image | None:
+    """What terms of a likelihood need of a frame; None when it holds nothing of that.
+
+    Raises MessageError for damaged pixels.
+    """
+    colour = frame.colour if "edges" in terms else None
+    depth = frame.depth if "depth" in terms else None
+    size = colour or depth
+    if size is None:
+        return None
+    return Image(
+        None if colour is None else decode_grey(colour),
+        intrinsics_of(info).scaled_to(size.width, size.height),
+        None if depth is None else decode_depth(depth) * np.float32(info.depth_scale),
+    )
 
 
 def pose_message(translation: Array, rotation: Array) -> Pose:

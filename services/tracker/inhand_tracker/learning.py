@@ -5,12 +5,13 @@ variation is a good moment to re-initialise), and how stable and how close the o
 to each of the 19 parts.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.distance import cdist
 
 from inhand_tracker import rotations
 from inhand_tracker.body import (
@@ -22,11 +23,17 @@ from inhand_tracker.body import (
     pelvis_basis,
     standing_height,
 )
-from inhand_tracker.mapping import Mapping
+from inhand_tracker.mapping import Indices, Mapping
+from inhand_tracker.measures import Measures, RelativePoses, measure
+from inhand_tracker.radii import cluster_radii
 
 Array = NDArray[np.float64]
 
-NEIGHBOUR_CHUNK = 2048
+Stage = Literal["relative poses", "cluster radii", "clusters"]
+STAGES: tuple[Stage, ...] = ("relative poses", "cluster radii", "clusters")
+"""What learning goes through, one after the other, each sequence by sequence."""
+
+PIECE = 8192
 
 
 @dataclass(frozen=True)
@@ -48,63 +55,64 @@ class UnusableSequenceError(ValueError):
     """A sequence, or a set of them, that nothing can be learned from."""
 
 
-def learn(sequences: Sequence[LabelledSequence], mirror_normal: Array) -> Mapping:
+def learn(
+    sequences: Sequence[LabelledSequence],
+    mirror_normal: Array,
+    on_sequence: Callable[[Stage], None] = lambda stage: None,
+) -> Mapping:
     """Learn a mapping; left-handed people are mirrored, so that every mapping is right-handed.
 
-    ``mirror_normal`` (3,) is the object's (``ObjectShape``). Raises UnusableSequenceError.
+    ``mirror_normal`` (3,) is the object's (``ObjectShape``); ``on_sequence`` is called when a
+    stage is done with a sequence. Raises UnusableSequenceError.
+
+    Time and memory grow with the number of frames. Exact up to 20,000 frames in sequences of up
+    to 2,048; beyond, radii and clusters come from a part of the frames (``cluster_radii``,
+    ``stretches``).
     """
     if len(sequences) < 2:
         raise UnusableSequenceError(
             f"learning compares sequences, and there is {len(sequences)}: two are the least"
         )
-    parts = [_relative_poses(sequence, mirror_normal) for sequence in sequences]
-    participants = [sequence.participant for sequence in sequences]
-    radii = [
-        _cluster_radius(index, [part.body_poses for part in parts], participants)
-        for index in range(len(parts))
-    ]
-    measures = [_measure(part, radius) for part, radius in zip(parts, radii, strict=True)]
-    lengths = [len(part.body_poses) for part in parts]
+    participants = tuple(sequence.participant for sequence in sequences)
+    poses, starts = _relative_poses(sequences, mirror_normal, on_sequence)
+    radii = cluster_radii(
+        poses.body_poses, starts, participants, lambda: on_sequence("cluster radii")
+    )
+    measures = _measures(poses, starts, radii, on_sequence)
     return Mapping(
-        participants=tuple(participants),
-        starts=np.concatenate(([0], np.cumsum(lengths))),
-        radii=np.array(radii),
-        body_poses=np.concatenate([part.body_poses for part in parts]),
-        translations=np.concatenate([part.translations for part in parts]),
-        rotations=np.concatenate([part.rotations for part in parts]),
-        translation_variation=np.concatenate([m.translation_variation for m in measures]),
-        rotation_variation=np.concatenate([m.rotation_variation for m in measures]),
-        stable_translation_part=np.concatenate([m.stable_translation_part for m in measures]),
-        stable_rotation_part=np.concatenate([m.stable_rotation_part for m in measures]),
-        proximate_part=np.concatenate([m.proximate_part for m in measures]),
+        participants=participants,
+        starts=starts,
+        radii=radii,
+        body_poses=poses.body_poses,
+        translations=poses.translations,
+        rotations=poses.rotations,
+        translation_variation=measures.translation_variation,
+        rotation_variation=measures.rotation_variation,
+        stable_translation_part=measures.stable_translation_part,
+        stable_rotation_part=measures.stable_rotation_part,
+        proximate_part=measures.proximate_part,
     )
 
 
-@dataclass(frozen=True)
-class _RelativePoses:
-    """TR1: ``body_poses`` (N, 60), the object relative to each part (N, 19, 3) and (N, 19, 4).
-
-    ``consecutive`` (N,) tells whether the next row is the next frame.
-    """
-
-    body_poses: Array
-    translations: Array
-    rotations: Array
-    consecutive: NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class _Measures:
-    """TR2 and TR3 of one sequence, each (N,)."""
-
-    translation_variation: Array
-    rotation_variation: Array
-    stable_translation_part: NDArray[np.int64]
-    stable_rotation_part: NDArray[np.int64]
-    proximate_part: NDArray[np.int64]
+def _relative_poses(
+    sequences: Sequence[LabelledSequence],
+    mirror_normal: Array,
+    on_sequence: Callable[[Stage], None],
+) -> tuple[RelativePoses, Indices]:
+    """TR1 of all usable frames, one sequence after the other, and the starts (S + 1,)."""
+    poses = RelativePoses.empty(sum(len(sequence.joints) for sequence in sequences))
+    starts, end = [0], 0
+    for sequence in sequences:
+        for piece in _pieces(sequence, mirror_normal):
+            start, end = end, end + len(piece.body_poses)
+            poses.put(slice(start, end), piece)
+        starts.append(end)
+        on_sequence("relative poses")
+    return poses.rows(slice(0, end)), np.array(starts)
 
 
-def _relative_poses(sequence: LabelledSequence, mirror_normal: Array) -> _RelativePoses:
+def _pieces(sequence: LabelledSequence, mirror_normal: Array) -> Iterator[RelativePoses]:
+    """TR1 of the usable frames of a sequence, in pieces that need little memory."""
     joints, translations = sequence.joints, sequence.translations
     with np.errstate(invalid="ignore", divide="ignore"):
         orientations = rotations.normalise(sequence.rotations)
@@ -126,67 +134,31 @@ def _relative_poses(sequence: LabelledSequence, mirror_normal: Array) -> _Relati
             f"a sequence of participant {sequence.participant!r} has {len(usable)} frames in "
             "which the whole body and the object's label are known: two are the least"
         )
-    pelvis = pelvis_basis(joints[usable])
-    bases = part_bases(joints[usable], pelvis)
-    relative_translations, relative_rotations = bases.from_camera(
-        translations[usable, None, :], orientations[usable, None, :]
-    )
-    return _RelativePoses(
-        poses[usable],
-        relative_translations / height,
-        relative_rotations,
-        np.append(np.diff(usable) == 1, False),
-    )
-
-
-def _cluster_radius(index: int, body_poses: list[Array], participants: list[str]) -> float:
-    """δ: the median distance to the nearest body pose of other participants (or recordings)."""
-    others = [
-        poses
-        for poses, participant in zip(body_poses, participants, strict=True)
-        if participant != participants[index]
-    ] or [poses for other, poses in enumerate(body_poses) if other != index]
-    nearest = np.full(len(body_poses[index]), np.inf)
-    for poses in others:
-        for start in range(0, len(poses), NEIGHBOUR_CHUNK):
-            distances = cdist(body_poses[index], poses[start : start + NEIGHBOUR_CHUNK])
-            np.minimum(nearest, distances.min(axis=1), out=nearest)
-    return float(np.median(nearest))
-
-
-def _measure(part: _RelativePoses, radius: float) -> _Measures:
-    frames = len(part.body_poses)
-    steps_translation = np.linalg.norm(np.diff(part.translations, axis=0), axis=-1)
-    steps_rotation = rotations.separation(part.rotations[:-1], part.rotations[1:])
-    has_step = part.consecutive[:-1]
-    distances = np.linalg.norm(part.translations, axis=-1)
-    variation = np.empty((2, frames))
-    best_parts = np.empty((3, frames), np.int64)
-    for frame in range(frames):
-        cluster = np.flatnonzero(
-            cdist(part.body_poses[frame : frame + 1], part.body_poses)[0] <= radius
+    consecutive = np.append(np.diff(usable) == 1, False)
+    for start in range(0, len(usable), PIECE):
+        frames = usable[start : start + PIECE]
+        bases = part_bases(joints[frames], pelvis_basis(joints[frames]))
+        relative_translations, relative_rotations = bases.from_camera(
+            translations[frames, None, :], orientations[frames, None, :]
         )
-        cluster = cluster if len(cluster) else np.array([frame])
-        variation[:, frame] = _variation(part.translations[cluster], part.rotations[cluster])
-        steps = cluster[cluster < frames - 1]
-        steps = steps[has_step[steps]]
-        if len(steps) == 0:
-            steps = np.array([min(frame, frames - 2)])
-        best_parts[:, frame] = (
-            np.argmin(steps_translation[steps].mean(axis=0)),
-            np.argmin(steps_rotation[steps].mean(axis=0)),
-            np.argmin(distances[cluster].mean(axis=0)),
+        yield RelativePoses(
+            poses[frames],
+            relative_translations / height,
+            relative_rotations,
+            consecutive[start : start + PIECE],
         )
-    return _Measures(*variation, *best_parts)
 
 
-def _variation(translations: Array, orientations: Array) -> tuple[float, float]:
-    """φᵉ and φᶿ of a cluster: medians over the parts of the mean squared deviation."""
-    offsets = translations - translations.mean(axis=0)
-    by_part = np.swapaxes(orientations, 0, 1)
-    centres = rotations.mean(by_part, np.ones(by_part.shape[:-1]))
-    turns = rotations.separation(by_part, centres[:, None, :])
-    return (
-        float(np.median(np.square(offsets).sum(axis=-1).mean(axis=0))),
-        float(np.median(np.square(turns).mean(axis=1))),
-    )
+def _measures(
+    poses: RelativePoses,
+    starts: Indices,
+    radii: Array,
+    on_sequence: Callable[[Stage], None],
+) -> Measures:
+    """TR2 and TR3 of all frames."""
+    measures = Measures.empty(len(poses.body_poses))
+    for (start, end), radius in zip(pairwise(starts), radii, strict=True):
+        for rows, of_stretch in measure(poses.rows(slice(start, end)), radius):
+            measures.put(slice(start + rows.start, start + rows.stop), of_stretch)
+        on_sequence("clusters")
+    return measures

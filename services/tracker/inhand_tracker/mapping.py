@@ -4,10 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
+from scipy.spatial.distance import cdist
+
+from inhand_tracker.pose_search import PoseSearch
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+
+LONGEST_STRETCH = 2048
 
 
 @dataclass(frozen=True)
@@ -37,23 +41,37 @@ class Mapping:
         return np.searchsorted(self.starts, frames, side="right") - 1
 
 
+def stretches(frames: int) -> Indices:
+    """Where the stretches of a sequence of so many frames begin, and its end, (K + 1,).
+
+    A frame's cluster is looked for in its own stretch: the whole sequence, up to 2,048 frames (68 s
+    at 30 Hz; the paper's have 360), and otherwise one of equal parts. So a cluster stays small
+    where somebody pauses for long, and is found as quickly in an hour as in a minute.
+    """
+    count = -(-frames // LONGEST_STRETCH)
+    return np.arange(count + 1) * frames // count
+
+
 class BodyPoseIndex:
     """Finds training frames of like body pose."""
 
     def __init__(self, mapping: Mapping) -> None:
         self._mapping = mapping
-        self._tree = KDTree(mapping.body_poses)
+        self._search = PoseSearch(mapping.body_poses)
 
     def nearest(self, pose: Array) -> tuple[int, float]:
         """The training frame whose body pose is nearest to ``pose`` (60,), and its distance."""
-        distance, frame = self._tree.query(pose)
-        return int(frame), float(distance)
+        frames, distances = self._search.nearest(pose[None])
+        return int(frames[0]), float(distances[0])
 
     def cluster(self, frame: int) -> Indices:
-        """C_n: the frames of the same sequence whose body pose lies within its δ; n is one."""
+        """C_n: the frames of the same stretch whose body pose lies within its δ; n is one."""
         mapping = self._mapping
         sequence = int(mapping.sequence_of(np.array(frame)))
         start, end = mapping.starts[sequence : sequence + 2]
-        offsets = mapping.body_poses[start:end] - mapping.body_poses[frame]
-        near = np.einsum("ij,ij->i", offsets, offsets) <= mapping.radii[sequence] ** 2
-        return start + np.flatnonzero(near)
+        cuts = start + stretches(end - start)
+        stretch = np.searchsorted(cuts, frame, side="right") - 1
+        first, last = cuts[stretch : stretch + 2]
+        poses = mapping.body_poses
+        near = cdist(poses[frame : frame + 1], poses[first:last])[0] <= mapping.radii[sequence]
+        return first + np.flatnonzero(near)

@@ -55,6 +55,8 @@ def save_model(model: Model, path: Path) -> None:
         "viewpoints.boundaries": model.viewpoints.boundaries,
         **{f"mapping.{name}": getattr(mapping, name) for name in _mapping_arrays()},
     }
+    if model.viewpoints.surfaces is not None:
+        arrays["viewpoints.surfaces"] = model.viewpoints.surfaces
     temporary = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -112,7 +114,11 @@ def _assemble(description: dict[str, Any], arrays: dict[str, Any]) -> Model:
         participants=tuple(description["participants"]),
         **{name: arrays[f"mapping.{name}"] for name in _mapping_arrays()},
     )
-    viewpoints = Viewpoints(arrays["viewpoints.directions"], arrays["viewpoints.boundaries"])
+    viewpoints = Viewpoints(
+        arrays["viewpoints.directions"],
+        arrays["viewpoints.boundaries"],
+        arrays.get("viewpoints.surfaces"),
+    )
     return Model(description["interaction"], shape, mapping, viewpoints)
 
 

@@ -73,16 +73,14 @@ def mixing_fractions(mapping: Mapping, frame: int) -> tuple[float, float]:
 
 def redraw(
     particles: Particles,
-    mapping: Mapping,
-    index: BodyPoseIndex,
-    nearest: int,
-    method: Method,
+    fresh: Particles,
+    fractions: tuple[float, float],
     random: np.random.Generator,
 ) -> Particles:
-    """The discriminative step: D2 with probability α, D3 independently with β (section 5.4)."""
-    alpha, beta = mixing_fractions(mapping, nearest)
+    """The discriminative step: of as many fresh particles, rotations are taken with probability α
+    (D2), and translations independently with β (D3, section 5.4)."""
+    alpha, beta = fractions
     count = len(particles.translation_frames)
-    fresh = draw(count, mapping, index, nearest, method, random)
     turn, move = random.random((2, count)) < np.array([[alpha], [beta]])
     return Particles(
         np.where(move, fresh.translation_frames, particles.translation_frames),
@@ -103,12 +101,9 @@ def draw(
     """Particles from the cluster of a training frame: D2 and D3 for all (section 5.4)."""
     cluster = index.cluster(nearest)
     translation_frames, rotation_frames = random.choice(cluster, (2, count))
-    translation_parts = _parts(
-        method.translation_part, mapping.stable_translation_part, mapping, nearest, count, random
-    )
-    rotation_parts = _parts(
-        method.rotation_part, mapping.stable_rotation_part, mapping, nearest, count, random
-    )
+    at_nearest = np.full(count, nearest)
+    translation_parts = translation_parts_at(at_nearest, mapping, method, random)
+    rotation_parts = rotation_parts_at(at_nearest, mapping, method, random)
     return Particles(translation_frames, rotation_frames, translation_parts, rotation_parts)
 
 
@@ -129,20 +124,31 @@ def _walk(
     return first + np.minimum(np.rint(local).astype(np.int64), end - first - 1)
 
 
-def _parts(
-    rule: PartRule,
-    stable: Indices,
-    mapping: Mapping,
-    nearest: int,
-    count: int,
-    random: np.random.Generator,
+def translation_parts_at(
+    frames: Indices, mapping: Mapping, method: Method, random: np.random.Generator
 ) -> Indices:
+    """l_T of each of P training frames, by the method."""
+    best = (
+        mapping.stable_translation_part
+        if method.translation_part == "stable"
+        else mapping.proximate_part
+    )
+    return _parts(method.translation_part, best, frames, random)
+
+
+def rotation_parts_at(
+    frames: Indices, mapping: Mapping, method: Method, random: np.random.Generator
+) -> Indices:
+    """l_R of each of P training frames, by the method."""
+    return _parts(method.rotation_part, mapping.stable_rotation_part, frames, random)
+
+
+def _parts(rule: PartRule, best: Indices, frames: Indices, random: np.random.Generator) -> Indices:
     if rule == "random":
-        return random.integers(len(PARTS), size=count)
+        return random.integers(len(PARTS), size=len(frames))
     if rule == "hand":
-        return np.full(count, RIGHT_HAND)
-    best = stable if rule == "stable" else mapping.proximate_part
-    return np.full(count, best[nearest])
+        return np.full(len(frames), RIGHT_HAND)
+    return best[frames]
 
 
 def _of_parts(bases: Bases, parts: Indices) -> Bases:

@@ -1,36 +1,31 @@
 """The tracker: predict, re-initialise, weigh, estimate (Darby et al. 2014, TE1 to TE5)."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Collection
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inhand_tracker import rotations
-from inhand_tracker.body import (
-    Bases,
-    RunningHeight,
-    body_pose,
-    has_pelvis,
-    mirror_joints,
-    mirror_pose,
-    part_bases,
-    pelvis_basis,
-)
+from inhand_tracker.body import mirror_pose
+from inhand_tracker.body_reader import Body, BodyReader
 from inhand_tracker.camera import Intrinsics
-from inhand_tracker.edges import chamfer_image, edge_log_weights
 from inhand_tracker.estimate import LOST, Estimate, normalised_weights, weighted_estimate
+from inhand_tracker.image import Image
+from inhand_tracker.likelihood import DEFAULT_TERMS, Likelihood, Term
 from inhand_tracker.mapping import BodyPoseIndex
 from inhand_tracker.methods import Method
 from inhand_tracker.model_file import Model
+from inhand_tracker.nothing_near import draw_broadly, farthest_near
 from inhand_tracker.particles import (
     ADVANCE,
     Particles,
     draw,
+    mixing_fractions,
     propagate,
     redraw,
     systematic_resample,
 )
-from inhand_tracker.viewpoints import BoundaryProjector
+from inhand_tracker.viewpoints import VisiblePoints
 
 Array = NDArray[np.float64]
 
@@ -39,23 +34,6 @@ GAP_NS = 500_000_000
 COASTING_NS = 1_000_000_000
 COASTING_SPEED = 0.5
 COASTING_TURN_RATE = 2.0
-
-
-@dataclass(frozen=True)
-class Image:
-    """A luminance image (H, W) and the camera that took it."""
-
-    grey: NDArray[np.uint8]
-    camera: Intrinsics
-
-
-@dataclass(frozen=True)
-class _Body:
-    """One frame's body, right-handed: b (60,), the 19 part predictors, and the height."""
-
-    pose: Array
-    parts: Bases
-    height: float
 
 
 class Tracker:
@@ -67,6 +45,7 @@ class Tracker:
         method: Method,
         *,
         left_handed: bool = False,
+        terms: Collection[Term] = DEFAULT_TERMS,
         particles: int = PARTICLES,
         seed: int = 0,
         advance: float = ADVANCE,
@@ -77,15 +56,17 @@ class Tracker:
         self._left_handed = left_handed
         self._count = particles
         self._advance = advance
+        self._seed = seed
         self._random = np.random.default_rng(seed)
         self._index = BodyPoseIndex(model.mapping)
-        self._projector = BoundaryProjector(model.viewpoints)
+        self._farthest_near = farthest_near(model.mapping) if method.falls_back else np.inf
+        self._likelihood = Likelihood(model, terms)
+        self._outline = VisiblePoints(model.viewpoints.directions, model.viewpoints.boundaries)
         self.restart()
 
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""
-        self._height = RunningHeight()
-        self._known_pose = self._mapping.body_poses.mean(axis=0).reshape(20, 3)
+        self._reader = self._new_reader()
         self._particles: Particles | None = None
         self._weights = np.full(self._count, 1.0 / self._count)
         self._estimate = LOST
@@ -97,63 +78,72 @@ class Tracker:
         Missing joints are NaN. Without an image the particles weigh the same. While the body is
         not seen the last pose stands for a second, as predicted; then the object is lost.
         """
-        body = None if joints is None else self._observe(joints)
+        body = None if joints is None else self._reader.read(joints)
         if body is None:
             return self._coast(time_ns)
-        nearest, _ = self._index.nearest(body.pose)
-        if self._particles is None or not 0 < time_ns - self._time_ns <= GAP_NS:
-            particles = draw(
-                self._count, self._mapping, self._index, nearest, self._method, self._random
-            )
-        else:
-            particles = self._predict(self._particles)
-            if self._method.reinitialises:
-                particles = redraw(
-                    particles, self._mapping, self._index, nearest, self._method, self._random
-                )
-        translations, orientations = self._poses(particles, body)
-        self._weights = self._weigh(translations, orientations, image)
-        self._particles = particles
-        self._time_ns = time_ns
-        self._estimate = weighted_estimate(translations, orientations, self._weights)
+        particles = self._reinitialise(self._predict(time_ns), body)
+        translations, orientations = self._place(particles, body)
+        weights = self._weigh(translations, orientations, image)
+        self._particles, self._weights, self._time_ns = particles, weights, time_ns
+        self._estimate = weighted_estimate(translations, orientations, weights)
         return self._estimate
+
+    def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
+        """The object's pose in a frame by itself: every particle is discriminative (section 7).
+
+        ``joints`` (20, 3) as in ``step``; what is tracked is neither used nor changed.
+        """
+        body = self._new_reader().read(joints)
+        if body is None:
+            return LOST
+        random = np.random.default_rng(self._seed)
+        fresh = self._draw(body, *self._index.nearest(body.pose), random)
+        translations, orientations = self._place(fresh, body)
+        weights = self._weigh(translations, orientations, image)
+        return weighted_estimate(translations, orientations, weights)
 
     def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:
         """Pixels (B, 2) of the boundary of the object at an estimate; None for a lost one."""
         if estimate.translation is None or estimate.rotation is None:
             return None
-        return self._projector.project(estimate.translation[None], estimate.rotation[None], camera)[
-            0
-        ]
+        points = self._outline.place(estimate.translation[None], estimate.rotation[None])
+        return camera.project(points[0])
 
-    def _observe(self, joints: Array) -> _Body | None:
-        if not has_pelvis(joints):
-            return None
-        if self._left_handed:
-            joints = mirror_joints(joints)
-        height = self._height.update(joints)
-        if not np.isfinite(height):
-            return None
-        pelvis = pelvis_basis(joints)
-        seen = body_pose(joints, pelvis, height).reshape(20, 3)
-        self._known_pose = np.where(np.isfinite(seen), seen, self._known_pose)
-        filled = pelvis.origins + height * rotations.rotate(pelvis.rotations, self._known_pose)
-        complete = np.where(np.isfinite(joints), joints, filled)
-        return _Body(self._known_pose.reshape(60), part_bases(complete, pelvis), height)
+    def _new_reader(self) -> BodyReader:
+        return BodyReader(self._mapping, left_handed=self._left_handed)
 
-    def _predict(self, particles: Particles) -> Particles:
-        survivors = particles.take(systematic_resample(self._weights, self._random))
+    def _predict(self, time_ns: int) -> Particles | None:
+        """The particles a frame on; None at first and after a gap."""
+        if self._particles is None or not 0 < time_ns - self._time_ns <= GAP_NS:
+            return None
+        survivors = self._particles.take(systematic_resample(self._weights, self._random))
         return propagate(survivors, self._mapping, self._random, self._advance)
 
-    def _poses(self, particles: Particles, body: _Body) -> tuple[Array, Array]:
+    def _reinitialise(self, particles: Particles | None, body: Body) -> Particles:
+        if particles is not None and not self._method.reinitialises:
+            return particles
+        nearest, distance = self._index.nearest(body.pose)
+        fresh = self._draw(body, nearest, distance, self._random)
+        if particles is None:
+            return fresh
+        return redraw(particles, fresh, mixing_fractions(self._mapping, nearest), self._random)
+
+    def _draw(
+        self, body: Body, nearest: int, distance: float, random: np.random.Generator
+    ) -> Particles:
+        if distance > self._farthest_near:
+            return draw_broadly(self._count, self._mapping, body.pose, self._method, random)
+        return draw(self._count, self._mapping, self._index, nearest, self._method, random)
+
+    def _place(self, particles: Particles, body: Body) -> tuple[Array, Array]:
+        """The particles' poses in the camera frame, (P, 3) and (P, 4)."""
         poses = particles.poses(self._mapping, body.parts, body.height)
         return mirror_pose(*poses, self._mirror_normal) if self._left_handed else poses
 
     def _weigh(self, translations: Array, orientations: Array, image: Image | None) -> Array:
         if image is None:
             return np.full(self._count, 1.0 / self._count)
-        pixels = self._projector.project(translations, orientations, image.camera)
-        return normalised_weights(edge_log_weights(chamfer_image(image.grey), pixels))
+        return normalised_weights(self._likelihood.log_weights(translations, orientations, image))
 
     def _coast(self, time_ns: int) -> Estimate:
         unseen_ns = time_ns - self._time_ns

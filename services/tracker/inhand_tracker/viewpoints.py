@@ -1,8 +1,8 @@
-"""Visible boundaries of an object, precomputed for directions all around it.
+"""Visible boundaries and surfaces of an object, precomputed for directions all around it.
 
-The boundary of a projected object hardly depends on more than the direction that it is seen from.
-So its points are found once a direction, and a hypothesis costs a look-up and some projections
-(the sparse viewpoint model of contour trackers, Stoiber et al. 2020).
+What is seen of an object hardly depends on more than the direction that it is seen from. So its
+points are found once a direction, and a hypothesis costs a look-up and some projections (the
+sparse viewpoint model of contour trackers, Stoiber et al. 2020).
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from inhand_tracker import rotations
-from inhand_tracker.camera import Intrinsics
 from inhand_tracker.raster import nearest_depths
 from inhand_tracker.shape import ObjectShape
 
@@ -22,6 +21,7 @@ Array = NDArray[np.float64]
 
 SUBDIVISIONS = 3
 BOUNDARY_POINTS = 50
+SURFACE_POINTS = 50
 RASTER = 160
 MARGIN = 4
 
@@ -31,54 +31,104 @@ class Viewpoints:
     """``directions`` (V, 3), unit, from the object to the viewer, in the object's frame.
 
     ``boundaries`` (V, B, 3): equally spaced points of the visible boundary in the object's frame.
+    ``surfaces`` (V, S, 3): evenly spaced points of the surface that is seen (what faces away or is
+    hidden is left out); None in models of older releases.
     """
 
     directions: Array
     boundaries: Array
+    surfaces: Array | None = None
 
 
 def find_viewpoints(shape: ObjectShape) -> Viewpoints:
-    """The boundaries of a shape from 642 directions."""
+    """The boundaries and surfaces of a shape from 642 directions."""
     directions = np.asarray(trimesh.creation.icosphere(SUBDIVISIONS).vertices, float)
     directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    return Viewpoints(directions, np.array([_boundary(shape, view) for view in directions]))
+    views = [_view(shape, direction) for direction in directions]
+    return Viewpoints(
+        directions,
+        np.array([_boundary(view) for view in views]),
+        np.array([_surface(view) for view in views]),
+    )
 
 
-class BoundaryProjector:
-    """Projects the boundary points of many hypotheses at once."""
+def find_surfaces(shape: ObjectShape, directions: Array) -> Array:
+    """``Viewpoints.surfaces`` for given directions (V, 3)."""
+    return np.array([_surface(_view(shape, direction)) for direction in directions])
 
-    def __init__(self, viewpoints: Viewpoints) -> None:
-        self._boundaries = viewpoints.boundaries
-        self._tree = KDTree(viewpoints.directions)
 
-    def project(self, translations: Array, orientations: Array, camera: Intrinsics) -> Array:
-        """Pixels (P, B, 2) of object poses (P, 3) and (P, 4); NaN behind the camera."""
+class VisiblePoints:
+    """The points that are seen of many hypotheses at once.
+
+    ``directions`` (V, 3) are those of ``Viewpoints``, ``points`` (V, B, 3) one of its arrays.
+    """
+
+    def __init__(self, directions: Array, points: Array) -> None:
+        self._points = points
+        self._tree = KDTree(directions)
+
+    def place(self, translations: Array, orientations: Array) -> Array:
+        """Points (P, B, 3) in the camera frame of object poses (P, 3) and (P, 4)."""
         towards_viewer = rotations.rotate(rotations.conjugate(orientations), -translations)
         length = np.linalg.norm(towards_viewer, axis=1, keepdims=True)
         _, views = self._tree.query(towards_viewer / np.maximum(length, 1e-9))
-        matrices = rotations.to_matrix(orientations)
-        points = np.einsum("pij,pbj->pbi", matrices, self._boundaries[views])
-        return camera.project(points + translations[:, None, :])
+        turns = np.swapaxes(rotations.to_matrix(orientations), -1, -2)
+        return self._points[views] @ turns + translations[:, None, :]
 
 
-def _boundary(shape: ObjectShape, view: Array) -> Array:
-    """Equally spaced boundary points (B, 3) seen along one direction, from far away."""
-    axes = _view_axes(view)
+@dataclass(frozen=True)
+class _View:
+    """A shape seen along one direction from far away, as a raster of ``depths`` (infinite where
+    nothing is seen); ``axes`` are rows right, down and forwards."""
+
+    axes: Array
+    low: Array
+    scale: float
+    depths: Array
+    centre: Array
+
+    def points(self, pixels: Array) -> Array:
+        """The seen points (B, 3) at pixels (B, 2), in the object's frame."""
+        column, row = np.rint(pixels).astype(int).T
+        across = (pixels - MARGIN) / self.scale + self.low
+        placed: Array = np.column_stack((across, self.depths[row, column])) @ self.axes
+        return placed
+
+
+def _view(shape: ObjectShape, direction: Array) -> _View:
+    axes = _view_axes(direction)
     seen = shape.vertices @ axes.T
     low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
     scale = (RASTER - 1 - 2 * MARGIN) / max((high - low).max(), 1e-9)
     pixels = (seen[:, :2] - low) * scale + MARGIN
     depths = nearest_depths(pixels, seen[:, 2], shape.faces, RASTER)
-    mask = np.isfinite(depths).astype(np.uint8)
+    return _View(axes, low, scale, depths, shape.vertices.mean(axis=0))
+
+
+def _boundary(view: _View) -> Array:
+    """Equally spaced boundary points (B, 3)."""
+    mask = np.isfinite(view.depths).astype(np.uint8)
     contours, _ = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     around = [contour[:, 0, :].astype(float) for contour in contours]
     if all(len(contour) == 1 for contour in around):
-        return np.repeat(shape.vertices.mean(axis=0)[None], BOUNDARY_POINTS, axis=0)
-    chosen = _equally_spaced(around)
-    column, row = np.rint(chosen).astype(int).T
-    in_view = np.column_stack(((chosen - MARGIN) / scale + low, depths[row, column]))
-    points: Array = in_view @ axes
-    return points
+        return np.repeat(view.centre[None], BOUNDARY_POINTS, axis=0)
+    return view.points(_equally_spaced(around))
+
+
+def _surface(view: _View) -> Array:
+    """Evenly spaced points (S, 3) of what is seen: steps along a curve that fills the raster."""
+    row, column = np.nonzero(np.isfinite(view.depths))
+    along = np.argsort(_z_order(column, row))
+    chosen = along[((np.arange(SURFACE_POINTS) + 0.5) * len(along) / SURFACE_POINTS).astype(int)]
+    return view.points(np.column_stack((column, row))[chosen].astype(float))
+
+
+def _z_order(column: NDArray[np.int64], row: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Places on Morton's curve: neighbours on it are neighbours in the raster."""
+    place = np.zeros_like(column)
+    for bit in range(RASTER.bit_length()):
+        place |= ((column >> bit) & 1) << (2 * bit) | ((row >> bit) & 1) << (2 * bit + 1)
+    return place
 
 
 def _equally_spaced(contours: list[Array]) -> Array:

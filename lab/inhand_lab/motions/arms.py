@@ -1,0 +1,44 @@
+"""What arms can reach."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from inhand_lab.kinematics import Trunk
+from inhand_lab.person import Person
+from inhand_lab.transforms import Floats, Transform
+
+STRETCH = 0.99
+"""Furthest distance of shoulder and wrist as a share of the arm's length."""
+ROUNDS = 8
+
+
+def overreach(person: Person, shoulder: Floats, hand: Transform) -> Floats:
+    """How (T, 3), in metres, a hand (T) must move for its wrist to come within reach."""
+    body = person.proportions
+    wrist = hand.translation - hand.rotation[:, :, 1] * body.palm
+    offset = shoulder - wrist
+    distance = np.linalg.norm(offset, axis=1, keepdims=True)
+    excess = np.clip(distance - STRETCH * (body.upper_arm + body.forearm), 0.0, None)
+    return np.asarray(offset * (excess / distance))
+
+
+def within_both_reaches(
+    person: Person,
+    trunk: Trunk,
+    held: Transform,
+    right_grip: Transform,
+    left_grip: Transform,
+) -> Transform:
+    """A thing held with both hands (T), moved no further than both arms need to reach it.
+
+    The grips are object_from_hand (T).
+    """
+    for _ in range(ROUNDS):
+        for shoulder, grip in (
+            (trunk.right_shoulder, right_grip),
+            (trunk.left_shoulder, left_grip),
+        ):
+            shift = overreach(person, shoulder, held @ grip)
+            held = Transform(held.translation + shift, held.rotation)
+    return held

@@ -1,0 +1,230 @@
+"""hitGolfBall: take a golf club that leans on a rack, swing it at a ball, lean it back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from inhand_lab.grips import hold_bar
+from inhand_lab.kinematics import BALL_HEIGHT, Posture, Trunk, place_trunk
+from inhand_lab.motions.arms import within_both_reaches
+from inhand_lab.motions.furniture import WOOD, Box
+from inhand_lab.motions.golf_swing import Swing, plan_swings
+from inhand_lab.motions.performance import (
+    TOES_OUT,
+    Contact,
+    Performance,
+    Stance,
+    contacts,
+    feet_apart,
+    hanging_hands,
+    stand,
+)
+from inhand_lab.motions.reaching import named
+from inhand_lab.motions.timeline import Key, Movement, Pause, drift, follow, schedule
+from inhand_lab.objects.golf_club import SOLE, golf_club
+from inhand_lab.person import Person
+from inhand_lab.transforms import Floats, Transform, normalised, rotation_about
+
+OPENING = (
+    Pause("wait", 0.3),
+    Movement("reach", 0.8),
+    Movement("grasp", 0.2),
+    Movement("take", 1.0),
+)
+USE = (
+    Movement("waggle", 0.65),
+    Pause("settle", 0.35),
+    Movement("swing", 1.65),
+    Pause("finish", 0.5),
+    Movement("recover", 0.80),
+)
+CLOSING = (
+    Movement("return", 0.90),
+    Movement("release", 0.2),
+    Movement("withdraw", 0.8),
+    Pause("wait", 0.3),
+)
+
+HALF_STANCE = 0.12
+"""Of the feet's distance from each other, in statures."""
+SPINE_ASIDE = np.radians(13.0)
+"""Tilt of the spine away from the target, by its lean, for the right hand is the lower one."""
+ARM_PLANE = np.radians(17.0)
+"""Lean of the arms' plane from the vertical."""
+STEEPEST = np.radians(68.0)
+OBLIQUE = (np.radians(45.0), np.radians(40.0))
+"""Of the grip across the right and the left palm; the right one is more in the fingers."""
+HANDS_APART = 0.09
+NECK_TURN = np.radians(65.0)
+FOOT_TURN = 0.6
+"""Turn of the right foot to the left as its heel is lifted, by the lift."""
+
+RACK_PLACE = np.array([0.35, 0.46])
+"""Where the sole of the club is, metres."""
+LEAN, ROLL = np.radians((30.0, -45.0))
+"""Of the club on the rack."""
+RACK_HEIGHT, RACK_DEPTH = 0.45, 0.11
+
+
+def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+    """Golf at these times, in seconds from the start; the target is at the left."""
+    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
+    swing = plan_swings(person, times, random, stages)
+    posture = _posture(person, times, random, swing)
+    trunk = place_trunk(person, posture)
+    rack, leaning = _lean_on_rack(random)
+    right_grip, left_grip = _grips(person, times, random)
+    waggle = int(np.searchsorted(times, named(stages, "waggle").start))
+    swung = _swing_club(person, trunk, swing, address=waggle)
+    swung = _above_floor(within_both_reaches(person, trunk, swung, right_grip, left_grip))
+    rest = leaning.repeated(len(times))
+    take, back = named(stages, "take"), named(stages, "return")
+    carried = follow(
+        times,
+        [
+            Key(take.start, rest),
+            Key(take.end, swung, bow=(0.0, 0.0, 0.08)),
+            Key(back.start, swung),
+            Key(back.end, rest, bow=(0.0, 0.0, 0.08)),
+        ],
+    )
+    right_rest, left_rest = hanging_hands(person, trunk, random)
+    reach, withdraw = named(stages, "reach"), named(stages, "withdraw")
+    right_held, left_held = carried @ right_grip, carried @ left_grip
+    right_hand = follow(
+        times,
+        [
+            Key(reach.start, right_rest),
+            Key(reach.end, right_held, bow=(0.06, 0.0, 0.10)),
+            Key(withdraw.start, right_held),
+            Key(withdraw.end, right_rest, bow=(0.06, 0.0, 0.10)),
+        ],
+    )
+    joined = take.start + 0.9 * (take.end - take.start)
+    left_hand = follow(
+        times,
+        [
+            Key(take.start, left_rest),
+            Key(joined, left_held, bow=(-0.05, 0.12, 0.0)),
+            Key(back.start, left_held),
+            Key(back.start + 0.8 * (back.end - back.start), left_rest, bow=(-0.05, 0.12, 0.0)),
+        ],
+    )
+    changes = [
+        (0.0, Contact.RESTING),
+        (named(stages, "grasp").end, Contact.RIGHT_HAND),
+        (joined, Contact.BOTH_HANDS),
+        (back.start, Contact.RIGHT_HAND),
+        (named(stages, "release").start, Contact.RESTING),
+    ]
+    return Performance(posture, right_hand, left_hand, carried, contacts(times, changes), rack)
+
+
+def _posture(person: Person, times: Floats, random: np.random.Generator, swing: Swing) -> Posture:
+    """Hips and shoulders turning about a spine that leans to the ball; eyes on the ball.
+
+    The right heel comes off the floor as the weight goes to the left foot.
+    """
+    count = len(times)
+    right_foot, left_foot = feet_apart(count, HALF_STANCE * person.height)
+    pivoted = _pivot(person, right_foot, swing.heel)
+    shift = np.stack([person.height * swing.slide, np.zeros(count), np.full(count, -0.015)], axis=1)
+    leaning = np.stack([swing.lean, np.zeros(count), np.zeros(count)], axis=1)
+    shift[:, :2] -= 0.5 * (pivoted.translation - right_foot)[:, :2]
+    stance = Stance(
+        pivoted.translation, left_foot, np.zeros(count), shift, leaning, np.zeros((count, 3))
+    )
+    posture = stand(person, times, random, stance)
+    lean = swing.lean + person.manner.stoop + drift(times, random, 0.01, 4.0)
+    aside = rotation_about("y", SPINE_ASIDE * np.minimum(swing.lean, 1.0))
+    pelvis = rotation_about("zx", swing.pelvis, -0.5 * lean)
+    chest = aside @ rotation_about("zx", swing.chest, -lean)
+    gaze = np.clip(1.5 * swing.gaze, swing.chest - NECK_TURN, swing.chest + NECK_TURN)
+    head = rotation_about("zx", gaze, -1.5 * lean * (1.0 - 0.5 * swing.gaze))
+    return replace(
+        posture,
+        world_from_pelvis=Transform(posture.world_from_pelvis.translation, pelvis),
+        trunk_angles=_angles(pelvis, chest) * (-1.0, 1.0, 1.0),
+        head_angles=_angles(chest, head),
+        world_from_right_foot=pivoted,
+    )
+
+
+def _angles(world_from_one: Floats, world_from_other: Floats) -> Floats:
+    """The other's turns (T, 3) about the one's x, y and z axes."""
+    between = np.swapaxes(world_from_one, 1, 2) @ world_from_other
+    return Rotation.from_matrix(between).as_euler("yxz")[:, [1, 0, 2]]
+
+
+def _pivot(person: Person, sole: Floats, heel: Floats) -> Transform:
+    """The right foot, world_from_foot (T), its heel lifted by an angle (T,) over the ball."""
+    ball = np.array([0.0, person.proportions.foot, BALL_HEIGHT])
+    flat = rotation_about("z", -TOES_OUT)
+    turned = rotation_about("xz", -heel, FOOT_TURN * heel - TOES_OUT)
+    return Transform(sole + flat @ ball - turned @ ball, turned)
+
+
+def _lean_on_rack(random: np.random.Generator) -> tuple[tuple[Box, ...], Transform]:
+    """A low rack at the right, and the club leaning on its front edge, world_from_object."""
+    x, head = RACK_PLACE + random.normal(0.0, 0.015, 2)
+    rotation = rotation_about("x", LEAN) @ rotation_about("z", ROLL)
+    lowest = (golf_club().vertices @ rotation.T)[:, 2].min()
+    place = np.array([x, head, 0.0]) - rotation @ [0.0, 0.0, SOLE]
+    place[2] = -lowest
+    up_to_edge = (RACK_HEIGHT - place[2]) / np.cos(LEAN)
+    edge = float(place[1] - up_to_edge * np.sin(LEAN)) - 0.008
+    centre = (float(x), edge - 0.5 * RACK_DEPTH, 0.5 * RACK_HEIGHT)
+    return (Box(centre, (RACK_DEPTH, RACK_DEPTH, RACK_HEIGHT), WOOD),), Transform(place, rotation)
+
+
+def _grips(
+    person: Person, times: Floats, random: np.random.Generator
+) -> tuple[Transform, Transform]:
+    """The right and the left hand, object_from_hand (T): thumbs down the shaft, left hand above."""
+    right, left = (
+        hold_bar(
+            person,
+            times,
+            random,
+            np.array([0.0, 0.0, along]),
+            np.diag([1.0, -1.0, -1.0]) @ rotation_about("x", oblique),
+        )
+        for along, oblique in zip((-0.5 * HANDS_APART, 0.5 * HANDS_APART), OBLIQUE, strict=True)
+    )
+    return right, left.mirrored()
+
+
+def _swing_club(person: Person, trunk: Trunk, swing: Swing, address: int) -> Transform:
+    """The club, world_from_object (T), its face turning with the left forearm.
+
+    The club's plane is as steep as brings the head to the floor in the frame of the address.
+    """
+    body = person.proportions
+    arm = body.upper_arm + body.forearm + body.palm
+    shoulders = trunk.world_from_chest.translation
+    hands = shoulders + arm * (
+        swing.reach[:, None] * _in_plane(swing.arms, 0.5 * np.pi - ARM_PLANE)
+        + swing.inside[:, None] * np.array([0.0, -np.cos(ARM_PLANE), -np.sin(ARM_PLANE)])
+    )
+    lowest = hands[address, 2]
+    steep = np.clip(np.arcsin(np.clip(lowest / -SOLE, -1.0, 1.0)), 0.0, STEEPEST)
+    shaft = _in_plane(swing.club, float(steep))
+    forearm = hands - trunk.left_shoulder
+    across = normalised(forearm - shaft * np.sum(forearm * shaft, axis=1, keepdims=True))
+    return Transform(hands, np.stack([np.cross(across, shaft), -across, -shaft], axis=2))
+
+
+def _in_plane(angle: Floats, steepness: float) -> Floats:
+    """Directions (T, 3) in a plane that rises towards the player, from down to the right."""
+    up = np.array([0.0, -np.cos(steepness), np.sin(steepness)])
+    return np.sin(angle)[:, None] * np.array([1.0, 0.0, 0.0]) - np.cos(angle)[:, None] * up
+
+
+def _above_floor(club: Transform) -> Transform:
+    """The club lifted where it would go into the floor."""
+    heights = np.einsum("tj,vj->tv", club.rotation[:, 2], golf_club().vertices).min(axis=1)
+    lift = np.clip(0.003 - heights - club.translation[:, 2], 0.0, None)
+    return Transform(club.translation + lift[:, None] * [0.0, 0.0, 1.0], club.rotation)

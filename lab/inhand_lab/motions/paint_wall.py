@@ -1,0 +1,242 @@
+"""paintWall: take a brush out of a pot, paint a board, dip now and then, put the brush back.
+
+The brush keeps about the same angle to the board while hand and forearm turn with every stroke: it
+is no rigid extension of the forearm.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from inhand_lab.grips import DRIFT_PERIOD, pinch
+from inhand_lab.kinematics import place_trunk
+from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.performance import (
+    Performance,
+    Stance,
+    feet_apart,
+    hanging_hands,
+    stand,
+)
+from inhand_lab.motions.reaching import (
+    PUT_BACK,
+    TAKE,
+    attention,
+    held_by_right_hand,
+    reaching_hand,
+)
+from inhand_lab.motions.timeline import (
+    Key,
+    Movement,
+    Pause,
+    Stage,
+    drift,
+    flow,
+    follow,
+    schedule,
+    track,
+)
+from inhand_lab.objects.paint_brush import BRISTLES_BELOW, FERRULE_HALF_THICKNESS, paint_brush
+from inhand_lab.person import Person
+from inhand_lab.transforms import Floats, Transform, rotation_about
+
+OPENING = TAKE
+USE = (
+    Movement("wipe", 0.6),
+    Movement("apply", 0.65),
+    Movement("strokes", 2.7),
+    Pause("look", 0.3),
+    Movement("over", 0.65),
+    Movement("dip", 0.45),
+)
+CLOSING = PUT_BACK
+
+HEADING = -0.45
+"""Of the feet, a little to the board, radians."""
+BOARD = 0.69
+"""The board is this far at the right of somebody of usual height, metres."""
+BOARD_SIZE = (0.03, 0.80, 2.0)
+BOARD_COLOUR, POT_COLOUR, PAINT = (222, 216, 200), (150, 154, 160), (72, 120, 168)
+POT_HALF_WIDTH, POT_HEIGHT, POT_WALL = 0.070, 0.09, 0.004
+
+STROKES = (3, 5)
+MIDDLE, HALF_STROKE = 0.73, 0.105
+"""Height of the strokes' middle and half their length, in statures."""
+ALONG_BOARD = (0.12, 0.17)
+"""Where painting begins, ahead of the person; every stroke is a brush's width further on."""
+PAINTING = np.radians((-72.0, 16.0))
+"""Where the brush points to the board, to the left of ahead and up."""
+TRAILING = np.radians(9.0)
+"""The handle leads and the bristles trail by this."""
+STANDING = np.array((-0.10, np.radians(-42.0)))
+"""Where the brush points in the pot, its handle on the near edge."""
+DIPPING = np.array((HEADING + 0.2, np.radians(-56.0)))
+POINTING_AHEAD = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]])
+"""A brush whose bristles point ahead, in the person's world."""
+
+ALONG_FINGERS = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+"""The brush's frame from a hand that lies along it, the palm on its flat side."""
+TO_THUMB, TO_PALM = 0.20, 0.25
+"""How far the bristles lean to thumb and palm of a usual hand, radians."""
+
+
+def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+    """Painting at these times, in seconds from the start; the board is at the right."""
+    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
+    size = person.height / 1.75
+    board = BOARD * size + random.normal(0.0, 0.015)
+    path = _path(person, times, random, stages)
+    posture = stand(person, times, random, _stance(person, times, stages, path))
+    trunk = place_trunk(person, posture)
+    table, standing, pot = _table(person, random)
+    carried = _carry(times, stages, _on_board(path, board), standing, pot)
+    held = carried @ _grip(person, times, random)
+    right_rest, left_hand = hanging_hands(person, trunk, random)
+    right_hand = reaching_hand(times, stages, right_rest, held, bow=(0.05, -0.05, 0.10))
+    contact = held_by_right_hand(times, stages)
+    furniture = (*table, _board(board))
+    return Performance(posture, right_hand, left_hand, carried, contact, furniture)
+
+
+def _path(
+    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
+) -> Floats:
+    """The bristles on the board (T, 4): ahead and up, metres, and where they point, radians."""
+    manner = person.manner
+    usual = PAINTING + np.array([0.4 * manner.grip_tilt, 0.3 * manner.grip_turn])
+    half = HALF_STROKE * person.height * manner.amplitude
+    middle = MIDDLE * person.height + random.normal(0.0, 0.02)
+    knots = []
+    for stage in stages:
+        if stage.name == "strokes":
+            count = int(random.integers(*STROKES, endpoint=True))
+            bounds = np.linspace(stage.start, stage.end, count + 1)
+            along, way = random.uniform(*ALONG_BOARD), 1.0
+            knots.append((bounds[0], (along, middle + half, *usual)))
+            for start, end in pairwise(bounds):
+                reached = middle - way * half * random.uniform(0.85, 1.0)
+                trailing = (usual[0], usual[1] + way * TRAILING)
+                before = knots[-1][1]
+                between = (along + 0.02, 0.5 * (before[1] + reached), *trailing)
+                along += random.uniform(0.03, 0.05)
+                knots += [(0.5 * (start + end), between), (end, (along, reached, *usual))]
+                way = -way
+    path = flow(times, knots)
+    wobble = [drift(times, random, 0.04, DRIFT_PERIOD) for _ in range(2)]
+    path[:, 2:] += np.stack(wobble, axis=1)
+    return path
+
+
+def _stance(person: Person, times: Floats, stages: list[Stage], path: Floats) -> Stance:
+    """Turned to the board, the eyes on the brush."""
+    count = len(times)
+    painting = np.zeros(count)
+    for stage in stages:
+        if stage.name == "strokes":
+            keys = [
+                (stage.start - 0.6, 0.0),
+                (stage.start, 1.0),
+                (stage.end, 1.0),
+                (stage.end + 0.8, 0.0),
+            ]
+            painting += track(times, keys)
+    looked = np.clip(attention(times, stages), 0.0, 1.0)[:, None]
+    up = painting * (path[:, 1] / person.height - MIDDLE)
+    trunk = np.stack([0.12 - 0.6 * up, 0.10 * painting, 0.20 - 0.45 * painting], axis=1)
+    head = np.stack([-0.25 + 0.25 * painting + 1.2 * up, 0.0 * up, -0.50 * painting], axis=1)
+    trunk += looked * np.array([0.25, 0.0, 0.10])
+    head += looked * np.array([-0.15, 0.0, 0.15])
+    shift = painting[:, None] * np.array([0.03, 0.0, 0.0]) * person.height / 1.75
+    turned = rotation_about("z", HEADING)
+    right_foot, left_foot = (foot @ turned.T for foot in feet_apart(count, 0.12))
+    return Stance(right_foot, left_foot, np.full(count, HEADING), shift, trunk, head)
+
+
+def _board(x: float) -> Box:
+    """The board, its near side at x, metres."""
+    deep, _, high = BOARD_SIZE
+    return Box((x + 0.5 * deep, 0.10, 0.5 * high), BOARD_SIZE, BOARD_COLOUR)
+
+
+def _table(
+    person: Person, random: np.random.Generator
+) -> tuple[tuple[Box, ...], Transform, Floats]:
+    """A table with a pot; the brush in it, world_from_object; the middle of the pot's floor (3,).
+
+    The bristles are on the floor of the pot, the handle is on its near edge.
+    """
+    size = person.height / 1.75
+    x, y = np.array([0.18, 0.56]) * size + random.normal(0.0, 0.015, 2)
+    top = 0.43 * person.height + random.normal(0.0, 0.015)
+    pot = np.array([x, y - 0.08, top + 0.006])
+    to_left, up = STANDING[0] + random.normal(0.0, 0.1), STANDING[1]
+    rotation = _pointing(np.array([to_left]), np.array([up]))[0]
+    place = -rotation @ [0.0, 0.0, -BRISTLES_BELOW]
+    place[1] += POT_HEIGHT / np.tan(-up) - POT_HALF_WIDTH + 1.6 * FERRULE_HALF_THICKNESS
+    standing = Transform(pot + place + [0.0, 0.0, 0.004], rotation)
+    wide, high, thick = POT_HALF_WIDTH, POT_HEIGHT, POT_WALL
+    walls = [
+        Box((pot[0] + dx * wide, pot[1] + dy * wide, top + 0.5 * high), sides, POT_COLOUR)
+        for dx, dy, sides in (
+            (-1.0, 0.0, (thick, 2.0 * wide, high)),
+            (1.0, 0.0, (thick, 2.0 * wide, high)),
+            (0.0, -1.0, (2.0 * wide, thick, high)),
+            (0.0, 1.0, (2.0 * wide, thick, high)),
+        )
+    ]
+    floor = Box((pot[0], pot[1], top + 0.003), (2.0 * wide, 2.0 * wide, 0.006), PAINT)
+    return (*side_table(float(x), float(y), float(top)), *walls, floor), standing, pot
+
+
+def _pointing(to_left: Floats, up: Floats) -> Floats:
+    """The brush's rotations (T, 3, 3) that point the bristles in those directions (T,), radians."""
+    return rotation_about("xz", up, to_left) @ POINTING_AHEAD
+
+
+def _on_board(path: Floats, board: float) -> Transform:
+    """The brush, world_from_object (T), with its bristles just on the board."""
+    rotation = _pointing(path[:, 2], path[:, 3])
+    tips = np.einsum("tij,j->ti", rotation, np.array([0.0, 0.0, -BRISTLES_BELOW]))
+    across = np.einsum("tj,vj->tv", rotation[:, 0], paint_brush().vertices).max(axis=1)
+    place = np.stack([board - 0.002 - across, path[:, 0] - tips[:, 1], path[:, 1] - tips[:, 2]], 1)
+    return Transform(place, rotation)
+
+
+def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transform:
+    """Fingers and thumb on the flat sides above the ferrule, object_from_hand (T)."""
+    leaning = TO_THUMB + person.manner.grip_tilt
+    turned = rotation_about("zx", -TO_PALM + 0.5 * person.manner.grip_turn, leaning)
+    point = np.array([0.0, 0.0, 0.030 + 0.015 * person.manner.grip_slide])
+    return pinch(times, random, point, ALONG_FINGERS @ turned)
+
+
+def _carry(
+    times: Floats, stages: list[Stage], painting: Transform, standing: Transform, pot: Floats
+) -> Transform:
+    """The brush's way, world_from_object (T): from the pot to the board and back."""
+    count = len(times)
+    rotation = _pointing(DIPPING[:1], DIPPING[1:])[0]
+    tips = rotation @ [0.0, 0.0, -BRISTLES_BELOW]
+    leaned = np.array([*tips[:2], 0.0]) * 0.6
+
+    def above(height: float) -> Transform:
+        place = pot + height * np.array([0.0, 0.0, 1.0]) - tips + leaned
+        return Transform(place, rotation).repeated(count)
+
+    rest, over, dipped = standing.repeated(count), above(POT_HEIGHT + 0.05), above(0.015)
+    goals = {
+        "over": (over, (0.0, -0.03, 0.03)),
+        "dip": (dipped, (0.0, 0.0, 0.0)),
+        "wipe": (over, (0.0, 0.01, 0.0)),
+        "apply": (painting, (0.02, 0.10, 0.0)),
+        "strokes": (painting, (0.0, 0.0, 0.0)),
+        "return": (rest, (0.0, 0.0, 0.04)),
+    }
+    keys = [Key(0.0, rest)]
+    for stage in stages:
+        if stage.name in goals:
+            pose, bow = goals[stage.name]
+            keys += [Key(stage.start, keys[-1].pose), Key(stage.end, pose, bow=bow)]
+    return follow(times, keys)

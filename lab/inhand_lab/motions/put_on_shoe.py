@@ -1,0 +1,251 @@
+"""putOnShoe: on a stool, take a shoe from the floor, put it on, tap the foot, take it off again.
+
+The right hand does it while the left one holds on to its lower leg. While the shoe is on, it moves
+with the foot and is worn.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from inhand_lab.grips import pinch
+from inhand_lab.kinematics import Posture
+from inhand_lab.motions.furniture import WOOD, Box
+from inhand_lab.motions.performance import (
+    STANCE_HALF_WIDTH,
+    TOES_OUT,
+    Contact,
+    Performance,
+    contacts,
+)
+from inhand_lab.motions.timeline import (
+    Key,
+    Movement,
+    Pause,
+    Stage,
+    drift,
+    flow,
+    follow,
+    schedule,
+)
+from inhand_lab.objects.shoe import HEEL_BEHIND
+from inhand_lab.person import Person
+from inhand_lab.transforms import Floats, Transform, rotation_about, rotation_from_axes
+
+OPENING = (
+    Pause("wait", 0.4),
+    Movement("reach", 0.9),
+    Movement("grasp", 0.25),
+    Movement("lift", 0.9),
+)
+USE = (
+    Movement("put on", 1.2),
+    Movement("let go", 0.8),
+    Pause("wear", 0.5),
+    Movement("tap", 1.2),
+    Pause("wear", 0.4),
+    Movement("take hold", 0.9),
+    Movement("take off", 1.0),
+)
+CLOSING = (
+    Movement("return", 0.9),
+    Movement("release", 0.2),
+    Movement("withdraw", 0.9),
+    Pause("wait", 0.4),
+)
+
+SEAT, BEHIND = 0.285, 0.12
+"""Height of the hip joints, and how far they are behind the world's origin, in statures."""
+STOOL = 0.34
+UNDER_HIPS = 0.050
+"""The stool's top below the hip joints, in statures."""
+BENT_TO_FLOOR, BENT_TO_FOOT, UPRIGHT = 1.33, 1.25, 0.06
+"""Lean of the trunk, radians."""
+RAISED = np.array([-0.030, 0.06, 0.11])
+"""The foot's way inward, forward and up, in statures."""
+TOES_UP = 0.20
+TAP = 0.28
+"""How far the toes are lifted to tap, radians."""
+
+AT_TOES = Transform(np.array([0.0, 0.20, -0.08]), rotation_about("x", 0.35))
+HALF_ON = Transform(np.array([0.0, 0.07, -0.05]), rotation_about("x", 0.18))
+"""The shoe on its way to the foot, foot_from_object."""
+
+COLLAR_GRIP = np.array([0.034, -0.046, 0.078])
+RIGHT_BOW, LEFT_BOW = (0.12, 0.06, 0.13), (-0.06, 0.10, 0.10)
+ON_COLLAR = rotation_from_axes([-0.60, 0.30, -0.75], [-0.25, 0.95, 0.35])
+"""Where the right hand holds the shoe, and its rotation in the shoe's frame."""
+ON_KNEE = rotation_from_axes([-0.25, 1.0, -0.15], [-1.0, -0.25, 0.0])
+BESIDE_SHANK = rotation_from_axes([0.0, 0.25, -1.0], [0.0, 1.0, 0.25])
+"""A right hand's rotation on the thigh and at the outer side of the lower leg, in the world."""
+
+
+def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+    """Putting on a shoe at these times, in seconds from the start."""
+    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
+    right_foot = _right_foot(person, times, random, stages)
+    posture = _sit(person, times, random, stages, right_foot)
+    carried = _carry(person, times, random, stages, right_foot)
+    held = carried @ _grip(person, times, random)
+    right_rest, left_rest = _hands_on_knees(person, random, len(times))
+    right_hand = _reaching(times, stages, right_rest, held, RIGHT_BOW)
+    left_hand = _reaching(times, stages, left_rest, _left_hand_on_leg(person, times), LEFT_BOW)
+    contact = contacts(times, _changes(stages))
+    return Performance(posture, right_hand, left_hand, carried, contact, (_stool(person),))
+
+
+def _changes(stages: list[Stage]) -> list[tuple[float, Contact]]:
+    """When the shoe passes from the floor to the hand, to the foot, and back."""
+    changes = [(0.0, Contact.RESTING)]
+    for stage in stages:
+        if stage.name in ("grasp", "take hold"):
+            changes.append((stage.end, Contact.RIGHT_HAND))
+        if stage.name == "let go":
+            changes.append((stage.start, Contact.WORN))
+        if stage.name == "release":
+            changes.append((stage.start, Contact.RESTING))
+    return changes
+
+
+def _right_foot(
+    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
+) -> Transform:
+    """The right foot, world_from_foot (T): raised to the hands; on its heel, the toes tapping."""
+    raised = [(0.0, (0.0,))]
+    tapped = np.zeros(len(times))
+    for stage in stages:
+        span = stage.end - stage.start
+        if stage.name in ("lift", "take hold"):
+            raised += [(stage.start + 0.3 * span, (0.0,)), (stage.end, (1.0,))]
+        if stage.name in ("let go", "return"):
+            raised += [(stage.start, (1.0,)), (stage.start + 0.65 * span, (0.0,))]
+        if stage.name == "tap":
+            taps = int(random.integers(2, 5))
+            share = np.clip((times - stage.start) / (stage.end - stage.start), 0.0, 1.0)
+            tapped = TAP * random.uniform(0.6, 1.1) * np.sin(np.pi * taps * share) ** 2
+    up = flow(times, raised)[:, 0]
+    on_floor = np.array([STANCE_HALF_WIDTH, _feet_ahead(person), 0.0])
+    heel = np.array([0.0, -HEEL_BEHIND, 0.0])
+    flat = rotation_about("z", -TOES_OUT)
+    rotation = rotation_about("xz", TOES_UP * up + tapped, -TOES_OUT)
+    place = on_floor + flat @ heel - rotation @ heel + up[:, None] * RAISED * person.height
+    return Transform(place, rotation)
+
+
+def _feet_ahead(person: Person) -> float:
+    return person.proportions.thigh - BEHIND * person.height
+
+
+def _sit(
+    person: Person,
+    times: Floats,
+    random: np.random.Generator,
+    stages: list[Stage],
+    right_foot: Transform,
+) -> Posture:
+    """A posture on the stool, bent to the floor and to the foot, the left foot on the floor."""
+    lean = [(0.0, (UPRIGHT, 0.0, 0.0))]
+    for stage in stages:
+        goal = {
+            "reach": (BENT_TO_FLOOR, 0.15, 0.15),
+            "lift": (BENT_TO_FOOT, 0.0, 0.0),
+            "let go": (UPRIGHT + random.uniform(0.0, 0.3), 0.0, 0.0),
+            "take hold": (BENT_TO_FOOT, 0.0, 0.0),
+            "return": (BENT_TO_FLOOR, 0.15, 0.15),
+            "withdraw": (UPRIGHT, 0.0, 0.0),
+        }.get(stage.name)
+        if goal is not None:
+            lean += [(stage.start, lean[-1][1]), (stage.end, goal)]
+    wander = np.stack([drift(times, random, 0.02, 5.0) for _ in range(3)], axis=1)
+    trunk = flow(times, lean) + wander + [person.manner.stoop, 0.0, 0.0]
+    pelvis = rotation_about("x", -0.35 * trunk[:, 0])
+    hips = np.array([0.0, -BEHIND, SEAT]) * person.height
+    glances = np.stack([drift(times, random, 0.05, 3.0) for _ in range(3)], axis=1)
+    bent = trunk[:, :1] / BENT_TO_FOOT
+    left_foot = np.array([-STANCE_HALF_WIDTH, _feet_ahead(person), 0.0])
+    return Posture(
+        Transform(hips + pelvis[:, :, 2] * person.proportions.hip_drop, pelvis),
+        trunk * (0.65, 1.0, 1.0),
+        glances + bent * np.array([0.25, 0.0, -0.05]) + [person.manner.head_pitch, 0.0, 0.0],
+        right_foot,
+        Transform(left_foot, rotation_about("z", TOES_OUT)).repeated(len(times)),
+    )
+
+
+def _stool(person: Person) -> Box:
+    """The stool, its top just under the thighs."""
+    high = (SEAT - UNDER_HIPS) * person.height
+    return Box((0.0, -BEHIND * person.height - 0.05, 0.5 * high), (STOOL, STOOL, high), WOOD)
+
+
+def _hands_on_knees(
+    person: Person, random: np.random.Generator, count: int
+) -> tuple[Transform, Transform]:
+    """The right and the left hand, world_from_hand (T), on the thighs near the knees."""
+    body = person.proportions
+    above = 0.040 * person.height * person.girth + 0.030
+    hands = []
+    for _ in range(2):
+        back = random.uniform(0.06, 0.12)
+        place = np.array([STANCE_HALF_WIDTH + 0.04, _feet_ahead(person) - back, 0.0])
+        place[2] = body.ankle + body.shank + above
+        hands.append(Transform(place, ON_KNEE).repeated(count))
+    return hands[0], hands[1].mirrored()
+
+
+def _left_hand_on_leg(person: Person, times: Floats) -> Transform:
+    """The left hand, world_from_hand (T), at the outer side of the left lower leg."""
+    body = person.proportions
+    aside = 0.028 * person.height * person.girth + 0.078
+    place = [STANCE_HALF_WIDTH + aside, _feet_ahead(person) + 0.02, body.ankle + 0.55 * body.shank]
+    return Transform(np.array(place), BESIDE_SHANK).repeated(len(times)).mirrored()
+
+
+def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transform:
+    """Thumb and fingers on the collar near the heel, object_from_hand (T)."""
+    slid = np.array([0.0, 0.012 * person.manner.grip_slide, 0.0])
+    turned = ON_COLLAR @ rotation_about("x", 0.5 * person.manner.grip_turn)
+    return pinch(times, random, COLLAR_GRIP + slid, turned)
+
+
+def _reaching(
+    times: Floats,
+    stages: list[Stage],
+    rest: Transform,
+    busy: Transform,
+    bow: tuple[float, float, float],
+) -> Transform:
+    """A hand, world_from_hand (T), from its knee to where it works while the trunk is bent."""
+    keys = [Key(0.0, rest)]
+    for stage in stages:
+        if stage.name in ("reach", "take hold"):
+            keys += [Key(stage.start, rest), Key(stage.end, busy, bow=bow)]
+        if stage.name in ("let go", "withdraw"):
+            keys += [Key(stage.start, busy), Key(stage.end, rest, bow=bow)]
+    return follow(times, keys)
+
+
+def _carry(
+    person: Person,
+    times: Floats,
+    random: np.random.Generator,
+    stages: list[Stage],
+    right_foot: Transform,
+) -> Transform:
+    """The shoe's way, world_from_object (T): from the floor to the toes, on, off and back."""
+    x, ahead = np.array([0.11, 0.035]) * person.height + random.normal(0.0, 0.015, 2)
+    place = np.array([x + 0.04, _feet_ahead(person) + ahead, 0.0])
+    turn = rotation_about("z", random.normal(-0.1, 0.12))
+    on_floor = Transform(place, turn).repeated(len(times))
+    keys = [Key(0.0, on_floor)]
+    for stage in stages:
+        here = Key(stage.start, keys[-1].pose)
+        if stage.name == "lift":
+            keys += [here, Key(stage.end, right_foot @ AT_TOES, bow=(0.04, 0.02, 0.06))]
+        if stage.name == "put on":
+            keys += [here, Key(stage.end, right_foot, by=right_foot @ HALF_ON)]
+        if stage.name == "take off":
+            keys += [here, Key(stage.end, right_foot @ AT_TOES, by=right_foot @ HALF_ON)]
+        if stage.name == "return":
+            keys += [here, Key(stage.end, on_floor, bow=(0.04, 0.02, 0.07))]
+    return follow(times, keys)

@@ -1,0 +1,88 @@
+"""What a tracker gets to see of a recording, as its daemon would: bodies and images, no labels."""
+
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from inhand_schemas.errors import MessageError
+from inhand_tracker.conversion import image_of, joints_of
+from inhand_tracker.estimate import Estimate
+from inhand_tracker.following import Follower
+from inhand_tracker.image import Image
+from inhand_tracker.likelihood import Term
+from inhand_tracker.tracking import Tracker
+from numpy.typing import NDArray
+
+from inhand_lab.dataset import Frame, iterate_pixels, load_camera_info
+from inhand_lab.tracks import Track, empty_track
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Observation:
+    """One frame: the joints (20, 3) of the person followed, or None, and the image, or None.
+
+    ``somebody_else`` tells that another person is followed from here on.
+    """
+
+    time_ns: int
+    joints: Array | None
+    image: Image | None
+    somebody_else: bool
+
+    def show(self, tracker: Tracker) -> Estimate:
+        """Let a tracker see the frame."""
+        if self.somebody_else:
+            tracker.restart()
+        return tracker.step(self.joints, self.time_ns, self.image)
+
+
+def observe(
+    path: Path, frames: Sequence[Frame], terms: Collection[Term] = ()
+) -> Iterator[Observation]:
+    """The frames of a recording, one after the other.
+
+    Pixels are read and decoded once, and only those that the terms of a likelihood need. Damaged
+    ones are none. Raises RecordingError.
+    """
+    name = next((frame.label.camera for frame in frames if frame.label is not None), None)
+    info = load_camera_info(path, name) if terms else None
+    pixels = iterate_pixels(path, name) if info is not None else iter(())
+    current = next(pixels, None)
+    follower = Follower()
+    for frame in frames:
+        while current is not None and current.time_ns < frame.time_ns:
+            current = next(pixels, None)
+        image = None
+        if info is not None and current is not None and current.time_ns == frame.time_ns:
+            with suppress(MessageError):
+                image = image_of(current, info, terms)
+        before = follower.person_id
+        person = follower.choose(frame.people, frame.time_ns)
+        joints = None if person is None else joints_of(person)
+        yield Observation(frame.time_ns, joints, image, follower.person_id != before)
+
+
+def track_recording(
+    tracker: Tracker, path: Path, frames: Sequence[Frame], terms: Collection[Term] = ()
+) -> Iterator[Estimate]:
+    """A tracker's estimates for the frames of a recording, as the tracker daemon makes them."""
+    for observation in observe(path, frames, terms):
+        yield observation.show(tracker)
+
+
+def track_together(
+    trackers: Sequence[Tracker], path: Path, frames: Sequence[Frame], terms: Collection[Term]
+) -> tuple[Array, list[Track]]:
+    """The joints (T, 20, 3) that several trackers saw of a recording, and their tracks."""
+    joints = np.full((len(frames), 20, 3), np.nan)
+    tracks = [empty_track(len(frames)) for _ in trackers]
+    for index, observation in enumerate(observe(path, frames, terms)):
+        if observation.joints is not None:
+            joints[index] = observation.joints
+        for tracker, track in zip(trackers, tracks, strict=True):
+            track.put(index, observation.show(tracker))
+    return joints, tracks

@@ -1,0 +1,108 @@
+"""What recorded depth of one person tells of the sensor that measured it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import binary_erosion, binary_fill_holes, label, median_filter
+
+from inhand_lab.joints import Joint
+from inhand_lab.realism_skeletons import Figure
+from inhand_lab.transforms import Floats
+
+PATCH = 6
+"""Half the width of the patch on the chest, in pixels of an image 320 wide."""
+RESTING = 0.002
+"""A chest that moves less than this, in metres, between two frames is at rest."""
+SMALL = 20
+"""Pixels of an image 320 wide; a larger hole is rather the background between two limbs."""
+SMOOTHED = 5
+"""Width, in pixels, of the median that an outline is ragged against."""
+CHEST = (Joint.SPINE, Joint.SHOULDER_CENTER)
+
+
+@dataclass(frozen=True)
+class DepthPair:
+    """Two frames in a row: depth (240, 320) in millimetres of nothing but the person, 0 elsewhere,
+    joints (20, 3) in the camera's frame, and the pinhole's focal length and centre in pixels."""
+
+    depths: tuple[NDArray[np.uint16], NDArray[np.uint16]]
+    joints: tuple[Floats, Floats]
+    focal_length: float
+    centre: tuple[float, float]
+
+
+def measure_depth(pairs: Iterable[DepthPair]) -> list[Figure]:
+    """Figures of pairs of frames, the same in the same order for any pairs."""
+    seen = list(pairs)
+    return [*_steps(seen), *_chest(seen), *_silhouette(seen)]
+
+
+def _steps(pairs: list[DepthPair]) -> Iterator[Figure]:
+    """Between the distances that are measured at all, over the distance squared."""
+    levels = np.unique(np.concatenate([np.unique(pair.depths[0]) for pair in pairs]))
+    levels = levels[(levels > 2000) & (levels < 3400)].astype(float)
+    ratios = 1e6 * np.diff(levels) / levels[1:] ** 2
+    middle = 2700.0
+    for on, chosen in (
+        ("2.0 to 2.7 m", levels[1:] < middle),
+        ("2.7 to 3.4 m", levels[1:] > middle),
+    ):
+        value = float(np.median(ratios[chosen])) if chosen.any() else np.nan
+        yield Figure("depth step over squared distance", "mm/m²", on, value)
+
+
+def _chest(pairs: list[DepthPair]) -> Iterator[Figure]:
+    roughness, changed, deviations = [], [], []
+    for pair in pairs:
+        before, after = (_patch(pair, frame) for frame in (0, 1))
+        if before is None or after is None:
+            continue
+        roughness.append(_roughness(before))
+        moved = np.subtract(*pair.joints)[[Joint.HIP_CENTER, *CHEST]]
+        if np.linalg.norm(moved, axis=1).max() < RESTING:
+            changed.append(np.mean(before != after))
+            deviations.append(np.std(after - before) / np.sqrt(2.0))
+    on = "chest, less its curvature"
+    yield Figure("depth roughness", "mm", on, float(np.median(roughness)))
+    yield Figure("depth deviation in time", "mm", "resting chest", float(np.mean(deviations)))
+    yield Figure("pixels that change", "%", "resting chest", 100.0 * float(np.mean(changed)))
+
+
+def _silhouette(pairs: list[DepthPair]) -> Iterator[Figure]:
+    holes, ragged = [], []
+    for pair in pairs:
+        person = pair.depths[0] > 0
+        outline = np.count_nonzero(person & ~binary_erosion(person))
+        holes.append(_small_holes(person) / np.count_nonzero(person))
+        ragged.append(np.count_nonzero(person ^ median_filter(person, SMOOTHED)) / outline)
+    yield Figure(f"holes of up to {SMALL} pixels", "%", "person", 100.0 * float(np.mean(holes)))
+    yield Figure("ragged pixels", "%", "person's outline", 100.0 * float(np.mean(ragged)))
+
+
+def _small_holes(person: NDArray[np.bool_]) -> int:
+    """How many pixels are in holes of up to SMALL pixels."""
+    holes, _ = label(binary_fill_holes(person) & ~person)
+    sizes = np.bincount(holes.ravel())[1:]
+    return int(sizes[sizes <= SMALL].sum())
+
+
+def _patch(pair: DepthPair, frame: int) -> Floats | None:
+    """Depth around the middle of the chest, or nothing where a pixel of it is missing."""
+    x, y, z = pair.joints[0][list(CHEST)].mean(axis=0)
+    u = round(pair.centre[0] + pair.focal_length * x / z)
+    v = round(pair.centre[1] + pair.focal_length * y / z)
+    patch = pair.depths[frame][v - PATCH : v + PATCH + 1, u - PATCH : u + PATCH + 1]
+    whole = patch.shape == (2 * PATCH + 1, 2 * PATCH + 1) and patch.all()
+    return patch.astype(float) if whole else None
+
+
+def _roughness(patch: Floats) -> float:
+    """Deviation in millimetres from the nearest quadratic surface."""
+    y, x = np.mgrid[-PATCH : PATCH + 1, -PATCH : PATCH + 1].reshape(2, -1).astype(float)
+    basis = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=1)
+    fitted, *_ = np.linalg.lstsq(basis, patch.ravel(), rcond=None)
+    return float(np.std(patch.ravel() - basis @ fitted))

@@ -1,0 +1,195 @@
+"""How a skeleton tracker errs before its filter: from frame to frame and from bone to bone.
+
+A tracker errs by pose: what it takes for the elbow changes as the arm moves, hardly while it
+rests, and is the same again when the arm comes back. On top of that errors wander, with the way
+that a joint goes rather than with time, in calm spells and busy ones; and a joint inherits a part
+of its parent's. Hands and feet, small as they are, are
+now and then seen turned or cut short, and a fast wrist stays behind or leaves the arm.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+from scipy.spatial.transform import Rotation
+
+from inhand_lab.joints import PARENTS, Joint
+from inhand_lab.transforms import Floats, normalised
+
+_ARM, _LEG = (12, 20, 14, 24), (9, 18, 18, 4)
+MISTAKES = 1e-3 * np.array([0, 5, 14, 12, *_ARM, *_ARM, *_LEG, *_LEG], float)
+"""Deviation, along each axis and over all poses, of where a joint is taken to be, metres, in the
+order of Joint."""
+_ARM_SIMILAR, _LEG_SIMILAR = (0.04, 0.06, 0.10, 0.06), (0.02, 0.018, 0.018, 0.03)
+SIMILAR = np.array(
+    [0.1, 0.02, 0.02, 0.04, *_ARM_SIMILAR, *_ARM_SIMILAR, *_LEG_SIMILAR, *_LEG_SIMILAR]
+)
+"""How far, in metres, a joint must go from the hips' point of view to be mistaken otherwise."""
+ACROSS = 0.35
+"""A hand is taken to be too near or too far along its bone rather than aside: that share of it."""
+WAVES = 12
+"""Waves that a mistake is made of."""
+
+_ARM_WANDERING, _LEG_WANDERING = (6, 10, 6, 12), (5, 9, 9, 4)
+DEVIATIONS = 1e-3 * np.array(
+    [6, 4, 8, 7, *_ARM_WANDERING, *_ARM_WANDERING, *_LEG_WANDERING, *_LEG_WANDERING], float
+)
+"""Deviation of a joint's wandering error along each axis, metres."""
+WAY = 0.4
+"""Way in metres over which a wandering error is forgotten."""
+CREEP = 0.10
+"""Speed, metres a second, at which the tracker begins to take notice: slower counts for less."""
+_ARM_INHERITED, _LEG_INHERITED = (0.5, 0.5, 0.8, 0.6), (0.5, 0.5, 0.5, 0.5)
+INHERITED = np.array(
+    [0.0, 0.5, 0.5, 0.5, *_ARM_INHERITED, *_ARM_INHERITED, *_LEG_INHERITED, *_LEG_INHERITED]
+)
+"""Share of its parent's error that a joint has as well."""
+MEMORY_AT_REST = 60.0
+"""Seconds in which the error of a joint at rest is forgotten."""
+SPELL = 0.2
+"""Correlation time of busy spells, seconds."""
+BUSYNESS = 1.2
+"""Deviation of the logarithm of how busy the error is."""
+TAILS = 3.0
+"""Degrees of freedom of Student's t: the errors' steps have long tails."""
+TREMBLING = 0.0004
+"""Deviation, metres, of the error that is new in every frame, at rest; it has doubled at the
+speed TREMBLING_SPEED, metres a second."""
+TREMBLING_SPEED = 0.5
+
+HANDS, FEET = (Joint.HAND_LEFT, Joint.HAND_RIGHT), (Joint.FOOT_LEFT, Joint.FOOT_RIGHT)
+END_RATE = {"hand": 3.0, "foot": 4.5}
+"""Misreadings of hand or foot, a second, at rest."""
+END_RATE_MOVING = 9.0
+END_TURN = {"hand": 0.35, "foot": 0.7}
+"""Deviation of the turn about each axis, radians."""
+END_STRETCH = {"hand": 0.5, "foot": 0.1}
+"""Deviation of the logarithm of the bone's stretching."""
+END_STAY = 0.3
+
+FAILURE_RATE = 0.7
+"""Failures of a wrist a second, for each metre a second above CALM."""
+FAILURE_STAY = 0.5
+CALM, WILD = 0.2, 1.7
+STUCK_SHARE = 0.4
+ASTRAY = 0.09
+"""Deviation along each axis, metres, of a wrist that has left its arm."""
+
+
+def speeds(joints: Floats, frame_rate: float) -> Floats:
+    """How fast (T, J) joints (T, J, 3) come, metres a second."""
+    steps = np.diff(joints, axis=0, prepend=joints[:1])
+    return np.asarray(np.linalg.norm(steps, axis=2) * frame_rate)
+
+
+def mistake(person: int, joints: Floats) -> Floats:
+    """What a tracker takes joints (T, 20, 3) wrongly by, in metres: the same whenever this person,
+    told by a number, is in the same pose, and nearly the same in a similar one.
+
+    A Gaussian process over the place of each joint as seen from the hips, made of random waves
+    (Rahimi & Recht, *Random Features for Large-Scale Kernel Machines*, 2007).
+    """
+    random = np.random.default_rng([0x71AC, person])
+    place = (joints - joints[:, :1]) / SIMILAR[:, None]
+    waves = random.normal(size=(20, WAVES, 3))
+    phases = random.uniform(0.0, 2.0 * np.pi, (20, WAVES, 3))
+    angles = np.einsum("tjk,jwk->tjw", place, waves)[..., None] + phases
+    mistakes = MISTAKES[:, None] * np.sqrt(2.0 / WAVES) * np.cos(angles).sum(axis=2)
+    for end in HANDS:
+        bone = normalised(joints[:, end] - joints[:, PARENTS[end]])
+        along = np.sum(mistakes[:, end] * bone, axis=1, keepdims=True) * bone
+        mistakes[:, end] = along + ACROSS * (mistakes[:, end] - along)
+    return np.asarray(mistakes)
+
+
+def wander(random: np.random.Generator, speed: Floats, frame_rate: float) -> Floats:
+    """Errors (T, 20, 3) in metres of joints that go at speeds (T, 20)."""
+    busy = _busyness(random, speed.shape, frame_rate)
+    noticed = speed * (speed / (speed + CREEP)) ** 2
+    elapsed = busy * (1.0 / MEMORY_AT_REST + noticed / WAY) / frame_rate
+    kept = np.exp(-elapsed)[..., None]
+    unit = np.sqrt((TAILS - 2.0) / TAILS)
+    pushes = unit * random.standard_t(TAILS, (*speed.shape, 3)) * np.sqrt(1.0 - kept**2)
+    errors = np.empty_like(pushes)
+    error = random.normal(size=pushes.shape[1:])
+    for frame in range(len(pushes)):
+        errors[frame] = error = kept[frame] * error + pushes[frame]
+    errors *= DEVIATIONS[:, None]
+    size = TREMBLING * busy * (1.0 + speed / TREMBLING_SPEED)
+    return errors + size[..., None] * random.normal(size=errors.shape)
+
+
+def inherited(errors: Floats) -> Floats:
+    """Errors (T, 20, 3) with what each joint has of its parent's."""
+    whole = errors.copy()
+    for joint, parent in enumerate(PARENTS):
+        if parent >= 0:
+            whole[:, joint] += INHERITED[joint] * whole[:, parent]
+    return whole
+
+
+def misread_ends(
+    random: np.random.Generator, joints: Floats, speed: Floats, frame_rate: float
+) -> Floats:
+    """The joints (T, 20, 3) with hands and feet that are now and then turned or cut short."""
+    misread = joints.copy()
+    for end in (*HANDS, *FEET):
+        kind = "hand" if end in HANDS else "foot"
+        # Some people's hands and feet stand out, others' are lost in sleeves and in the floor.
+        rate = random.exponential() * (
+            END_RATE[kind] + END_RATE_MOVING * np.minimum(speed[:, end], 1)
+        )
+        begun = _episodes(random, np.minimum(rate / frame_rate, 0.5), END_STAY)
+        turns = Rotation.from_rotvec(END_TURN[kind] * random.normal(size=(len(joints), 3)))
+        stretch = np.exp(END_STRETCH[kind] * random.normal(size=(len(joints), 1)))
+        wrong = begun >= 0
+        root = joints[wrong, PARENTS[end]]
+        bone = turns[begun[wrong]].apply(joints[wrong, end] - root)
+        misread[wrong, end] = root + stretch[begun[wrong]] * bone
+    return misread
+
+
+def lose_wrists(
+    random: np.random.Generator, joints: Floats, speed: Floats, frame_rate: float
+) -> Floats:
+    """The joints (T, 20, 3) with fast wrists that stay behind or leave the arm, hands with them."""
+    lost = joints.copy()
+    for wrist, hand in (
+        (Joint.WRIST_LEFT, Joint.HAND_LEFT),
+        (Joint.WRIST_RIGHT, Joint.HAND_RIGHT),
+    ):
+        rate = FAILURE_RATE * (np.clip(speed[:, wrist], CALM, WILD) - CALM)
+        begun = _episodes(random, np.minimum(rate / frame_rate, 0.5), FAILURE_STAY)
+        stuck = random.random(len(joints)) < STUCK_SHARE
+        astray = ASTRAY * random.normal(size=(len(joints), 3))
+        behind = (begun >= 0) & stuck[begun]
+        away = (begun >= 0) & ~stuck[begun]
+        for joint in (wrist, hand):
+            lost[behind, joint] = joints[np.maximum(begun[behind] - 1, 0), joint]
+            lost[away, joint] += astray[begun[away]]
+    return lost
+
+
+def _busyness(random: np.random.Generator, shape: tuple[int, ...], frame_rate: float) -> Floats:
+    """A log-normal process along the first axis, of median 1."""
+    kept = np.exp(-1.0 / (frame_rate * SPELL))
+    start = random.normal(size=(1, *shape[1:]))
+    pushes = np.sqrt(1.0 - kept**2) * random.normal(size=shape)
+    values, _ = lfilter([1.0], [1.0, -kept], pushes, axis=0, zi=kept * start)
+    return np.exp(BUSYNESS * np.asarray(values))
+
+
+def _episodes(random: np.random.Generator, chance: Floats, stay: float) -> NDArray[np.int64]:
+    """For each frame the one in which the episode that it is in began, -1 outside.
+
+    An episode begins with the chance (T,) of its frame, and lasts on with the chance stay.
+    """
+    begins, stays = random.random(len(chance)) < chance, random.random(len(chance)) < stay
+    begun = np.full(len(chance), -1, np.int64)
+    for frame in range(len(chance)):
+        if frame > 0 and begun[frame - 1] >= 0 and stays[frame]:
+            begun[frame] = begun[frame - 1]
+        elif begins[frame]:
+            begun[frame] = frame
+    return begun

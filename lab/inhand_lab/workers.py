@@ -1,0 +1,74 @@
+"""Work in several processes of one thread each, so that they never ask for more cores."""
+
+import os
+import signal
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from multiprocessing import get_context
+from typing import TypeVar
+
+import cv2
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+_ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+)
+
+
+def usable_cores() -> int:
+    """The cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def in_processes(
+    function: Callable[[Task], Result],
+    tasks: Sequence[Task],
+    processes: int,
+    on_done: Callable[[Result], None] = lambda _: None,
+) -> list[Result]:
+    """The results of all tasks, in their order; ``on_done`` gets each when it is there.
+
+    A single task, or process, is no reason to start another one. The first error ends all.
+    """
+    if processes == 1 or len(tasks) == 1:
+        results = []
+        for task in tasks:
+            results.append(function(task))
+            on_done(results[-1])
+        return results
+    # Libraries size their pools of threads when they are loaded: a worker inherits the limits.
+    with _environment(_ONE_THREAD):
+        pool = ProcessPoolExecutor(
+            min(processes, len(tasks)), get_context("spawn"), initializer=_start_worker
+        )
+        with pool:
+            futures = [pool.submit(function, task) for task in tasks]
+            try:
+                for future in as_completed(futures):
+                    on_done(future.result())
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
+    return [future.result() for future in futures]
+
+
+def _start_worker() -> None:
+    cv2.setNumThreads(1)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@contextmanager
+def _environment(values: Mapping[str, str]) -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value

@@ -1,0 +1,68 @@
+"""From a person's joints, of which some may be missing or wild, to what a tracker predicts from."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inhand_tracker import rotations
+from inhand_tracker.body import (
+    Bases,
+    RunningHeight,
+    body_pose,
+    has_pelvis,
+    mirror_joints,
+    part_bases,
+    part_lengths,
+    pelvis_basis,
+    without_impossible,
+)
+from inhand_tracker.mapping import Mapping
+
+Array = NDArray[np.float64]
+
+LEARNED_FRAMES = 1000
+
+
+@dataclass(frozen=True)
+class Body:
+    """One frame's body, right-handed: b (60,), the 19 part predictors, and the height."""
+
+    pose: Array
+    parts: Bases
+    height: float
+
+
+class BodyReader:
+    """Reads the bodies of one person, frame by frame.
+
+    A missing joint keeps its last place in the pelvis basis, and at first that of the people that
+    the mapping was learned from. Left-handed people are mirrored.
+    """
+
+    def __init__(self, mapping: Mapping, *, left_handed: bool) -> None:
+        step = max(1, len(mapping.body_poses) // LEARNED_FRAMES)
+        learned = np.asarray(mapping.body_poses[::step], float).reshape(-1, 20, 3)
+        self._known_pose = learned.mean(axis=0)
+        self._height = RunningHeight(np.median(part_lengths(learned), axis=0))
+        self._left_handed = left_handed
+
+    def read(self, joints: Array) -> Body | None:
+        """The body of joints (20, 3) in the camera frame, missing ones NaN.
+
+        None while the pelvis is not seen or the person's height is not known.
+        """
+        joints = without_impossible(joints)
+        if not has_pelvis(joints):
+            return None
+        if self._left_handed:
+            joints = mirror_joints(joints)
+        height = self._height.update(joints)
+        if not np.isfinite(height):
+            return None
+        pelvis = pelvis_basis(joints)
+        seen = body_pose(joints, pelvis, height).reshape(20, 3)
+        self._known_pose = np.where(np.isfinite(seen), seen, self._known_pose)
+        filled = pelvis.origins + height * rotations.rotate(pelvis.rotations, self._known_pose)
+        complete = np.where(np.isfinite(joints), joints, filled)
+        return Body(self._known_pose.reshape(60), part_bases(complete, pelvis), height)
