@@ -3,12 +3,14 @@
 import argparse
 from pathlib import Path
 
-import numpy as np
 from inhand_lab.dataset import load_dataset
-from inhand_lab.training import entries_for, train
+from inhand_lab.learned import learned_by
+from inhand_lab.training import entries_for, stages, train
 from inhand_tracker.model_file import Model, save_model
 from rich.console import Console
 from rich.table import Table
+
+from inhand.progress import progress_bars
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,20 +31,31 @@ def run(arguments: argparse.Namespace) -> int:
     """Train and save; raises DatasetError or InhandError."""
     dataset = load_dataset(arguments.dataset)
     entries = entries_for(dataset, arguments.object, arguments.without)
-    console = Console()
-    with Console(stderr=True).status(f"learning from {len(entries)} recordings"):
-        model = train(dataset, entries)
+    with progress_bars({**stages(len(entries)), "saving": 1}) as advance:
+        model = train(dataset, entries, advance)
         save_model(model, arguments.output)
+        advance("saving")
+    console = Console()
     console.print(_summary(model))
-    console.print(f"saved {arguments.output}")
+    console.print(f"saved {arguments.output}: {arguments.output.stat().st_size / 1e6:.1f} MB")
     return 0
 
 
 def _summary(model: Model) -> Table:
-    mapping = model.mapping
+    learned = learned_by(model.mapping)
+    least, median, greatest = learned.radii
     table = Table("learned", "value", title=f"{model.shape.name}, {model.interaction}")
-    table.add_row("recordings", str(len(mapping.participants)))
-    table.add_row("participants", str(len(set(mapping.participants))))
-    table.add_row("labelled frames", str(len(mapping.body_poses)))
-    table.add_row("cluster radius, body heights", f"{np.median(mapping.radii):.3f}")
+    table.add_row("recordings", str(learned.recordings))
+    table.add_row("participants", str(learned.participants))
+    table.add_row("frames", str(learned.frames))
+    table.add_row("cluster radii, body heights", f"{median:.3f} ({least:.3f} to {greatest:.3f})")
+    table.add_row("frames good to re-initialise rotation", f"{learned.good_rotations:.0%}")
+    table.add_row("frames good to re-initialise translation", f"{learned.good_translations:.0%}")
+    table.add_row("translation mostly predicted from", _part(learned.translation_part))
+    table.add_row("rotation mostly predicted from", _part(learned.rotation_part))
     return table
+
+
+def _part(part: tuple[str, float]) -> str:
+    name, share = part
+    return f"{name}, in {share:.0%} of frames"

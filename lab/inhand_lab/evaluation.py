@@ -10,7 +10,7 @@ from functools import lru_cache
 from itertools import product
 
 import numpy as np
-from inhand_tracker.learning import UnusableSequenceError, learn
+from inhand_tracker.learning import LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.likelihood import DEFAULT_TERMS, Term
 from inhand_tracker.methods import METHODS
 from inhand_tracker.model_file import Model
@@ -24,6 +24,7 @@ from inhand_lab.observations import track_together
 from inhand_lab.pose_errors import ErrorGauge
 from inhand_lab.scoring import Judge, Score
 from inhand_lab.training import checked_sequence
+from inhand_lab.training_checks import check_hands
 from inhand_lab.workers import in_processes
 
 Terms = tuple[Term, ...]
@@ -95,7 +96,8 @@ def fold_model(trained: Dataset, fold: Fold, *, images: bool) -> Model:
     Raises DatasetError or RecordingError.
     """
     shape = _shape(trained, fold)
-    sequences = [checked_sequence(trained, entry) for entry in fold.trained]
+    sequences = [_sequence(trained, entry) for entry in fold.trained]
+    check_hands(fold.trained, sequences)
     try:
         mapping = learn(sequences, shape.mirror_normal)
     except UnusableSequenceError as error:
@@ -165,7 +167,12 @@ def _shape(dataset: Dataset, fold: Fold) -> ObjectShape:
     return dataset.shape(name)
 
 
+# Folds of one interaction share recordings and the object, whose boundaries take seconds to find.
+@lru_cache(maxsize=16)
+def _sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
+    return checked_sequence(dataset, entry)
+
+
 @lru_cache(maxsize=4)
 def _viewpoints(dataset: Dataset, name: str) -> Viewpoints:
-    # Folds of one interaction share the object, and its boundaries take seconds to find.
     return find_viewpoints(dataset.shape(name))

@@ -9,8 +9,8 @@ from inhand_runtime.pixels import decode_colour
 from inhand_schemas.messages import Pose
 from inhand_tracker import rotations
 from inhand_tracker.camera import Intrinsics, intrinsics_of
-from inhand_tracker.conversion import pose_message
 from inhand_tracker.estimate import vertex_error
+from inhand_tracker.poses import pose_message
 from inhand_tracker.shape import ObjectShape
 from matplotlib.figure import Figure
 from numpy.typing import NDArray

@@ -22,6 +22,8 @@ KNEE_EXTENSION = np.radians(178.0)
 FLEXION_LIMIT = np.radians(30.0)
 WRIST_LIMIT = np.radians(75.0)
 SWIVELS = np.linspace(-0.4, 1.7, 22)
+STOUT_ELBOWS = 0.30
+"""How much further from the trunk stout people carry their elbows, in statures a share of girth."""
 BALL_HEIGHT = 0.02
 
 
@@ -207,7 +209,9 @@ def _choose_elbow(
     offset = elbows - from_chest.translation[:, None]
     sideways = _dots(offset, aside)
     ahead = _dots(offset, from_chest.rotation[:, :, 1])
-    chest_edge = person.proportions.shoulder_half_width + 0.03 - np.clip(ahead - 0.05, 0.0, None)
+    stout = STOUT_ELBOWS * person.height * max(person.girth - 1.0, 0.0)
+    sides = person.proportions.shoulder_half_width + 0.03 + stout
+    chest_edge = sides - np.clip(ahead - 0.05 - stout, 0.0, None)
     pressed = np.clip(chest_edge - sideways, 0.0, None)
     cost = (
         ((SWIVELS - person.manner.elbow_flare) / 0.35) ** 2

@@ -121,9 +121,9 @@ def _real_pairs(trial: utd_mhad.Trial) -> Iterator[DepthPair]:
 
 
 def _simulated_pairs(simulation: Simulation) -> Iterator[DepthPair]:
-    """Without the object, for the real people mime."""
+    """Without object and furniture, for the real people mime."""
     behind = Transform(np.array([0.0, 0.0, -9.0]), np.eye(3)).repeated(simulation.frames)
-    simulation = replace(simulation, camera_from_object=behind)
+    simulation = replace(simulation, camera_from_object=behind, furniture=())
     intrinsics, joints = simulation.intrinsics, simulation.joints_in_camera
     for frame in DEPTH_FRAMES:
         yield DepthPair(

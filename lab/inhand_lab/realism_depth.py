@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import binary_erosion, binary_fill_holes, label, median_filter
+from scipy.ndimage import binary_erosion, median_filter
 
 from inhand_lab.joints import Joint
 from inhand_lab.realism_skeletons import Figure
@@ -17,11 +17,11 @@ PATCH = 6
 """Half the width of the patch on the chest, in pixels of an image 320 wide."""
 RESTING = 0.002
 """A chest that moves less than this, in metres, between two frames is at rest."""
-SMALL = 20
-"""Pixels of an image 320 wide; a larger hole is rather the background between two limbs."""
 SMOOTHED = 5
 """Width, in pixels, of the median that an outline is ragged against."""
 CHEST = (Joint.SPINE, Joint.SHOULDER_CENTER)
+UPRIGHT, FACING = 25, 10
+"""Pixels of an image 320 wide that the trunk is high and the hips are wide at least."""
 
 
 @dataclass(frozen=True)
@@ -77,24 +77,33 @@ def _silhouette(pairs: list[DepthPair]) -> Iterator[Figure]:
     for pair in pairs:
         person = pair.depths[0] > 0
         outline = np.count_nonzero(person & ~binary_erosion(person))
-        holes.append(_small_holes(person) / np.count_nonzero(person))
+        if (trunk := _trunk(pair)).size:
+            holes.append(np.mean(trunk == 0))
         ragged.append(np.count_nonzero(person ^ median_filter(person, SMOOTHED)) / outline)
-    yield Figure(f"holes of up to {SMALL} pixels", "%", "person", 100.0 * float(np.mean(holes)))
+    yield Figure("holes", "%", "trunk that faces the camera", 100.0 * float(np.mean(holes)))
     yield Figure("ragged pixels", "%", "person's outline", 100.0 * float(np.mean(ragged)))
 
 
-def _small_holes(person: NDArray[np.bool_]) -> int:
-    """How many pixels are in holes of up to SMALL pixels."""
-    holes, _ = label(binary_fill_holes(person) & ~person)
-    sizes = np.bincount(holes.ravel())[1:]
-    return int(sizes[sizes <= SMALL].sum())
+def _trunk(pair: DepthPair) -> NDArray[np.uint16]:
+    """The depth from the shoulders' centre to the spine, and no wider than the hips; nothing of
+    people who bend or stand sideways."""
+    u, v = _project(pair, pair.joints[0][[Joint.HIP_LEFT, Joint.HIP_RIGHT, *CHEST]])
+    if v[2] - v[3] < UPRIGHT or abs(u[0] - u[1]) < FACING:
+        return np.zeros((0, 0), np.uint16)
+    return pair.depths[0][v[3] : v[2], min(u[:2]) : max(u[:2])]
+
+
+def _project(pair: DepthPair, points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Columns and rows (N,) of points (N, 3)."""
+    x, y, z = points.T
+    u = np.rint(pair.centre[0] + pair.focal_length * x / z).astype(np.int64)
+    v = np.rint(pair.centre[1] + pair.focal_length * y / z).astype(np.int64)
+    return u, v
 
 
 def _patch(pair: DepthPair, frame: int) -> Floats | None:
     """Depth around the middle of the chest, or nothing where a pixel of it is missing."""
-    x, y, z = pair.joints[0][list(CHEST)].mean(axis=0)
-    u = round(pair.centre[0] + pair.focal_length * x / z)
-    v = round(pair.centre[1] + pair.focal_length * y / z)
+    (u,), (v,) = _project(pair, pair.joints[0][list(CHEST)].mean(axis=0, keepdims=True))
     patch = pair.depths[frame][v - PATCH : v + PATCH + 1, u - PATCH : u + PATCH + 1]
     whole = patch.shape == (2 * PATCH + 1, 2 * PATCH + 1) and patch.all()
     return patch.astype(float) if whole else None

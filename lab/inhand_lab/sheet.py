@@ -20,8 +20,8 @@ FIRST, LAST = 0.10, 0.90
 WIDTH, HEIGHT = 124, 172
 """Of one picture, in pixels."""
 NAME_WIDTH = 118
-BESIDE_M = 0.10
-"""Shown around what moves in a row."""
+BESIDE_M, ABOVE_M = 0.10, 0.19
+"""Shown around what moves in a row: joints are in the middle of a head."""
 PAPER, INK = 255, (30, 30, 30)
 JPEG_QUALITY = 82
 SUFFIXES = (".png", ".jpg", ".jpeg")
@@ -64,8 +64,8 @@ def _points(simulation: Simulation, frame: int) -> Floats:
     pose = simulation.camera_from_object[frame]
     thing = simulation.object_model.vertices @ pose.rotation.T + pose.translation
     shown = np.concatenate([simulation.true_joints_in_camera[frame], thing])
-    beside = np.array([BESIDE_M, BESIDE_M, 0.0])
-    return np.concatenate([shown - beside, shown + beside])
+    upper_left, lower_right = (-BESIDE_M, -ABOVE_M, 0.0), (BESIDE_M, BESIDE_M, 0.0)
+    return np.concatenate([shown + upper_left, shown + lower_right])
 
 
 def _picture(colour: Pixels, window: Window) -> Pixels:

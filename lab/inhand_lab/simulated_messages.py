@@ -2,7 +2,7 @@
 
 import numpy as np
 from inhand_schemas.messages import CameraInfo, Contact, JointState, ObjectPose, Person, Vector3
-from inhand_tracker.conversion import pose_message
+from inhand_tracker.poses import pose_message
 from inhand_tracker.shape import ObjectShape
 from numpy.typing import NDArray
 

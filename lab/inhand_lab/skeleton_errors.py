@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from inhand_lab.joints import PARENTS, Joint
+from inhand_lab.recursion import leaky_sum
 from inhand_lab.transforms import Floats, normalised
 
 _ARM, _LEG = (12, 20, 14, 24), (9, 18, 18, 4)
@@ -174,10 +174,9 @@ def lose_wrists(
 def _busyness(random: np.random.Generator, shape: tuple[int, ...], frame_rate: float) -> Floats:
     """A log-normal process along the first axis, of median 1."""
     kept = np.exp(-1.0 / (frame_rate * SPELL))
-    start = random.normal(size=(1, *shape[1:]))
+    start = random.normal(size=shape[1:])
     pushes = np.sqrt(1.0 - kept**2) * random.normal(size=shape)
-    values, _ = lfilter([1.0], [1.0, -kept], pushes, axis=0, zi=kept * start)
-    return np.exp(BUSYNESS * np.asarray(values))
+    return np.exp(BUSYNESS * leaky_sum(pushes, kept, start))
 
 
 def _episodes(random: np.random.Generator, chance: Floats, stay: float) -> NDArray[np.int64]:

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from inhand_lab.figure import LIMBS
 from inhand_lab.joints import PARENTS, Joint
 from inhand_lab.person import Person
+from inhand_lab.recursion import leaky_sum
 from inhand_lab.skeleton_errors import (
     inherited,
     lose_wrists,
@@ -140,5 +140,4 @@ def _soften(hidden: NDArray[np.bool_], frame_rate: float) -> Floats:
     """How far (T, 20), 0 to 1, the tracker has gone over from seeing to guessing."""
     kept = np.exp(-1.0 / (frame_rate * HESITATION))
     values = hidden.astype(float)
-    softened, _ = lfilter([1.0 - kept], [1.0, -kept], values, axis=0, zi=kept * values[:1])
-    return np.asarray(softened)
+    return leaky_sum((1.0 - kept) * values, kept, values[0])

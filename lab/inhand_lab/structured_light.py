@@ -25,11 +25,11 @@ NEAREST, FURTHEST = 0.5, 8.0
 LATERAL_DEVIATION = 0.8
 FRESH = 0.25
 """Share of the deviation that is new in every frame."""
-SHADOW = 1000.0
+SHADOW = 3.0
 """Width in pixels of a shadow that the matching window still bridges."""
 EDGE_JUMP = 0.05
 """A relative change of depth between neighbours that counts as an edge."""
-EDGE_LOSS = 0.0
+EDGE_LOSS = 0.06
 """Share of the pixels at an edge that return nothing."""
 
 

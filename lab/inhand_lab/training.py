@@ -1,16 +1,21 @@
 """Training a model from a dataset."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Sequence
 
-import numpy as np
-from inhand_tracker.learning import LabelledSequence, UnusableSequenceError, learn
+from inhand_schemas.errors import MessageError
+from inhand_tracker.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.model_file import Model
 from inhand_tracker.viewpoints import find_viewpoints
 
 from inhand_lab.dataset import Dataset, DatasetError, Entry, labelled_sequence
+from inhand_lab.training_checks import check_hands, check_sequence
 
-FASTEST_M_PER_S = 60.0
-"""Faster than the head of a golf club."""
+READING, VIEWPOINTS = "recordings", "viewpoints"
+
+
+def stages(recordings: int) -> dict[str, int]:
+    """What training goes through, each with the number of its steps."""
+    return {READING: recordings, **dict.fromkeys(STAGES, recordings), VIEWPOINTS: 1}
 
 
 def entries_for(
@@ -29,42 +34,62 @@ def entries_for(
                 + (f"choose with --object: {', '.join(objects)}" if objects else "none to learn")
             )
         object_name = objects[0]
-    chosen = [e for e in labelled if e.object == object_name and e.participant not in without]
+    chosen = [e for e in labelled if e.object == object_name]
     if not chosen:
         raise DatasetError(
-            f"{dataset.folder} has no labelled recording of {object_name!r} left; "
-            f"there are: {', '.join(objects)}"
+            f"{dataset.folder} has no labelled recording of {object_name!r}; there are: "
+            f"{', '.join(objects) or 'none'}"
         )
-    return chosen
+    participants = sorted({entry.participant for entry in chosen})
+    unknown = sorted(set(without) - set(participants))
+    if unknown:
+        raise DatasetError(
+            f"{dataset.folder} has no participant {unknown[0]!r} with {object_name!r}; there are: "
+            f"{', '.join(participants)}"
+        )
+    return [entry for entry in chosen if entry.participant not in without]
 
 
-def train(dataset: Dataset, entries: Collection[Entry]) -> Model:
-    """Learn from recordings of one object; raises DatasetError or InhandError."""
-    first = next(iter(entries))
+def train(
+    dataset: Dataset,
+    entries: Sequence[Entry],
+    on_step: Callable[[str], None] = lambda stage: None,
+) -> Model:
+    """Learn from recordings of one object; ``on_step`` is called at every step of ``stages``.
+
+    Raises DatasetError or InhandError.
+    """
+    if len(entries) < 2:
+        raise DatasetError(
+            f"{dataset.folder}: {len(entries)} recordings are left to learn from, and two are the "
+            "least: add participants"
+        )
+    first = entries[0]
     if first.object is None:
         raise DatasetError(f"{first.file} is not labelled")
     shape = dataset.shape(first.object)
-    sequences = [checked_sequence(dataset, entry) for entry in entries]
+    sequences = []
+    for entry in entries:
+        sequences.append(checked_sequence(dataset, entry))
+        on_step(READING)
+    check_hands(entries, sequences)
     try:
-        mapping = learn(sequences, shape.mirror_normal)
+        mapping = learn(sequences, shape.mirror_normal, on_step)
     except UnusableSequenceError as error:
         raise DatasetError(f"{dataset.folder}: {error}") from None
-    return Model(first.interaction, shape, mapping, find_viewpoints(shape))
+    viewpoints = find_viewpoints(shape)
+    on_step(VIEWPOINTS)
+    return Model(first.interaction, shape, mapping, viewpoints)
 
 
 def checked_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
     """A recording for training; raises DatasetError for one that cannot be meant."""
-    sequence = labelled_sequence(dataset, entry)
-    if not np.isfinite(sequence.translations).any():
+    try:
+        sequence = labelled_sequence(dataset, entry)
+    except MessageError as error:
         raise DatasetError(
-            f"{entry.file} has no label of {entry.object!r}: label it, or take it out of "
-            "dataset.toml"
-        )
-    steps = np.linalg.norm(np.diff(sequence.translations, axis=0), axis=1)
-    jumps = np.flatnonzero(steps * entry.frame_rate > FASTEST_M_PER_S)
-    if len(jumps):
-        raise DatasetError(
-            f"{entry.file}: the label jumps by {steps[jumps[0]]:.2f} m after frame {jumps[0]}: "
-            "mend that label"
-        )
+            f"{entry.file} holds a message that is wrong ({error}): record or label it again, or "
+            "take it out of dataset.toml"
+        ) from None
+    check_sequence(entry, sequence)
     return sequence

@@ -4,11 +4,13 @@ import os
 import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing import get_context
 from typing import TypeVar
 
 import cv2
+from inhand_runtime.errors import InhandError
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -31,7 +33,8 @@ def in_processes(
 ) -> list[Result]:
     """The results of all tasks, in their order; ``on_done`` gets each when it is there.
 
-    A single task, or process, is no reason to start another one. The first error ends all.
+    A single task, or process, is no reason to start another one. The first error ends all; raises
+    InhandError when a worker is killed.
     """
     if processes == 1 or len(tasks) == 1:
         results = []
@@ -49,6 +52,11 @@ def in_processes(
             try:
                 for future in as_completed(futures):
                     on_done(future.result())
+            except BrokenProcessPool:
+                raise InhandError(
+                    "a worker process ended by itself, most often because memory ran out: free "
+                    "some, or give this command one core (taskset -c 0)"
+                ) from None
             except BaseException:
                 pool.shutdown(cancel_futures=True)
                 raise

@@ -44,7 +44,7 @@ def test_the_hammer_swings_further_once_the_nail_stands(participant: int) -> Non
     light, hard = height[tops[holding[tops]]], height[tops[~holding[tops]]]
     assert len(light) >= 2
     assert len(hard) >= 3
-    assert np.median(hard) > np.median(light) + 0.10
+    assert hard.max() > light.max() + 0.10
 
 
 @everybody

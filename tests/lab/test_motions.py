@@ -16,6 +16,19 @@ from solids import placed, surface_points
 
 PARTICIPANTS = range(10)
 
+LONGEST_STEPS = {"hammerNail": 0.15}
+"""Of an object's origin at 30 Hz, metres, where it is struck with: a hammer's head meets the nail
+at about 5 m/s, and the middle of its handle goes at 3 to 4 m/s."""
+
+SWINGS = {"hitTennisBall": 8.0, "hitGolfBall": 13.0}
+"""Highest speed of a joint, m/s, where a thing is swung: the hands of a measured golfer go at 10 to
+11 m/s, and his club turns by 100 degrees in 1/30 s. How evenly swings go, test_swings judges at a
+rate that is high enough."""
+
+LOOSEST_HOLDS = {"hitGolfBall": 0.05}
+"""Metres from the palm to where it was: at the top of a golf swing the right palm opens, for its
+wrist bends no further, and only the fingers hold the club."""
+
 everybody = pytest.mark.parametrize(
     ("interaction", "participant"),
     [(interaction, number) for interaction in INTERACTIONS for number in PARTICIPANTS],
@@ -57,10 +70,12 @@ def test_feet_stay_on_the_floor_but_for_small_steps(interaction: str, participan
 def test_movement_is_continuous(interaction: str, participant: int) -> None:
     _, performance, body = performed(interaction, participant)
     speed = np.linalg.norm(np.diff(body.joints, axis=0), axis=2).max() * FRAME_RATE
-    assert speed < 4.0
+    assert speed < SWINGS.get(interaction, 4.0)
+    if interaction in SWINGS:
+        return
     carried = performance.world_from_object
     step = np.linalg.norm(np.diff(carried.translation, axis=0), axis=1).max()
-    assert step * FRAME_RATE / 30.0 < 0.10
+    assert step * FRAME_RATE / 30.0 < LONGEST_STEPS.get(interaction, 0.10)
     between = np.swapaxes(carried.rotation[:-1], 1, 2) @ carried.rotation[1:]
     cosine = (np.trace(between, axis1=1, axis2=2) - 1.0) / 2.0
     assert np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))).max() < 45.0
@@ -77,7 +92,7 @@ def test_a_held_object_moves_with_its_hands(interaction: str, participant: int) 
     ):
         held = np.isin(performance.contact, [holder, both])
         missed = np.linalg.norm(hand.translation - target.translation, axis=1)
-        assert missed[held].max(initial=0.0) < 0.03
+        assert missed[held].max(initial=0.0) < LOOSEST_HOLDS.get(interaction, 0.03)
         points = placed(performance.world_from_object, surface_points(interaction))
         gaps = np.linalg.norm(points - hand.translation[:, None], axis=2).min(axis=1)
         assert gaps[held].max(initial=0.0) < 0.11

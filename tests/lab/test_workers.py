@@ -1,12 +1,14 @@
 """Work in several processes."""
 
 import os
+import signal
 import time
 
 import cv2
 import pytest
 from inhand_lab.dataset import DatasetError
 from inhand_lab.workers import in_processes, usable_cores
+from inhand_runtime.errors import InhandError
 
 
 def describe(task: int) -> tuple[int, int, str | None, int]:
@@ -17,6 +19,11 @@ def fail(task: int) -> int:
     if task == 1:
         raise DatasetError("broken: mend it")
     time.sleep(0.01)
+    return task
+
+
+def die(task: int) -> int:
+    os.kill(os.getpid(), signal.SIGKILL)
     return task
 
 
@@ -41,6 +48,11 @@ def test_a_single_task_or_process_stays_here(tasks: range, processes: int) -> No
 def test_the_first_error_reaches_the_caller_as_it_is() -> None:
     with pytest.raises(DatasetError, match="broken: mend it"):
         in_processes(fail, range(20), 2)
+
+
+def test_a_worker_that_is_killed_is_told_with_the_mend() -> None:
+    with pytest.raises(InhandError, match="memory ran out"):
+        in_processes(die, range(2), 2)
 
 
 def test_there_are_cores() -> None:

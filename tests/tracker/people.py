@@ -86,6 +86,11 @@ def waving(frames: int, *, seed: int = 0, speed: float = 0.25, wobble: float = 0
     return joints + wobble * random.normal(size=joints.shape)
 
 
+def unseen_wave(frames: int) -> np.ndarray:
+    """Joints (T, 20, 3) of somebody whom ``wave_model`` does not know."""
+    return waving(frames, seed=7, speed=0.23)
+
+
 def held(joints: np.ndarray, *, seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     """An object (T, 3), (T, 4) 10 cm beyond the right hand, turned with the forearm, loosely."""
     random = np.random.default_rng(seed + 1000)

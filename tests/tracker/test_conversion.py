@@ -1,15 +1,17 @@
 import numpy as np
 import pytest
-from inhand_schemas.messages import Box, Person, Pose
+from inhand_runtime.pixels import encode_colour, encode_depth
+from inhand_schemas.errors import MessageError
+from inhand_schemas.messages import Box, CameraInfo, DepthImage, Person, Pose, RgbdFrame
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.conversion import (
     box_around,
-    compose,
+    image_of,
     joints_of,
     object_pose_message,
-    pose_message,
 )
 from inhand_tracker.estimate import LOST, Estimate
+from inhand_tracker.poses import compose, pose_message
 from people import person, quaternion_of
 from scipy.spatial.transform import Rotation
 
@@ -131,3 +133,65 @@ def test_the_box_is_cut_at_the_image() -> None:
 )
 def test_there_is_no_box_outside_the_image(outline: np.ndarray | None) -> None:
     assert box_around(outline, CAMERA) is None
+
+
+INFO = CameraInfo(
+    sequence=0,
+    time_ns=0,
+    width=64,
+    height=48,
+    fx=50.0,
+    fy=50.0,
+    cx=31.5,
+    cy=23.5,
+    depth_scale=0.0005,
+)
+COLOUR = encode_colour(np.full((48, 64, 3), 90, np.uint8))
+DEPTH = encode_depth(np.full((24, 32), 3000, np.uint16))
+FRAME = RgbdFrame(sequence=0, time_ns=0, colour=COLOUR, depth=DEPTH)
+
+
+def test_only_what_the_terms_need_is_decoded() -> None:
+    damaged = RgbdFrame(
+        sequence=0, time_ns=0, colour=COLOUR, depth=DepthImage("z16-zstd", 32, 24, b"")
+    )
+    image = image_of(damaged, INFO, ("edges",))
+    assert image is not None
+    assert image.depth is None
+    with pytest.raises(MessageError, match="damaged depth"):
+        image_of(damaged, INFO, ("edges", "depth"))
+
+
+def test_depth_becomes_metres_in_the_camera_s_view() -> None:
+    image = image_of(FRAME, INFO, ("depth",))
+    assert image is not None
+    assert image.grey is None
+    np.testing.assert_allclose(image.depth, np.full((24, 32), 1.5))
+    # The wall of 1.5 m in the smaller image is where the camera's own pixels say.
+    (near,) = image.surfaces.distances(np.array([[[0.3, 0.2, 1.5]]]))
+    assert near[0] < 0.05
+
+
+def test_luminance_keeps_the_size_of_the_colour_image() -> None:
+    small = RgbdFrame(
+        sequence=0, time_ns=0, colour=encode_colour(np.full((24, 32, 3), 90, np.uint8))
+    )
+    image = image_of(small, INFO, ("edges", "depth"))
+    assert image is not None
+    assert image.grey.shape == (24, 32)
+    assert image.camera == Intrinsics(25.0, 25.0, 15.5, 11.5, 32, 24)
+
+
+@pytest.mark.parametrize(
+    ("frame", "terms"),
+    [
+        (FRAME, ()),
+        (RgbdFrame(sequence=0, time_ns=0, depth=DEPTH), ("edges",)),
+        (RgbdFrame(sequence=0, time_ns=0, colour=COLOUR), ("depth",)),
+        (RgbdFrame(sequence=0, time_ns=0), ("edges", "depth")),
+    ],
+)
+def test_a_frame_without_what_the_terms_need_is_no_image(
+    frame: RgbdFrame, terms: tuple[str, ...]
+) -> None:
+    assert image_of(frame, INFO, terms) is None

@@ -24,8 +24,8 @@ from people import sequence, wedge
 def small_model() -> Model:
     shape = wedge()
     mapping = learn([sequence(f"p{i}", 4, seed=i) for i in range(2)], shape.mirror_normal)
-    boundaries = np.random.default_rng(0).normal(size=(3, 50, 3))
-    return Model("wave", shape, mapping, Viewpoints(np.eye(3), boundaries))
+    boundaries, surfaces = np.random.default_rng(0).normal(size=(2, 3, 50, 3))
+    return Model("wave", shape, mapping, Viewpoints(np.eye(3), boundaries, surfaces))
 
 
 @pytest.fixture
@@ -48,6 +48,14 @@ def equal(first: Any, second: Any) -> bool:
 def test_a_model_comes_back_as_it_was(path: Path) -> None:
     assert equal(load_model(path), small_model())
     assert not equal(replace(small_model(), interaction="other"), small_model())
+
+
+def test_a_model_of_a_release_without_surfaces_still_loads(tmp_path: Path) -> None:
+    old = replace(small_model(), viewpoints=replace(small_model().viewpoints, surfaces=None))
+    save_model(old, tmp_path / "old.model")
+    with np.load(tmp_path / "old.model") as archive:
+        assert "viewpoints.surfaces" not in archive
+    assert equal(load_model(tmp_path / "old.model"), old)
 
 
 def test_the_file_is_written_under_exactly_its_name_in_a_folder_that_is_made(
@@ -80,7 +88,7 @@ def test_a_model_stays_whole_when_another_cannot_be_written(
         file.write(b"PK")
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(np, "savez_compressed", full_disk)
+    monkeypatch.setattr(np, "savez", full_disk)
     with pytest.raises(ModelError, match=r"cannot write .*mug\.model: No space left on device"):
         save_model(replace(small_model(), interaction="other"), path)
     assert equal(load_model(path), small_model())

@@ -135,6 +135,61 @@ def same(first: Estimate, second: Estimate) -> bool:
     )
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_a_single_frame_gives_what_a_tracker_s_first_frame_does(method: str) -> None:
+    joints = unseen_person(3)
+    tracker = Tracker(wave_model(), METHODS[method])
+    for frame in joints:
+        (first,) = tracked(method, frame[None])
+        assert same(tracker.estimate_single_frame(frame), first)
+
+
+def test_single_frames_do_not_disturb_what_is_tracked() -> None:
+    joints, others = unseen_person(10), waving(10, seed=4)
+    tracker = Tracker(wave_model(), METHODS["gd-random"])
+    for number, expected in enumerate(tracked("gd-random", joints)):
+        tracker.estimate_single_frame(others[number] + 1.0)
+        assert same(tracker.step(joints[number], (number + 1) * FRAME_NS), expected)
+
+
+def test_a_single_frame_without_a_body_is_lost() -> None:
+    tracker = Tracker(wave_model(), BEST)
+    assert tracker.estimate_single_frame(np.full((20, 3), np.nan)).state == "lost"
+
+
+def test_edges_weigh_a_single_frame_too() -> None:
+    tracker = Tracker(two_sided_model(), METHODS["gd-hand"], seed=1)
+    image = Image(silhouette(SIDES[0], UPRIGHT), CAMERA)
+    away = [
+        np.linalg.norm(tracker.estimate_single_frame(STANDING, shown).translation - SIDES[0])
+        for shown in (None, image)
+    ]
+    assert away[1] < away[0]
+
+
+def test_absurd_joints_are_taken_for_missing_ones() -> None:
+    joints = unseen_person(6)
+    absurd, missing = joints.copy(), joints.copy()
+    absurd[3:, 18:], missing[3:, 18:] = 1e150, np.nan
+    for given, expected in zip(
+        tracked("gd-random", absurd), tracked("gd-random", missing), strict=True
+    ):
+        assert same(given, expected)
+    assert Tracker(wave_model(), BEST).step(1e150 * joints[0], FRAME_NS).state == "lost"
+
+
+def test_a_wild_first_frame_is_over_with_the_second() -> None:
+    joints = unseen_person(8)
+    wild = joints.copy()
+    wild[0, 3] += [0.0, -3.0, 0.0]
+    for before, after in zip(
+        tracked("gd-stable-proximate", joints)[1:],
+        tracked("gd-stable-proximate", wild)[1:],
+        strict=True,
+    ):
+        assert np.linalg.norm(after.translation - before.translation) < 0.01
+
+
 def test_one_seed_gives_one_result_and_another_seed_another() -> None:
     joints = unseen_person()
     first, again = tracked("gd-random", joints, seed=3), tracked("gd-random", joints, seed=3)

@@ -11,6 +11,7 @@ from inhand_tracker.viewpoints import (
     BOUNDARY_POINTS,
     MARGIN,
     RASTER,
+    SURFACE_POINTS,
     Viewpoints,
     VisiblePoints,
     find_surfaces,
@@ -217,3 +218,47 @@ def test_objects_behind_the_camera_or_on_it_have_no_pixels() -> None:
     pixels = project(views, np.array([[0.0, 0.0, -2.0], [0.0, 0.0, 0.0]]), upright, CAMERA)
     assert np.isnan(pixels[0]).all()
     assert np.isnan(pixels[1]).any()
+
+
+# --- Surfaces
+
+
+@pytest.mark.parametrize("name", ["sphere", "ring", "box", "wedge", "rod", "sheet"])
+def test_surface_points_lie_on_the_mesh(name: str) -> None:
+    shape, views = views_of(name)
+    assert views.surfaces is not None
+    assert views.surfaces.shape == (642, SURFACE_POINTS, 3)
+    mesh = trimesh.Trimesh(shape.vertices, shape.faces)
+    dense = trimesh.sample.sample_surface(mesh, 40_000, seed=0)[0]
+    away = cdist(views.surfaces[::80].reshape(-1, 3), dense).min(axis=1)
+    assert away.max() < 2.5 * pixel_of(shape)
+
+
+def test_surface_points_of_a_sphere_face_the_viewer() -> None:
+    _, views = views_of("sphere")
+    towards = np.einsum("vsi,vi->vs", views.surfaces, views.directions)
+    assert towards.min() > -0.01
+    # A point evenly drawn from a disc of radius r has the mean height 2/3 r on its half sphere.
+    assert towards.mean() == pytest.approx(0.2 / 3, rel=0.03)
+
+
+def test_of_a_ring_s_far_side_nothing_is_taken_that_its_near_side_hides() -> None:
+    _, views = views_of("ring")
+    edge_on = int(np.argmax(views.directions @ [1.0, 0.0, 0.0]))
+    assert (views.surfaces[edge_on] @ views.directions[edge_on]).min() > 0.0
+
+
+def test_surface_points_are_spread_evenly_over_what_is_seen() -> None:
+    _, views = views_of("box")
+    straight_on = int(np.argmax(views.directions @ [0.0, 0.0, 1.0]))
+    across = views.surfaces[straight_on][:, :2]
+    quadrants = [np.sum((np.sign(across) == s).all(axis=1)) for s in ((1, 1), (1, -1), (-1, 1))]
+    assert min(quadrants) >= 9
+    gaps = cdist(across, across) + np.eye(len(across))
+    assert gaps.min(axis=1).min() > 0.004
+    assert gaps.min(axis=1).max() < 0.03
+
+
+def test_surfaces_can_be_found_for_the_directions_of_an_old_model() -> None:
+    shape, views = views_of("wedge")
+    np.testing.assert_array_equal(find_surfaces(shape, views.directions), views.surfaces)

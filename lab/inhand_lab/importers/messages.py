@@ -2,7 +2,7 @@
 
 import numpy as np
 from inhand_schemas.messages import ObjectPose, Person, Skeletons
-from inhand_tracker.conversion import pose_message
+from inhand_tracker.poses import pose_message
 from numpy.typing import NDArray
 
 from inhand_lab.dataset import CAMERA

@@ -64,7 +64,7 @@ OBLIQUE = 0.48
 """A hammer lies across the palm more obliquely than other handles, radians."""
 GRIP_HEIGHT = -HAMMER_HALF_LENGTH + 0.055
 FACE = np.array([0.0, FACE_REACH, HEAD_HEIGHT])
-HANDLE_TO_LEFT = 0.24
+HANDLE_TO_LEFT = 0.38
 """Where the handle points at impact, as a turn to the left from straight ahead, radians."""
 ELBOW = np.array([0.06, -0.04, -0.27])
 """About where the elbow is at impact, from the shoulder, metres."""
@@ -75,7 +75,7 @@ HELD_AT = 0.022
 HOLDING = rotation_from_axes([-0.85, 0.35, -0.35], [0.0, -0.8, 0.5])
 LEANING = rotation_from_axes([-0.25, 0.95, -0.25], [-1.0, -0.25, 0.0])
 """Rotations of the other hand, mirrored, that holds the nail and then leans on the bench."""
-LEANING_AT = np.array([-0.18, -0.17, 0.05])
+LEANING_AT = np.array([-0.19, -0.19, 0.05])
 """Where it leans, from the foot of the block."""
 AROUND_BENCH = (-0.06, -0.14, 0.16)
 """How its way to the bench and back swings out."""
@@ -186,7 +186,7 @@ def _stance(times: Floats, stages: list[Stage], swung: Floats) -> Stance:
     keys = [(lift.start, 0.0), (lift.end, 1.0), (leave.start, 1.0), (leave.end, 0.0)]
     holding = track(times, keys)[:, None]
     trunk = looked * np.array([0.60, 0.06, -0.18]) + worked * np.array([0.24, 0.0, -0.16])
-    trunk += holding * np.array([0.12, 0.0, -0.02])
+    trunk += holding * np.array([0.14, 0.0, -0.04])
     trunk -= worked * swung[:, None] * np.array([0.05, -0.02, 0.08])
     head = looked * np.array([-0.25, 0.0, -0.25]) + worked * np.array([-0.38, 0.0, 0.0])
     right_foot, left_foot = feet_apart(count, half_width=0.12)
@@ -215,7 +215,7 @@ def _bench(person: Person, random: np.random.Generator) -> Bench:
     """A bench ahead, of the height of a dining table."""
     size = person.height / 1.75
     top = 0.45 * person.height + float(random.normal(0.0, 0.015))
-    x, y = np.array([0.05, 0.535]) * size + random.normal(0.0, 0.012, 2)
+    x, y = np.array([0.06, 0.55]) * size + random.normal(0.0, 0.012, 2)
     wide, deep, high = BLOCK_SIZE
     block = Box((x, y, top + high / 2.0), (wide, deep, high), PINE)
     across, ahead = np.array([x + 0.24, 0.40 * size]) + random.normal(0.0, 0.012, 2)

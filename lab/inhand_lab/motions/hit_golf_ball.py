@@ -50,8 +50,9 @@ CLOSING = (
 
 HALF_STANCE = 0.12
 """Of the feet's distance from each other, in statures."""
-SPINE_ASIDE = np.radians(13.0)
-"""Tilt of the spine away from the target, by its lean, for the right hand is the lower one."""
+SPINE_ASIDE, HIPS_AHEAD = 0.2, 2.0
+"""Tilt of the spine away from the target, radians: by its lean, for the right hand is the lower
+one, and by how far (in statures) the hips have gone ahead."""
 ARM_PLANE = np.radians(17.0)
 """Lean of the arms' plane from the vertical."""
 STEEPEST = np.radians(68.0)
@@ -139,7 +140,7 @@ def _posture(person: Person, times: Floats, random: np.random.Generator, swing: 
     )
     posture = stand(person, times, random, stance)
     lean = swing.lean + person.manner.stoop + drift(times, random, 0.01, 4.0)
-    aside = rotation_about("y", SPINE_ASIDE * np.minimum(swing.lean, 1.0))
+    aside = rotation_about("y", SPINE_ASIDE * swing.lean - HIPS_AHEAD * swing.slide)
     pelvis = rotation_about("zx", swing.pelvis, -0.5 * lean)
     chest = aside @ rotation_about("zx", swing.chest, -lean)
     gaze = np.clip(1.5 * swing.gaze, swing.chest - NECK_TURN, swing.chest + NECK_TURN)

@@ -56,6 +56,7 @@ HAND, RACKET, WRIST, LEFT_HAND, TURN, LEAN = slice(0, 3), slice(3, 6), 6, slice(
 DEGREES = [3, 4, 5, 10, 11]
 
 LAID_BACK = np.radians(22.0), np.radians(40.0)
+LEAST_AND_MOST_LAID_BACK = np.radians((-15.0, 48.0))
 """How far people lay the wrist back, and how much further or less some of them do."""
 OBLIQUE = np.radians(42.0)
 """Of the handle across the palm."""
@@ -123,6 +124,7 @@ def _stroke(
     """One stroke, of the person's size and wrist with some variation, at a ball of its own."""
     usual, range_ = LAID_BACK
     wrist = usual + range_ * (0.7 * person.manner.grip_slide + 0.3 * random.normal())
+    wrist = np.clip(wrist, *LEAST_AND_MOST_LAID_BACK)
     size = np.clip(person.manner.amplitude * (1.0 + 0.05 * random.normal()), 0.75, 1.15)
     ball = random.normal(0.0, 0.03, 3)
     knots = []

@@ -61,6 +61,8 @@ BOARD_SIZE = (0.03, 0.80, 2.0)
 BOARD_COLOUR, POT_COLOUR, PAINT = (222, 216, 200), (150, 154, 160), (72, 120, 168)
 POT_HALF_WIDTH, POT_HEIGHT, POT_WALL = 0.070, 0.09, 0.004
 
+FURTHEST = 0.17
+"""Ahead of the person, in statures."""
 STROKES = (3, 5)
 MIDDLE, HALF_STROKE = 0.73, 0.105
 """Height of the strokes' middle and half their length, in statures."""
@@ -106,7 +108,7 @@ def _path(
     """The bristles on the board (T, 4): ahead and up, metres, and where they point, radians."""
     manner = person.manner
     usual = PAINTING + np.array([0.4 * manner.grip_tilt, 0.3 * manner.grip_turn])
-    half = HALF_STROKE * person.height * manner.amplitude
+    half = HALF_STROKE * person.height * min(manner.amplitude, 1.12)
     middle = MIDDLE * person.height + random.normal(0.0, 0.02)
     knots = []
     for stage in stages:
@@ -120,7 +122,7 @@ def _path(
                 trailing = (usual[0], usual[1] + way * TRAILING)
                 before = knots[-1][1]
                 between = (along + 0.02, 0.5 * (before[1] + reached), *trailing)
-                along += random.uniform(0.03, 0.05)
+                along = min(along + random.uniform(0.03, 0.05), FURTHEST * person.height)
                 knots += [(0.5 * (start + end), between), (end, (along, reached, *usual))]
                 way = -way
     path = flow(times, knots)

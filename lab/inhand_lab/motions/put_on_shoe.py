@@ -59,7 +59,7 @@ SEAT, BEHIND = 0.285, 0.12
 STOOL = 0.34
 UNDER_HIPS = 0.050
 """The stool's top below the hip joints, in statures."""
-BENT_TO_FLOOR, BENT_TO_FOOT, UPRIGHT = 1.33, 1.25, 0.06
+BENT_TO_FLOOR, BENT_TO_FOOT, UPRIGHT = 1.38, 1.27, 0.06
 """Lean of the trunk, radians."""
 RAISED = np.array([-0.030, 0.06, 0.11])
 """The foot's way inward, forward and up, in statures."""

@@ -7,12 +7,12 @@ from inhand_runtime.pixels import decode_depth, decode_grey
 from inhand_schemas.messages import Box, CameraInfo, ObjectPose, Person, Pose, RgbdFrame
 from numpy.typing import NDArray
 
-from inhand_tracker import rotations
 from inhand_tracker.body import without_impossible
 from inhand_tracker.camera import Intrinsics, intrinsics_of
 from inhand_tracker.estimate import Estimate
 from inhand_tracker.image import Image
 from inhand_tracker.likelihood import Term
+from inhand_tracker.poses import compose, pose_message
 
 Array = NDArray[np.float64]
 
@@ -39,20 +39,6 @@ def image_of(frame: RgbdFrame, info: CameraInfo, terms: Collection[Term]) -> Ima
         intrinsics_of(info).scaled_to(size.width, size.height),
         None if depth is None else decode_depth(depth) * np.float32(info.depth_scale),
     )
-
-
-def pose_message(translation: Array, rotation: Array) -> Pose:
-    """A transform as a message: (3,) and (4,)."""
-    x, y, z = translation.tolist()
-    a, b, c, d = rotations.normalise(rotation).tolist()
-    return Pose((x, y, z), (a, b, c, d))
-
-
-def compose(first: Pose, second: Pose) -> Pose:
-    """``second``, then ``first``: rig_from_camera, camera_from_object → rig_from_object."""
-    rotation = np.array(first.rotation)
-    moved = rotations.rotate(rotation, np.array(second.translation)) + first.translation
-    return pose_message(moved, rotations.multiply(rotation, np.array(second.rotation)))
 
 
 def object_pose_message(

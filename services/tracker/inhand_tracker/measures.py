@@ -118,9 +118,7 @@ class _Steps:
         )
 
 
-def _measure_stretch(
-    poses: RelativePoses, steps: _Steps, rows: slice, radius: float
-) -> Measures:
+def _measure_stretch(poses: RelativePoses, steps: _Steps, rows: slice, radius: float) -> Measures:
     body_poses, translations = poses.body_poses[rows], poses.translations[rows]
     orientations = poses.rotations[rows]
     near = cdist(body_poses, body_poses) <= radius

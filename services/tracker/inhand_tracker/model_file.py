@@ -61,7 +61,7 @@ def save_model(model: Model, path: Path) -> None:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with temporary.open("wb") as file:
-            np.savez_compressed(file, model=np.array(json.dumps(description)), **arrays)
+            np.savez(file, model=np.array(json.dumps(description)), **arrays)
         temporary.replace(path)
     except OSError as error:
         with contextlib.suppress(OSError):

@@ -7,7 +7,6 @@ from a wider range of body-poses."
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.distance import cdist
 
 from inhand_tracker.body import LEFT_HAND, RIGHT_HAND
 from inhand_tracker.mapping import Mapping
@@ -18,8 +17,8 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 NEAR_SHARE = 0.99
-ASKED_FRAMES = 512
-CHUNK = 1 << 14
+ASKED, COMPARED = 512, 100_000
+CHUNK = 8192
 BREADTH = 10
 
 
@@ -29,19 +28,25 @@ def farthest_near(mapping: Mapping) -> float:
     Of the training poses themselves 99 % have a pose of other participants (of other recordings,
     where there is one participant) that near.
     """
-    poses = mapping.body_poses
-    asked = np.unique(np.linspace(0, len(poses) - 1, ASKED_FRAMES).astype(np.int64))
-    people = np.array(mapping.participants)
-    if len(set(mapping.participants)) == 1:
+    people = np.unique(mapping.participants, return_inverse=True)[1]
+    if people.max() == 0:
         people = np.arange(len(people))
+    asked, among = (_spread(len(mapping.body_poses), most) for most in (ASKED, COMPARED))
+    asked_poses, owners = mapping.body_poses[asked], people[mapping.sequence_of(asked)]
     nearest = np.full(len(asked), np.inf)
-    for start in range(0, len(poses), CHUNK):
-        among = np.arange(start, min(start + CHUNK, len(poses)))
-        distances = cdist(poses[asked], poses[among])
-        owners = people[mapping.sequence_of(asked)][:, None], people[mapping.sequence_of(among)]
-        distances[np.equal(*owners)] = np.inf
-        np.minimum(nearest, distances.min(axis=1), out=nearest)
-    return float(np.quantile(nearest, NEAR_SHARE))
+    for start in range(0, len(among), CHUNK):
+        chunk = among[start : start + CHUNK]
+        poses = mapping.body_poses[chunk]
+        squares = np.square(poses).sum(axis=1) - 2.0 * asked_poses @ poses.T
+        squares[owners[:, None] == people[mapping.sequence_of(chunk)]] = np.inf
+        np.minimum(nearest, squares.min(axis=1), out=nearest)
+    nearest += np.square(asked_poses).sum(axis=1)
+    return float(np.sqrt(max(np.quantile(nearest, NEAR_SHARE), 0.0)))
+
+
+def _spread(frames: int, most: int) -> Indices:
+    """All of so many frames, or as many as ``most``, evenly spaced."""
+    return np.linspace(0, frames - 1, min(frames, most)).astype(np.int64)
 
 
 def draw_broadly(

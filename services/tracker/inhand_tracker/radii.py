@@ -14,7 +14,7 @@ Indices = NDArray[np.int64]
 
 EXACT_FRAMES = 20_000
 GROUPS = 8
-PROBES = 8
+PROBES = 4
 
 CHUNK = 128
 

@@ -1,0 +1,159 @@
+"""How many hypotheses the tracker weighs in a second, beside a plain evaluation one by one."""
+
+import os
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from inhand_runtime.pixels import encode_colour, encode_depth
+from inhand_schemas.messages import RgbdFrame
+from inhand_tracker import rotations
+from inhand_tracker.body import PARTS, Bases, part_bases, pelvis_basis
+from inhand_tracker.conversion import image_of
+from inhand_tracker.image import Image
+from inhand_tracker.learning import LabelledSequence, learn
+from inhand_tracker.likelihood import TERMS, Likelihood
+from inhand_tracker.model_file import Model
+from inhand_tracker.particles import Particles
+from inhand_tracker.viewpoints import BOUNDARY_POINTS, Viewpoints, find_viewpoints
+from numpy.typing import NDArray
+
+from inhand_lab.simulated_messages import camera_info, shape_of
+from inhand_lab.world import Simulation, simulate
+
+Array = NDArray[np.float64]
+
+INTERACTION = "drinkFromMug"
+SEED = 0
+PEOPLE = 2
+LEARNED_FRAMES = 120
+SHOWN_FRAME = 60
+HYPOTHESES = 1000
+NAIVE_HYPOTHESES = 100
+SECONDS = 6.0
+
+
+@dataclass(frozen=True)
+class TrackerSpeed:
+    """Rates on one core at ``points`` boundary points, an image given and prepared.
+
+    ``edge_hypotheses_per_second`` weighs poses by edges; ``full_hypotheses_per_second`` also finds
+    the poses from particles and weighs them by every term. ``naive_ratio`` is the first over the
+    rate of NumPy called for one hypothesis after the other.
+    """
+
+    edge_hypotheses_per_second: float
+    points: int
+    cores: int
+    full_hypotheses_per_second: float
+    naive_ratio: float
+
+
+def measure_tracker(seconds: float = SECONDS) -> TrackerSpeed:
+    """Measure for so many seconds, on one core."""
+    shown = simulate(INTERACTION, PEOPLE, SEED, LEARNED_FRAMES)
+    model, image = _model(), _image(shown)
+    particles, parts = _particles(model, shown)
+    edges, all_terms = Likelihood(model), Likelihood(model, TERMS)
+    translations, orientations = particles.poses(model.mapping, parts, shown.person.height)
+
+    def weigh_by_edges() -> Array:
+        return edges.log_weights(translations, orientations, image)
+
+    def weigh_fully() -> Array:
+        poses = particles.poses(model.mapping, parts, shown.person.height)
+        return all_terms.log_weights(*poses, image)
+
+    def weigh_naively() -> Array:
+        few = translations[:NAIVE_HYPOTHESES], orientations[:NAIVE_HYPOTHESES]
+        return naive_edge_log_weights(*few, model.viewpoints, image)
+
+    with _one_core():
+        edges_s, full_s, naive_s = _fastest((weigh_by_edges, weigh_fully, weigh_naively), seconds)
+    edge_rate, naive_rate = HYPOTHESES / edges_s, NAIVE_HYPOTHESES / naive_s
+    return TrackerSpeed(edge_rate, BOUNDARY_POINTS, 1, HYPOTHESES / full_s, edge_rate / naive_rate)
+
+
+def naive_edge_log_weights(
+    translations: Array, orientations: Array, viewpoints: Viewpoints, image: Image
+) -> Array:
+    """What the edge likelihood is, (P,), one pose at a time: the reference of the ratio."""
+    chamfer, camera = image.chamfer, image.camera
+    if chamfer is None:
+        raise ValueError("the image has no luminance")
+    log_weights = np.empty(len(translations))
+    for index, (translation, orientation) in enumerate(
+        zip(translations, orientations, strict=True)
+    ):
+        turn = rotations.to_matrix(orientation)
+        view = np.argmax(viewpoints.directions @ (turn.T @ -translation))
+        points = viewpoints.boundaries[view] @ turn.T + translation
+        pixels = np.rint(camera.project(points))
+        inside = np.all((pixels >= 0) & (pixels < [camera.width, camera.height]), axis=1)
+        nearness = np.zeros(len(points))
+        column, row = pixels[inside].astype(int).T
+        nearness[inside] = chamfer[row, column]
+        log_weights[index] = -np.square(1.0 - nearness).mean()
+    return log_weights
+
+
+def _model() -> Model:
+    people = [simulate(INTERACTION, person, SEED, LEARNED_FRAMES) for person in range(PEOPLE)]
+    shape = shape_of(people[0].object_model)
+    sequences = [
+        LabelledSequence(
+            str(one.participant),
+            one.person.handedness == "left",
+            one.true_joints_in_camera,
+            one.translations,
+            one.rotations,
+        )
+        for one in people
+    ]
+    return Model(INTERACTION, shape, learn(sequences, shape.mirror_normal), find_viewpoints(shape))
+
+
+def _image(shown: Simulation) -> Image:
+    seen = shown.render(SHOWN_FRAME)
+    frame = RgbdFrame(
+        sequence=0,
+        time_ns=0,
+        colour=encode_colour(seen.colour),
+        depth=encode_depth(seen.depth),
+    )
+    image = image_of(frame, camera_info(shown.intrinsics, shown.frame_rate), TERMS)
+    if image is None:
+        raise ValueError("a simulated frame has colour and depth")
+    return image
+
+
+def _particles(model: Model, shown: Simulation) -> tuple[Particles, Bases]:
+    """Particles all over the training frames, and the part predictors of the person shown."""
+    random = np.random.default_rng(SEED)
+    frames = random.integers(len(model.mapping.body_poses), size=(2, HYPOTHESES))
+    parts = random.integers(len(PARTS), size=(2, HYPOTHESES))
+    joints = shown.true_joints_in_camera[SHOWN_FRAME]
+    return Particles(*frames, *parts), part_bases(joints, pelvis_basis(joints))
+
+
+def _fastest(works: Sequence[Callable[[], object]], seconds: float) -> list[float]:
+    """The least seconds that each took, in turns: what else the machine does only ever adds."""
+    least, end = [float("inf")] * len(works), time.perf_counter() + seconds
+    while time.perf_counter() < end:
+        for index, work in enumerate(works):
+            began = time.perf_counter()
+            work()
+            least[index] = min(least[index], time.perf_counter() - began)
+    return least
+
+
+@contextmanager
+def _one_core() -> Iterator[None]:
+    usable = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(usable)})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, usable)

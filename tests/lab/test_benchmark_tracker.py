@@ -1,0 +1,66 @@
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+from inhand_lab import benchmark_tracker
+from inhand_lab.benchmark_tracker import TrackerSpeed, measure_tracker, naive_edge_log_weights
+from inhand_tracker.camera import Intrinsics
+from inhand_tracker.image import Image
+from inhand_tracker.likelihood import Likelihood
+from inhand_tracker.model_file import Model
+from inhand_tracker.shape import ObjectShape
+from inhand_tracker.viewpoints import find_viewpoints
+
+from inhand import bench
+from inhand.__main__ import main
+
+
+def test_the_plain_evaluation_gives_the_same_weights() -> None:
+    random = np.random.default_rng(0)
+    corners = 0.1 * random.normal(size=(4, 3))
+    faces = np.array([[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])
+    shape = ObjectShape("thing", corners, faces, corners, np.array([1.0, 0.0, 0.0]))
+    model = Model("hold", shape, None, find_viewpoints(shape))  # type: ignore[arg-type]
+    grey = random.integers(0, 256, (48, 64)).astype(np.uint8)
+    image = Image(grey, Intrinsics(60.0, 60.0, 31.5, 23.5, 64, 48))
+    # Some behind the camera, and some outside the image.
+    translations = random.normal(size=(200, 3)) + np.array([0.0, 0.0, 1.5])
+    orientations = random.normal(size=(200, 4))
+    orientations /= np.linalg.norm(orientations, axis=1, keepdims=True)
+    plain = naive_edge_log_weights(translations, orientations, model.viewpoints, image)
+    quick = Likelihood(model).log_weights(translations, orientations, image)
+    np.testing.assert_allclose(quick, plain, atol=1e-6)
+
+
+def test_the_measurement_says_what_was_measured() -> None:
+    speed = measure_tracker(seconds=0.05)
+    assert (speed.points, speed.cores) == (50, 1)
+    assert speed.edge_hypotheses_per_second > speed.full_hypotheses_per_second > 0.0
+    assert speed.naive_ratio > 1.0
+
+
+def test_the_measurement_gives_all_cores_back() -> None:
+    before = benchmark_tracker.os.sched_getaffinity(0)
+    measure_tracker(seconds=0.01)
+    assert benchmark_tracker.os.sched_getaffinity(0) == before
+
+
+def test_the_verb_shows_the_figures_and_writes_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    speed = TrackerSpeed(1234567.0, 50, 1, 7654.0, 12.34)
+    monkeypatch.setattr(bench, "measure_tracker", lambda: speed)
+    assert main(["bench", "tracker", "--json", str(tmp_path / "speed.json")]) == 0
+    assert json.loads((tmp_path / "speed.json").read_text()) == asdict(speed)
+    shown = capsys.readouterr().out
+    assert "1,234,567" in shown
+    assert "7,654" in shown
+
+
+def test_a_subject_that_there_is_not_is_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["bench", "everything"])
+    assert ended.value.code == 2
+    assert "tracker" in capsys.readouterr().err
