@@ -23,6 +23,8 @@ def progress_bars(totals: Mapping[str, int]) -> Iterator[Callable[[str], None]]:
         MofNCompleteColumn(),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    console = Console(stderr=True)
+    hidden = not console.is_terminal
+    with Progress(*columns, console=console, transient=True, disable=hidden) as progress:
         tasks = {name: progress.add_task(name, total=total) for name, total in totals.items()}
         yield lambda name: progress.advance(tasks[name])

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from inhand_lab.joints import PARENTS, Joint
 from inhand_lab.recursion import leaky_sum
-from inhand_lab.transforms import Floats, normalised
+from inhand_lab.transforms import Floats
 
 _ARM, _LEG = (12, 20, 14, 24), (9, 18, 18, 4)
 MISTAKES = 1e-3 * np.array([0, 5, 14, 12, *_ARM, *_ARM, *_LEG, *_LEG], float)
@@ -27,7 +27,7 @@ SIMILAR = np.array(
 )
 """How far, in metres, a joint must go from the hips' point of view to be mistaken otherwise."""
 ACROSS = 0.35
-"""A hand is taken to be too near or too far along its bone rather than aside: that share of it."""
+"""A hand is seen too short or too long rather than turned: that share of the mistake is aside."""
 WAVES = 12
 """Waves that a mistake is made of."""
 
@@ -97,9 +97,11 @@ def mistake(person: int, joints: Floats) -> Floats:
     angles = np.einsum("tjk,jwk->tjw", place, waves)[..., None] + phases
     mistakes = MISTAKES[:, None] * np.sqrt(2.0 / WAVES) * np.cos(angles).sum(axis=2)
     for end in HANDS:
-        bone = normalised(joints[:, end] - joints[:, PARENTS[end]])
-        along = np.sum(mistakes[:, end] * bone, axis=1, keepdims=True) * bone
-        mistakes[:, end] = along + ACROSS * (mistakes[:, end] - along)
+        bone = joints[:, end] - joints[:, PARENTS[end]]
+        length = np.linalg.norm(bone, axis=1, keepdims=True)
+        along = np.sum(mistakes[:, end] * bone, axis=1, keepdims=True) / length
+        aside = mistakes[:, end] - bone * (along / length)
+        mistakes[:, end] = ACROSS * aside + bone * (np.exp(along / length) - 1.0)
     return np.asarray(mistakes)
 
 

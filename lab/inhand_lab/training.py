@@ -61,8 +61,8 @@ def train(
     """
     if len(entries) < 2:
         raise DatasetError(
-            f"{dataset.folder}: {len(entries)} recordings are left to learn from, and two are the "
-            "least: add participants"
+            f"{dataset.folder}: learning compares recordings, two at the least, and "
+            f"{len(entries)} is left: add participants"
         )
     first = entries[0]
     if first.object is None:

@@ -1,4 +1,4 @@
-"""paintWall: strokes up and down the board, at an angle that the brush keeps and the arm does not."""
+"""paintWall: strokes up and down a board, at an angle that the brush keeps and the arm does not."""
 
 import numpy as np
 import pytest
@@ -61,5 +61,5 @@ def test_the_brush_is_dipped_into_the_pot_and_put_back_there(participant: int) -
     in_pot = np.linalg.norm(tips - tips[0], axis=1) < 0.08
     assert in_pot[0]
     assert in_pot[-1]
-    assert np.array_equal(tips[0], tips[-1])
+    assert np.allclose(tips[0], tips[-1])
     assert not (in_pot & on_board).any()

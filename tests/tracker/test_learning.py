@@ -1,10 +1,13 @@
 """Learning against the spec's formulas, written out again in loops (section 2 of P14)."""
 
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from inhand_tracker.learning import LabelledSequence, UnusableSequenceError, learn
+from inhand_tracker import mapping as mapping_module
+from inhand_tracker import radii as radii_module
+from inhand_tracker.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.mapping import Mapping
 from people import STANDING, held, move, quaternion_of, same_rotation, sequence, waving
 from scipy.spatial.transform import Rotation
@@ -336,3 +339,53 @@ def test_frames_without_a_pelvis_are_left_out() -> None:
     mapping = learn([odd, sequence("p1", 8, seed=1)], NORMAL)
     assert mapping.starts.tolist() == [0, 6, 14]
     assert np.isfinite(mapping.rotations).all()
+
+
+def test_every_stage_is_told_once_a_sequence() -> None:
+    told: Counter[str] = Counter()
+    learn(CASES["three participants"](), NORMAL, lambda stage: told.update([stage]))
+    assert told == dict.fromkeys(STAGES, 3)
+
+
+def test_clusters_of_a_long_sequence_are_those_of_its_stretches(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Cut into stretches, frames measure as if each stretch had been learned by itself."""
+    whole = [sequence(f"p{i}", 48, seed=i) for i in range(2)]
+    uncut = learn(whole, NORMAL)
+    monkeypatch.setattr(mapping_module, "LONGEST_STRETCH", 24)
+    cut = learn(whole, NORMAL)
+    np.testing.assert_array_equal(cut.starts, uncut.starts)
+    np.testing.assert_array_equal(cut.radii, uncut.radii)
+    assert not np.allclose(cut.translation_variation, uncut.translation_variation)
+    poses = cut.body_poses
+    for frame in range(96):
+        first = frame - frame % 24
+        near = np.linalg.norm(poses[first : first + 24] - poses[frame], axis=1)
+        cluster = first + np.flatnonzero(near <= cut.radii[frame // 48])
+        places = cut.translations[cluster]
+        spread = np.square(places - places.mean(axis=0)).sum(axis=-1).mean(axis=0)
+        assert cut.translation_variation[frame] == pytest.approx(np.median(spread), abs=1e-12)
+
+
+@pytest.mark.parametrize("participants", [2, 5, 11])
+def test_radii_of_many_frames_are_hardly_larger(
+    participants: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    people = [sequence(f"p{i}", 60, seed=i) for i in range(participants)]
+    exact = learn(people, NORMAL).radii
+    monkeypatch.setattr(radii_module, "EXACT_FRAMES", 0)
+    grouped = learn(people, NORMAL).radii
+    assert (grouped >= exact * (1.0 - 1e-5)).all()
+    if participants <= radii_module.GROUPS:
+        np.testing.assert_allclose(grouped, exact, rtol=1e-5)
+    assert np.median(grouped) <= 1.05 * np.median(exact)
+
+
+def test_many_frames_of_one_participant_are_compared_between_recordings(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    recordings = CASES["a single participant"]()
+    exact = learn(recordings, NORMAL).radii
+    monkeypatch.setattr(radii_module, "EXACT_FRAMES", 0)
+    np.testing.assert_allclose(learn(recordings, NORMAL).radii, exact, rtol=1e-5)

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from inhand_tracker.mapping import BodyPoseIndex, Mapping
+from inhand_tracker.mapping import LONGEST_STRETCH, BodyPoseIndex, Mapping, stretches
+from inhand_tracker.pose_search import LIST_LENGTH, PROBES, PoseSearch
 
 
 def mapping_of(poses: list[np.ndarray], radii: list[float]) -> Mapping:
@@ -83,3 +84,61 @@ def test_body_poses_that_are_all_equal_are_one_cluster() -> None:
     frame, distance = index.nearest(np.ones(60))
     assert 0 <= frame < 520
     assert distance == 0.0
+
+
+def walking(frames: int, seed: int = 0) -> np.ndarray:
+    """Body poses of a slow walk through the 60 dimensions, with noise."""
+    random = np.random.default_rng(seed)
+    path = np.cumsum(random.normal(size=(frames, 6)), axis=0) / np.sqrt(frames)
+    return path @ random.normal(size=(6, 60)) + 0.02 * random.normal(size=(frames, 60))
+
+
+def test_a_sequence_of_up_to_2048_frames_is_one_stretch() -> None:
+    assert stretches(1).tolist() == [0, 1]
+    assert stretches(LONGEST_STRETCH).tolist() == [0, LONGEST_STRETCH]
+
+
+@pytest.mark.parametrize("frames", [2049, 5000, 108_000])
+def test_a_longer_sequence_is_cut_into_equal_stretches(frames: int) -> None:
+    cuts = stretches(frames)
+    lengths = np.diff(cuts)
+    assert (cuts[0], cuts[-1]) == (0, frames)
+    assert lengths.max() <= LONGEST_STRETCH
+    assert lengths.max() - lengths.min() <= 1
+    assert len(lengths) == -(-frames // LONGEST_STRETCH)
+
+
+def test_a_cluster_does_not_leave_its_stretch() -> None:
+    """A person who stands still for three stretches, after a recording of somebody else."""
+    mapping = mapping_of([np.zeros((7, 60)), np.ones((3 * LONGEST_STRETCH, 60))], [0.1, 0.1])
+    index = BodyPoseIndex(mapping)
+    for stretch in range(3):
+        first = 7 + stretch * LONGEST_STRETCH
+        for frame in (first, first + LONGEST_STRETCH - 1):
+            expected = np.arange(first, first + LONGEST_STRETCH)
+            np.testing.assert_array_equal(index.cluster(frame), expected)
+
+
+def test_no_nearest_pose_is_missed_while_all_lists_are_looked_through() -> None:
+    count = LIST_LENGTH * PROBES // 4
+    poses, asked = walking(count), walking(count, seed=1)[::400]
+    frames, distances = PoseSearch(poses).nearest(asked)
+    for pose, frame, distance in zip(asked, frames, distances, strict=True):
+        all_distances = np.linalg.norm(poses - pose, axis=1)
+        assert all_distances[frame] == pytest.approx(all_distances.min(), rel=1e-5)
+        assert distance == pytest.approx(all_distances.min(), rel=1e-5)
+
+
+def test_few_probes_find_a_pose_that_is_hardly_farther() -> None:
+    poses, asked = walking(20_000), walking(20_000, seed=1)[::200]
+    search = PoseSearch(poses)
+    _, exact = search.nearest(asked)
+    _, approximate = search.nearest(asked, probes=4)
+    assert (approximate >= exact * (1.0 - 1e-6)).all()
+    assert np.median(approximate) <= 1.02 * np.median(exact)
+
+
+def test_a_search_is_the_same_whenever_it_is_made() -> None:
+    poses, asked = walking(3000), walking(3000, seed=1)[::50]
+    first, second = (PoseSearch(poses).nearest(asked, probes=2) for _ in range(2))
+    np.testing.assert_array_equal(first, second)

@@ -60,6 +60,8 @@ OBLIQUE = (np.radians(45.0), np.radians(40.0))
 """Of the grip across the right and the left palm; the right one is more in the fingers."""
 HANDS_APART = 0.09
 NECK_TURN = np.radians(65.0)
+SQUARE = 0.3
+"""How much the face is square to the swing's plane, beside what the left arm makes of it."""
 FOOT_TURN = 0.6
 """Turn of the right foot to the left as its heel is lifted, by the lift."""
 
@@ -213,8 +215,9 @@ def _swing_club(person: Person, trunk: Trunk, swing: Swing, address: int) -> Tra
     lowest = hands[address, 2]
     steep = np.clip(np.arcsin(np.clip(lowest / -SOLE, -1.0, 1.0)), 0.0, STEEPEST)
     shaft = _in_plane(swing.club, float(steep))
-    forearm = hands - trunk.left_shoulder
-    across = normalised(forearm - shaft * np.sum(forearm * shaft, axis=1, keepdims=True))
+    below = np.array([0.0, -np.sin(steep), -np.cos(steep)])
+    arm_way = normalised(hands - trunk.left_shoulder) + SQUARE * below
+    across = normalised(arm_way - shaft * np.sum(arm_way * shaft, axis=1, keepdims=True))
     return Transform(hands, np.stack([np.cross(across, shaft), -across, -shaft], axis=2))
 
 
