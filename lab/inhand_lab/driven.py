@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from inhand_lab.cameras import KINECT, Camera
 from inhand_lab.denoising import bone_lengths, denoise
 from inhand_lab.holds import attach, rehearse
+from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.joints import MIRRORED_JOINTS, Joint
 from inhand_lab.kinematics import Body
-from inhand_lab.motions import INTERACTIONS
 from inhand_lab.motions.timeline import drift
 from inhand_lab.person import Person, Proportions, sample_person, standing_height
 from inhand_lab.seen_frames import SeenFrames, seen_frames

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from inhand_lab import motions
 from inhand_lab.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT
+from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.kinematics import Body, place_body
 from inhand_lab.motions.performance import Contact
 from inhand_lab.motions.timeline import drift
@@ -55,7 +55,7 @@ class Hold:
 def rehearse(interaction: str, person: Person, seed: int) -> Hold:
     """The person's hold in that interaction."""
     random = np.random.default_rng([seed, 0x401D])
-    done = motions.INTERACTIONS[interaction].perform(person, REHEARSAL, random)
+    done = INTERACTIONS[interaction].perform(person, REHEARSAL, random)
     body = place_body(person, done.posture, done.right_hand, done.left_hand)
     contact = _usual(done.contact)
     held = done.contact == contact

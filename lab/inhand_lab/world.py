@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from inhand_lab.cameras import KINECT, Camera
 from inhand_lab.figure import Figure, build_figure
+from inhand_lab.interactions import INTERACTIONS as PERFORMED
 from inhand_lab.kinematics import Body, place_body
 from inhand_lab.motion_blur import blurred, scene_in_motion
-from inhand_lab.motions import INTERACTIONS as PERFORMED
 from inhand_lab.motions.furniture import Box
 from inhand_lab.motions.performance import Contact
 from inhand_lab.noise_fields import any_place

@@ -4,8 +4,8 @@ from functools import cache
 
 import numpy as np
 from inhand_lab.figure import head_radii
+from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.kinematics import Body, place_body
-from inhand_lab.motions import INTERACTIONS
 from inhand_lab.motions.performance import Performance
 from inhand_lab.person import Person, sample_person
 from inhand_lab.transforms import Floats, Transform

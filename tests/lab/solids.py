@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 import trimesh
 from inhand_lab.figure import LIMBS, belly, head_radii, pelvis, rib_cage
+from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.joints import Joint
 from inhand_lab.kinematics import Body
-from inhand_lab.motions import INTERACTIONS
 from inhand_lab.person import Person
 from inhand_lab.transforms import Floats, Transform
 

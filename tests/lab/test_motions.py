@@ -4,9 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.joints import PARENTS, Joint
 from inhand_lab.kinematics import BALL_HEIGHT, place_trunk
-from inhand_lab.motions import INTERACTIONS
 from inhand_lab.motions.performance import Contact, mouth
 from inhand_lab.motions.timeline import Movement, Pause, minimum_jerk, schedule
 from inhand_lab.objects.mug import MUG_HEIGHT, MUG_RADIUS

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inhand_lab.cameras import CAMERAS, KINECT, OAK_D, Camera
+from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.motion_blur import Moving, blurred
-from inhand_lab.motions import INTERACTIONS
 from inhand_lab.objects.model import RETURN_NO_DEPTH
 from inhand_lab.rasteriser import Canvas, draw
 from inhand_lab.render import OBJECT, ROOM

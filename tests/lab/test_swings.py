@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.joints import Joint
 from inhand_lab.kinematics import Body, place_body
-from inhand_lab.motions import INTERACTIONS
 from inhand_lab.motions.performance import Contact
 from inhand_lab.objects.golf_club import SOLE
 from inhand_lab.objects.racket import TIP

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.joints import Joint
 from inhand_lab.kinematics import Body, place_body
-from inhand_lab.motions import INTERACTIONS
 from inhand_lab.motions.performance import Performance
 from inhand_lab.person import Person, sample_person
 from inhand_lab.transforms import Transform
