@@ -23,7 +23,7 @@ WINDOW = 45
 """Frames over which the deviation of a bone's length is taken."""
 LAG = 8
 """Frames between which a slow wander is measured."""
-FEWEST, FEWEST_WINDOWS, FEWEST_EVENTS = 300, 40, 15
+FEWEST, FEWEST_WINDOWS, FEWEST_EVENTS = 500, 40, 15
 """Values that a figure must rest on."""
 
 GROUPS: dict[str, tuple[Joint, ...]] = {
