@@ -47,15 +47,19 @@ def training_table(costs: list[TrainingCost]) -> Table:
         table.add_column(f"{cost.learning.frames:,} frames", justify="right")
     for name, value in _TRAINING_ROWS.items():
         first = value(costs[0])
-        table.add_row(name, *(f"{value(c):.3g} ({value(c) / first:.2g})" for c in costs))
+        table.add_row(name, *(f"{_short(value(c))} ({_short(value(c) / first)})" for c in costs))
     table.add_section()
     asked = [cost.asking for cost in costs]
     table.add_row("nearest pose found", *(f"{one.found:.0%}" for one in asked))
     table.add_row(
         "nearest pose, times faster than linear search",
-        *(f"{one.linear_ms / one.nearest_ms.p50:.2g}" for one in asked),
+        *(_short(one.linear_ms / one.nearest_ms.p50) for one in asked),
     )
     return table
+
+
+def _short(value: float) -> str:
+    return f"{value:,.0f}" if value >= 100.0 else f"{value:.2g}"
 
 
 def _tracker() -> tuple[Table, dict[str, Any]]:
