@@ -35,6 +35,8 @@ LEFT_OUT = (
     "confidences and tracking states: the recordings have none; ours are assumed",
     "losses of the whole person: the recordings have none; ours come once in two minutes",
     "the error that all joints share, and any bias: they need a truth beside the skeleton",
+    "how fast people move: empty-handed swings peak at 2.9 to 5.4 m/s at the wrist there, and ours "
+    "with things in hand at 2.1 to 4.8 m/s, so that all is compared at the same pace",
     "skeletons of people who turn away or who hold real objects, which hide hands and are "
     "taken for a part of them",
     "colour: the recordings kept have none; blur and noise are modelled, not fitted",

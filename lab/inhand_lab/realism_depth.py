@@ -17,9 +17,14 @@ PATCH = 6
 """Half the width of the patch on the chest, in pixels of an image 320 wide."""
 RESTING = 0.002
 """A chest that moves less than this, in metres, between two frames is at rest."""
+FEWEST_HOLES = 15
+"""Frames that the share of holes must rest on."""
 SMOOTHED = 5
 """Width, in pixels, of the median that an outline is ragged against."""
 CHEST = (Joint.SPINE, Joint.SHOULDER_CENTER)
+HANDS = (Joint.WRIST_LEFT, Joint.HAND_LEFT, Joint.WRIST_RIGHT, Joint.HAND_RIGHT)
+REACHING = 0.15
+"""A hand is before the trunk from this far in front of the shoulders, metres."""
 UPRIGHT, FACING = 25, 10
 """Pixels of an image 320 wide that the trunk is high and the hips are wide at least."""
 
@@ -77,20 +82,27 @@ def _silhouette(pairs: list[DepthPair]) -> Iterator[Figure]:
     for pair in pairs:
         person = pair.depths[0] > 0
         outline = np.count_nonzero(person & ~binary_erosion(person))
-        if (trunk := _trunk(pair)).size:
+        if (trunk := _trunk_behind_hand(pair)).size:
             holes.append(np.mean(trunk == 0))
         ragged.append(np.count_nonzero(person ^ median_filter(person, SMOOTHED)) / outline)
-    yield Figure("holes", "%", "trunk that faces the camera", 100.0 * float(np.mean(holes)))
+    share = 100.0 * float(np.mean(holes)) if len(holes) >= FEWEST_HOLES else np.nan
+    yield Figure("holes", "%", "trunk behind a hand", share)
     yield Figure("ragged pixels", "%", "person's outline", 100.0 * float(np.mean(ragged)))
 
 
-def _trunk(pair: DepthPair) -> NDArray[np.uint16]:
-    """The depth from the shoulders' centre to the spine, and no wider than the hips; nothing of
-    people who bend or stand sideways."""
-    u, v = _project(pair, pair.joints[0][[Joint.HIP_LEFT, Joint.HIP_RIGHT, *CHEST]])
-    if v[2] - v[3] < UPRIGHT or abs(u[0] - u[1]) < FACING:
+def _trunk_behind_hand(pair: DepthPair) -> NDArray[np.uint16]:
+    """The depth from the shoulders' centre to the hips', and no wider than the hips; nothing where
+    no hand is before it, and of people who bend or stand sideways."""
+    joints = pair.joints[0]
+    u, v = _project(pair, joints)
+    rows = slice(v[Joint.SHOULDER_CENTER], v[Joint.HIP_CENTER])
+    columns = slice(*sorted(u[[Joint.HIP_LEFT, Joint.HIP_RIGHT]]))
+    inside = (rows.start <= v) & (v < rows.stop) & (columns.start <= u) & (u < columns.stop)
+    before = joints[:, 2] < joints[Joint.SHOULDER_CENTER, 2] - REACHING
+    upright = rows.stop - rows.start >= UPRIGHT and columns.stop - columns.start >= FACING
+    if not upright or not (inside & before)[list(HANDS)].any():
         return np.zeros((0, 0), np.uint16)
-    return pair.depths[0][v[3] : v[2], min(u[:2]) : max(u[:2])]
+    return pair.depths[0][rows, columns]
 
 
 def _project(pair: DepthPair, points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

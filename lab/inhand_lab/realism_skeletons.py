@@ -45,6 +45,8 @@ ARMS = (
     (Joint.ELBOW_LEFT, Joint.WRIST_LEFT, Joint.HAND_LEFT),
     (Joint.ELBOW_RIGHT, Joint.WRIST_RIGHT, Joint.HAND_RIGHT),
 )
+FLIPPED = 110.0
+"""Degrees: a wrist bends by some 75 at most, and what a resting tracker adds is little."""
 PACES = {
     "still": (0.0, 0.05),
     "slow": (0.05, 0.3),
@@ -191,11 +193,11 @@ def _departures(recordings: Sequence[Observed]) -> Iterator[Figure]:
 
 def _flips(recordings: Sequence[Observed]) -> Iterator[Figure]:
     masks = [
-        (seen.speeds[:, arm[1]], hand_bends(seen.joints, arm) > 90.0)
+        (seen.speeds[:, arm[1]], hand_bends(seen.joints, arm) > FLIPPED)
         for seen in recordings
         for arm in ARMS
     ]
-    yield from _episodes("hand turned by 90°", masks)
+    yield from _episodes(f"hand turned by {FLIPPED:.0f}°", masks)
 
 
 def _episodes(name: str, masks: list[tuple[Floats, NDArray[np.bool_]]]) -> Iterator[Figure]:

@@ -3,8 +3,9 @@
 A tracker errs by pose: what it takes for the elbow changes as the arm moves, hardly while it
 rests, and is the same again when the arm comes back. On top of that errors wander, with the way
 that a joint goes rather than with time, in calm spells and busy ones; and a joint inherits a part
-of its parent's. Hands and feet, small as they are, are
-now and then seen turned or cut short, and a fast wrist stays behind or leaves the arm.
+of its parent's. Hands and feet, small as they are, are now and then seen turned or cut short, a
+hand flips, and a fast wrist stays behind or leaves the arm. Sizes are such that the realism table
+comes out; none was chosen for what a method makes of it.
 """
 
 from __future__ import annotations
@@ -17,63 +18,68 @@ from inhand_lab.joints import PARENTS, Joint
 from inhand_lab.recursion import leaky_sum
 from inhand_lab.transforms import Floats
 
-_ARM, _LEG = (12, 20, 14, 24), (9, 18, 18, 4)
-MISTAKES = 1e-3 * np.array([0, 5, 14, 12, *_ARM, *_ARM, *_LEG, *_LEG], float)
+_ARM, _LEG = (6, 25, 5, 16), (3.3, 18, 8.8, 5)
+MISTAKES = 1e-3 * np.array([0, 17, 20, 3.1, *_ARM, *_ARM, *_LEG, *_LEG], float)
 """Deviation, along each axis and over all poses, of where a joint is taken to be, metres, in the
 order of Joint."""
-_ARM_SIMILAR, _LEG_SIMILAR = (0.04, 0.06, 0.10, 0.06), (0.02, 0.018, 0.018, 0.03)
+_ARM_SIMILAR, _LEG_SIMILAR = (0.108, 0.060, 0.041, 0.047), (0.034, 0.0058, 0.031, 0.047)
 SIMILAR = np.array(
-    [0.1, 0.02, 0.02, 0.04, *_ARM_SIMILAR, *_ARM_SIMILAR, *_LEG_SIMILAR, *_LEG_SIMILAR]
+    [0.1, 0.0095, 0.022, 0.032, *_ARM_SIMILAR, *_ARM_SIMILAR, *_LEG_SIMILAR, *_LEG_SIMILAR]
 )
 """How far, in metres, a joint must go from the hips' point of view to be mistaken otherwise."""
-ACROSS = 0.35
+ACROSS = 0.10
 """A hand is seen too short or too long rather than turned: that share of the mistake is aside."""
 WAVES = 12
 """Waves that a mistake is made of."""
 
-_ARM_WANDERING, _LEG_WANDERING = (6, 10, 6, 12), (5, 9, 9, 4)
+_ARM_WANDERING, _LEG_WANDERING = (9, 12.5, 16.5, 9.5), (3.2, 19, 12, 10)
 DEVIATIONS = 1e-3 * np.array(
-    [6, 4, 8, 7, *_ARM_WANDERING, *_ARM_WANDERING, *_LEG_WANDERING, *_LEG_WANDERING], float
+    [19, 15, 13, 7, *_ARM_WANDERING, *_ARM_WANDERING, *_LEG_WANDERING, *_LEG_WANDERING], float
 )
 """Deviation of a joint's wandering error along each axis, metres."""
-WAY = 0.4
+WAY = 0.33
 """Way in metres over which a wandering error is forgotten."""
-CREEP = 0.10
+CREEP = 0.085
 """Speed, metres a second, at which the tracker begins to take notice: slower counts for less."""
-_ARM_INHERITED, _LEG_INHERITED = (0.5, 0.5, 0.8, 0.6), (0.5, 0.5, 0.5, 0.5)
+_ARM_INHERITED, _LEG_INHERITED = (0.32, 0.38, 0.94, 0.61), (0.65, 0.61, 0.32, 0.95)
 INHERITED = np.array(
-    [0.0, 0.5, 0.5, 0.5, *_ARM_INHERITED, *_ARM_INHERITED, *_LEG_INHERITED, *_LEG_INHERITED]
+    [0.0, 0.6, 0.24, 0.5, *_ARM_INHERITED, *_ARM_INHERITED, *_LEG_INHERITED, *_LEG_INHERITED]
 )
 """Share of its parent's error that a joint has as well."""
-MEMORY_AT_REST = 60.0
+MEMORY_AT_REST = 120.0
 """Seconds in which the error of a joint at rest is forgotten."""
-SPELL = 0.2
+SPELL = 0.1
 """Correlation time of busy spells, seconds."""
-BUSYNESS = 1.2
-"""Deviation of the logarithm of how busy the error is."""
+BUSYNESS, BUSIEST = 1.55, 40.0
+"""Deviation of the logarithm of how busy the error is, and how many times its median at most."""
 TAILS = 3.0
 """Degrees of freedom of Student's t: the errors' steps have long tails."""
-TREMBLING = 0.0004
-"""Deviation, metres, of the error that is new in every frame, at rest; it has doubled at the
-speed TREMBLING_SPEED, metres a second."""
-TREMBLING_SPEED = 0.5
+_ARM_TREMBLING, _LEG_TREMBLING = (0.23, 0.19, 0.12, 0.29), (0.17, 0.17, 0.17, 0.17)
+TREMBLING = 1e-3 * np.array(
+    [0.17] * 4 + [*_ARM_TREMBLING, *_ARM_TREMBLING, *_LEG_TREMBLING, *_LEG_TREMBLING]
+)
+"""Deviation, metres, of the error that is new in every frame, at rest; it grows by as much with
+every TREMBLING_SPEED, metres a second, up to the speed TREMBLING_MOST."""
+TREMBLING_SPEED, TREMBLING_MOST = 0.15, 0.3
 
 HANDS, FEET = (Joint.HAND_LEFT, Joint.HAND_RIGHT), (Joint.FOOT_LEFT, Joint.FOOT_RIGHT)
-END_RATE = {"hand": 3.0, "foot": 4.5}
-"""Misreadings of hand or foot, a second, at rest."""
-END_RATE_MOVING = 9.0
-END_TURN = {"hand": 0.35, "foot": 0.7}
+END_RATE = {"hand": 5.3, "foot": 8.4}
+"""Misreadings of hand or foot a second."""
+END_TURN = {"hand": 0.08, "foot": 0.30}
 """Deviation of the turn about each axis, radians."""
-END_STRETCH = {"hand": 0.5, "foot": 0.1}
+END_STRETCH = {"hand": 0.38, "foot": 0.14}
 """Deviation of the logarithm of the bone's stretching."""
-END_STAY = 0.3
+END_STAY = 0.04
+"""Chance that one lasts on to the next frame, as other episodes' STAY."""
 
-FAILURE_RATE = 0.7
-"""Failures of a wrist a second, for each metre a second above CALM."""
-FAILURE_STAY = 0.5
-CALM, WILD = 0.2, 1.7
+FLIP_RATE, FLIP_RATE_MOVING, FLIP_STAY = 0.09, 0.28, 0.22
+"""Flips of a hand a second, at rest and more for each metre a second."""
+
+FAILURE_RATE, FAILURE_STAY = 2.9, 0.5
+"""Failures of a wrist a second, for each metre a second above CALM and below WILD."""
+CALM, WILD = 0.2, 0.6
 STUCK_SHARE = 0.4
-ASTRAY = 0.09
+ASTRAY = 0.115
 """Deviation along each axis, metres, of a wrist that has left its arm."""
 
 
@@ -118,7 +124,7 @@ def wander(random: np.random.Generator, speed: Floats, frame_rate: float) -> Flo
     for frame in range(len(pushes)):
         errors[frame] = error = kept[frame] * error + pushes[frame]
     errors *= DEVIATIONS[:, None]
-    size = TREMBLING * busy * (1.0 + speed / TREMBLING_SPEED)
+    size = TREMBLING * busy * (1.0 + np.minimum(speed, TREMBLING_MOST) / TREMBLING_SPEED)
     return errors + size[..., None] * random.normal(size=errors.shape)
 
 
@@ -131,18 +137,14 @@ def inherited(errors: Floats) -> Floats:
     return whole
 
 
-def misread_ends(
-    random: np.random.Generator, joints: Floats, speed: Floats, frame_rate: float
-) -> Floats:
+def misread_ends(random: np.random.Generator, joints: Floats, frame_rate: float) -> Floats:
     """The joints (T, 20, 3) with hands and feet that are now and then turned or cut short."""
     misread = joints.copy()
     for end in (*HANDS, *FEET):
         kind = "hand" if end in HANDS else "foot"
         # Some people's hands and feet stand out, others' are lost in sleeves and in the floor.
-        rate = random.exponential() * (
-            END_RATE[kind] + END_RATE_MOVING * np.minimum(speed[:, end], 1)
-        )
-        begun = _episodes(random, np.minimum(rate / frame_rate, 0.5), END_STAY)
+        chance = np.full(len(joints), random.exponential() * END_RATE[kind] / frame_rate)
+        begun = _episodes(random, np.minimum(chance, 0.5), END_STAY)
         turns = Rotation.from_rotvec(END_TURN[kind] * random.normal(size=(len(joints), 3)))
         stretch = np.exp(END_STRETCH[kind] * random.normal(size=(len(joints), 1)))
         wrong = begun >= 0
@@ -150,6 +152,19 @@ def misread_ends(
         bone = turns[begun[wrong]].apply(joints[wrong, end] - root)
         misread[wrong, end] = root + stretch[begun[wrong]] * bone
     return misread
+
+
+def flip_hands(
+    random: np.random.Generator, joints: Floats, speed: Floats, frame_rate: float
+) -> Floats:
+    """The joints (T, 20, 3) with hands that now and then point back along the forearm."""
+    flipped = joints.copy()
+    for hand in HANDS:
+        rate = FLIP_RATE + FLIP_RATE_MOVING * speed[:, hand]
+        back = _episodes(random, np.minimum(rate / frame_rate, 0.5), FLIP_STAY) >= 0
+        wrist = joints[back, PARENTS[hand]]
+        flipped[back, hand] = 2.0 * wrist - joints[back, hand]
+    return flipped
 
 
 def lose_wrists(
@@ -174,7 +189,7 @@ def lose_wrists(
 
 
 def _busyness(random: np.random.Generator, shape: tuple[int, ...], frame_rate: float) -> Floats:
-    """A log-normal process along the first axis, of median 1."""
+    """A log-normal process along the first axis, of median 1 and at most BUSIEST."""
     kept = np.exp(-1.0 / (frame_rate * SPELL))
     start = random.normal(size=shape[1:])
     pushes = np.sqrt(1.0 - kept**2) * random.normal(size=shape)

@@ -18,6 +18,7 @@ from inhand_lab.joints import PARENTS, Joint
 from inhand_lab.person import Person
 from inhand_lab.recursion import leaky_sum
 from inhand_lab.skeleton_errors import (
+    flip_hands,
     inherited,
     lose_wrists,
     misread_ends,
@@ -73,7 +74,8 @@ def read_skeleton(
     widened = 1.0 + (GUESS_FACTOR - 1.0) * guessed
     error = mistake(person.appearance, seen) + wander(random, speed, frame_rate)
     raw = seen + widened[..., None] * inherited(error)
-    raw = misread_ends(random, raw, speed, frame_rate)
+    raw = misread_ends(random, raw, frame_rate)
+    raw = flip_hands(random, raw, speed, frame_rate)
     raw = lose_wrists(random, raw, speed, frame_rate)
     joints = smooth(raw, guessed)
     states = np.where(guessed > 0.5, INFERRED, TRACKED).astype(np.uint8)
@@ -96,7 +98,7 @@ def _last_seen(random: np.random.Generator, count: int, frame_rate: float) -> ND
     losses = random.random(count) < 1.0 / (SECONDS_BETWEEN_LOSSES * frame_rate)
     lost = np.zeros(count, bool)
     for start in np.flatnonzero(losses):
-        length = 1 + random.geometric(1.0 / (SECONDS_LOST * frame_rate))
+        length = 1 + random.geometric(min(1.0 / (SECONDS_LOST * frame_rate), 1.0))
         lost[max(start, 1) : start + length] = True
     return np.maximum.accumulate(np.where(lost, 0, np.arange(count)))
 

@@ -61,7 +61,7 @@ def test_a_drift_is_told_from_a_tremble() -> None:
 
 
 def test_what_is_too_rare_to_tell_is_no_number() -> None:
-    assert np.isnan(value(measure_skeletons(skeletons(0.0)), "hand turned by 90°", "fast wrist"))
+    assert np.isnan(value(measure_skeletons(skeletons(0.0)), "hand turned by 110°", "fast wrist"))
 
 
 def test_a_hand_that_points_back_is_bent_by_half_a_turn() -> None:
@@ -100,7 +100,7 @@ def test_depth_figures_follow_steps_and_noise() -> None:
     coarse = measure_depth(depth_pairs(8.0, 16))
     ratio = value(coarse, "depth step over squared distance", "2.0 to 2.7 m")
     assert ratio == pytest.approx(16.0 / 2.5**2, rel=0.05)
-    assert value(coarse, "holes", "trunk that faces the camera") == 0.0
+    assert value(coarse, "ragged pixels", "person's outline") < 5.0
 
 
 def test_a_ratio_is_within_the_factor_either_way() -> None:

@@ -5,6 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 from inhand_lab.joints import PARENTS, Joint
+from inhand_lab.realism_skeletons import hand_bends
 from inhand_lab.skeleton_errors import DEVIATIONS, wander
 from inhand_lab.skeleton_noise import INFERRED, MISSING, TRACKED, SkeletonReading, read_skeleton
 from inhand_lab.tracker_filter import smooth
@@ -77,12 +78,19 @@ def test_errors_wander_with_the_way_and_not_with_the_time() -> None:
 
 def test_the_faster_the_wrist_the_more_often_it_leaves_the_arm() -> None:
     shares = []
-    for speed in (0.1, 1.0, 2.0):
+    for speed in (0.1, 0.4, 1.0):
         joints = read(swinging(3600, speed)).joints
         length = bone(joints, Joint.WRIST_RIGHT)
         shares.append(np.mean(np.abs(length / np.median(length) - 1.0) > 0.3))
-    assert shares[0] < 0.005
-    assert 0.002 < shares[1] < shares[2] < 0.25
+    assert shares[0] < 0.003 < shares[1] < shares[2] < 0.25
+
+
+def test_a_moving_hand_flips_now_and_then_and_soon_is_back() -> None:
+    arm = (Joint.ELBOW_RIGHT, Joint.WRIST_RIGHT, Joint.HAND_RIGHT)
+    back = hand_bends(read(swinging(3600, 1.5)).joints, arm) > 110.0
+    assert 0.003 < back.mean() < 0.06
+    begins = np.count_nonzero(np.diff(back.astype(int)) == 1)
+    assert 1.0 <= back.sum() / begins < 4.0
 
 
 def test_the_resting_arm_keeps_its_wrist_while_the_other_is_swung() -> None:
@@ -91,15 +99,20 @@ def test_the_resting_arm_keeps_its_wrist_while_the_other_is_swung() -> None:
     assert resting.std() < 0.7 * swung.std()
 
 
-def test_an_inferred_joint_errs_more() -> None:
-    error, hidden = [], []
-    for participant in range(6):
-        one = simulate("sweepFloor", participant, seed=7)
-        error.append(np.linalg.norm(one.joints_in_camera - one.true_joints_in_camera, axis=2))
-        hidden.append(one.joint_states == INFERRED)
-    arms = [Joint.WRIST_RIGHT, Joint.ELBOW_RIGHT, Joint.WRIST_LEFT, Joint.ELBOW_LEFT]
-    wrong, guessed = np.stack(error)[:, :, arms], np.stack(hidden)[:, :, arms]
-    assert wrong[guessed].mean() > 1.3 * wrong[~guessed].mean()
+def test_a_joint_errs_more_where_it_is_inferred() -> None:
+    ratios = []
+    for interaction in ("pourCream", "putOnGlasses", "recordVideo", "sweepFloor"):
+        for participant in range(6):
+            one = simulate(interaction, participant, seed=7)
+            error = np.linalg.norm(one.joints_in_camera - one.true_joints_in_camera, axis=2)
+            inferred, tracked = (one.joint_states == state for state in (INFERRED, TRACKED))
+            ratios += [
+                error[inferred[:, joint], joint].mean() / error[tracked[:, joint], joint].mean()
+                for joint in range(12)
+                if inferred[:, joint].any() and tracked[:, joint].any()
+            ]
+    assert len(ratios) > 20
+    assert np.median(ratios) > 1.3
 
 
 def test_losses_are_short_rare_and_of_the_whole_person() -> None:

@@ -88,7 +88,7 @@ def inspect_recording(path: Path) -> RecordingInfo:
     """Read all of ``path``, whole, cut off or damaged; raises RecordingError when it is none."""
     contents = _Contents()
     with opened(path) as data:
-        complete = is_complete(data)
+        size, complete = len(data), is_complete(data)
         keys = {number: channel.topic for number, channel in channels(data).items()}
         for stretch in scan(data):
             contents.unread_bytes += stretch.unread_bytes
@@ -102,7 +102,7 @@ def inspect_recording(path: Path) -> RecordingInfo:
     tallies, losses = contents.tallies, contents.counter.losses()
     return RecordingInfo(
         path=path,
-        bytes=path.stat().st_size,
+        bytes=size,
         start_ns=min((tally.start_ns for tally in tallies.values()), default=0),
         end_ns=max((tally.end_ns for tally in tallies.values()), default=0),
         keys=tuple(

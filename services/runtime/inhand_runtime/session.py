@@ -28,6 +28,8 @@ HEARTBEAT_S = 0.5
 CLIENT_TIMEOUT_MS = 3_000
 HANDSHAKE_TIMEOUT_MS = 1_500
 FOR_EVER_MS = -1
+FRAMES_QUEUE = 16
+"""Batches of 64 KiB that may wait for a link: some frames, so that a busy moment drops none."""
 
 _PRIORITIES = {
     "urgent": zenoh.Priority.REAL_TIME,
@@ -93,6 +95,7 @@ def _config(
         "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000},
         "transport/unicast/open_timeout": HANDSHAKE_TIMEOUT_MS,
         "scouting/multicast/enabled": False,
+        "transport/link/tx/queue/size/data_low": FRAMES_QUEUE,
         "transport/shared_memory/enabled": False,
     }
     config = zenoh.Config()
