@@ -45,8 +45,8 @@ ARMS = (
     (Joint.ELBOW_LEFT, Joint.WRIST_LEFT, Joint.HAND_LEFT),
     (Joint.ELBOW_RIGHT, Joint.WRIST_RIGHT, Joint.HAND_RIGHT),
 )
-FLIPPED = 110.0
-"""Degrees: a wrist bends by some 75 at most, and what a resting tracker adds is little."""
+FLIPPED = 90.0
+"""Degrees between forearm and hand."""
 PACES = {
     "still": (0.0, 0.05),
     "slow": (0.05, 0.3),

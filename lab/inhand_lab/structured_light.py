@@ -29,7 +29,7 @@ SHADOW = 3.0
 """Width in pixels of a shadow that the matching window still bridges."""
 EDGE_JUMP = 0.05
 """A relative change of depth between neighbours that counts as an edge."""
-EDGE_LOSS = 0.06
+EDGE_LOSS = 0.11
 """Share of the pixels at an edge that return nothing."""
 
 

@@ -61,7 +61,7 @@ def test_a_drift_is_told_from_a_tremble() -> None:
 
 
 def test_what_is_too_rare_to_tell_is_no_number() -> None:
-    assert np.isnan(value(measure_skeletons(skeletons(0.0)), "hand turned by 110°", "fast wrist"))
+    assert np.isnan(value(measure_skeletons(skeletons(0.0)), "hand turned by 90°", "fast wrist"))
 
 
 def test_a_hand_that_points_back_is_bent_by_half_a_turn() -> None:
