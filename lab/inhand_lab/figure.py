@@ -37,6 +37,10 @@ LIMBS: tuple[tuple[Joint, Joint, float, float, str], ...] = (
 )
 """Parent and child joint, radii at both as fractions of stature, and what covers the limb."""
 
+CHEST_BREADTH, CHEST_CONSTANCY = 0.082, 0.6
+"""Half the breadth of the ribs in statures, and how it goes with girth: in ANSUR II chests are 0.29
+m broad in men of 1.76 m, and differ by 6 % where waists differ by 10 %."""
+
 
 @dataclass(frozen=True)
 class Figure:
@@ -88,7 +92,8 @@ def head_radii(person: Person) -> Floats:
 def rib_cage(person: Person) -> tuple[Floats, Floats]:
     """Centre and half axes (3,) of an ellipsoid in the chest's frame, metres."""
     size, trunk = person.height * person.girth, person.proportions.chest
-    radii = np.array([0.094 * size, 0.066 * size, 0.66 * trunk])
+    breadth = CHEST_BREADTH * person.height * person.girth**CHEST_CONSTANCY
+    radii = np.array([breadth, 0.066 * size, 0.66 * trunk])
     return np.array([0.0, 0.004, -0.45 * trunk]), radii
 
 
