@@ -3,7 +3,7 @@
 from functools import cache
 
 import numpy as np
-from inhand_lab.figure import head_radii
+from inhand_lab.solids import head_radii
 from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.kinematics import Body, place_body
 from inhand_lab.motions.performance import Performance

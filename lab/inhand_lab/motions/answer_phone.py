@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from inhand_lab.figure import head_radii
+from inhand_lab.solids import head_radii
 from inhand_lab.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT
 from inhand_lab.kinematics import Trunk, place_trunk
 from inhand_lab.motions.furniture import Box, side_table
