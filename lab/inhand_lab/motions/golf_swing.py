@@ -5,8 +5,8 @@ in the backswing until club and left arm are square, keep their angle in the fir
 downswing and let go before impact, where left arm and club are nearly in line. The backswing takes
 three times as long as the downswing: 24 frames to 8 at 30 Hz [2]. Shoulders turn by 90 degrees or
 a little more [3], 48 degrees further than the hips; these turn back first, which widens the
-difference by an eighth or so [4]. At impact the hips are about 32 and the shoulders about 26 degrees
-open [5].
+difference by an eighth or so [4]. At impact the hips are about 32 degrees open and the shoulders
+about 26 [5].
 
 1. Cochran & Stobbs, *Search for the Perfect Swing*, 1968.
 2. Novosel & Garrity, *Tour Tempo*, 2004.
