@@ -11,6 +11,7 @@ from inhand_tracker import rotations
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.colours import BINS, Bins, smoothed
 from inhand_tracker.image import Image
+from inhand_tracker.limbs import limb_mask
 from inhand_tracker.raster import nearest_depths
 from inhand_tracker.shape import ObjectShape
 from inhand_tracker.sight_frame import SightFrame, prepare
@@ -22,12 +23,17 @@ BESIDE = 1.0
 """How far the surroundings reach, in widths of the object."""
 IN_FRONT_M = 0.05
 FEWEST_PIXELS = 200
+MOST_COVERED = 0.8
+
+Sample = tuple[Image, Array, Array, Array | None]
+"""A frame, the object's true translation (3,) and rotation (4,), and the joints (20, 3) of the
+person, or None."""
 
 
 @dataclass(frozen=True)
 class Appearance:
     """``of_object`` and ``around`` (4096,): histograms of the colours within an object's outline
-    (with the fingers that usually lie over it) and around it. ``returned`` is the share of its
+    (without the fingers that lie over it) and around it. ``returned`` is the share of its
     surface of which a depth sensor measures the depth."""
 
     of_object: Floats
@@ -35,17 +41,15 @@ class Appearance:
     returned: float
 
 
-def learn_appearance(
-    shape: ObjectShape, samples: Iterable[tuple[Image, Array, Array]]
-) -> Appearance | None:
-    """From frames with the true translation (3,) and rotation (4,); None where no colour is seen.
+def learn_appearance(shape: ObjectShape, samples: Iterable[Sample]) -> Appearance | None:
+    """From frames in which it is known where the object is; None where no colour is seen.
 
-    A few dozen frames are enough. Pixels in front of which something nearer was measured are
-    left out.
+    A few dozen are enough. Pixels in front of which something nearer was measured are left out,
+    and so is the share of the colours of arms and hands that fingers over the object make likely.
     """
-    of_object, around = np.zeros((2, BINS))
+    of_object, around, of_limbs = np.zeros((3, BINS))
     returned = asked = 0
-    for image, translation, rotation in samples:
+    for image, translation, rotation, joints in samples:
         region = region_around(shape, translation, rotation, image.camera)
         if region is None:
             continue
@@ -62,13 +66,33 @@ def learn_appearance(
             of_object += _counts(frame.bins, silhouette)
             beside = ~cv2.dilate(silhouette.astype(np.uint8), np.ones((3, 3))).astype(bool)
             around += _counts(frame.bins, beside)
+            limbs = limb_mask(joints, frame.camera, frame.depth).astype(bool)
+            of_limbs += _counts(frame.bins, beside & limbs)
     if min(of_object.sum(), around.sum()) < FEWEST_PIXELS:
         return None
     return Appearance(
-        smoothed((of_object / of_object.sum()).astype(np.float32)),
+        smoothed(_without_limbs(of_object / of_object.sum(), of_limbs)),
         smoothed((around / around.sum()).astype(np.float32)),
         returned / asked if asked else 1.0,
     )
+
+
+def _without_limbs(of_object: Array, of_limbs: Array) -> Floats:
+    """The histogram (4096,) of an object without the fingers over it.
+
+    How much of it they are is told by the colours that are usual for limbs: half of these, by
+    weight, are no commoner on the object than the share says.
+    """
+    if of_limbs.sum() < FEWEST_PIXELS:
+        return of_object.astype(np.float32)
+    limbs = of_limbs / of_limbs.sum()
+    usual = limbs > limbs.max() / 20.0
+    ratios = of_object[usual] / limbs[usual]
+    order = np.argsort(ratios)
+    middle = np.searchsorted(np.cumsum(limbs[usual][order]), 0.5 * limbs[usual].sum())
+    share = min(float(ratios[order][middle]), MOST_COVERED)
+    left = np.maximum(of_object - share * limbs, 0.0)
+    return np.asarray(left / left.sum(), np.float32)
 
 
 def region_around(

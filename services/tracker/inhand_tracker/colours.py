@@ -15,6 +15,8 @@ LEVELS = 16
 BINS = LEVELS**3
 SMOOTHING_LEVELS = 0.8
 FLOOR = 1e-5
+FLOOR_AROUND = 2e-5
+"""What a colour that was never seen counts as: it is rather of the rest of the world."""
 MOST_LOG_ODDS = 3.0
 
 
@@ -72,7 +74,7 @@ def log_odds_by_colour(colours: Colours) -> Floats:
     """
     if colours.of_object is None or colours.around is None:
         return np.zeros(BINS, np.float32)
-    odds = np.log((colours.of_object + FLOOR) / (colours.around + FLOOR))
+    odds = np.log((colours.of_object + FLOOR) / (colours.around + FLOOR_AROUND))
     return np.asarray(np.clip(odds, -MOST_LOG_ODDS, MOST_LOG_ODDS), np.float32)
 
 

@@ -25,6 +25,8 @@ RASTER = 256
 MARGIN = 8
 CHORD_PIXELS = 4
 FARTHEST_M = 10.0
+SMALL_HOLE = 0.08
+"""The side of a hole that is no part of the outline, in sizes of the object."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +94,7 @@ def _look(shape: ObjectShape, direction: Array) -> tuple[Array | float, ...]:
         placed: Array = np.column_stack((across, depths[row, column])) @ axes
         return placed
 
-    outline, flat_normals = _spaced_outline(mask)
+    outline, flat_normals = _spaced_outline(_without_small_holes(mask))
     inside, outside = _thickness(mask, outline, flat_normals)
     order = _along_curve()
     silhouette = order[mask.ravel()[order]]
@@ -108,6 +110,18 @@ def _look(shape: ObjectShape, direction: Array) -> tuple[Array | float, ...]:
         _face_normals(shape, faces, direction),
         float(len(silhouette)) / scale**2,
     )
+
+
+def _without_small_holes(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The mask with what is as fine as the net of a racket filled in."""
+    found, hierarchy = cv2.findContours(
+        mask.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE
+    )
+    filled = mask.astype(np.uint8)
+    for contour, (_, _, _, parent) in zip(found, hierarchy[0], strict=True):
+        if parent >= 0 and cv2.contourArea(contour) < (SMALL_HOLE * RASTER) ** 2:
+            cv2.drawContours(filled, [contour], 0, 1, cv2.FILLED)
+    return filled.astype(bool)
 
 
 def _spaced_outline(mask: NDArray[np.bool_]) -> tuple[Array, Array]:

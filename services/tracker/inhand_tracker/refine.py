@@ -28,8 +28,10 @@ Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 
-REACHES_M = (0.04, 0.03, 0.02, 0.015, 0.01, 0.008, 0.006, 0.006)
-"""How far off a pose may be, step by step."""
+REACHES = tuple(np.geomspace(1.0, 0.12, 14).tolist())
+REACH_M = 0.05
+REACH_RAD = 0.2
+"""How far off a pose may be at first, and what is left of that step by step."""
 SAMPLES = 12
 """On either side of a point of the outline."""
 LEAST_STEP_PIXELS = 0.5
@@ -99,7 +101,7 @@ def gather(
     depth: Floats,
     returned: float,
     wanted: NDArray[np.bool_],
-    reach_m: float,
+    reach: float,
     weights: Array,
     information: Array,
     gradient: Array,
@@ -133,6 +135,8 @@ def gather(
         arm[1] = r3 * a + r4 * b + r5 * c
         arm[2] = r6 * a + r7 * b + r8 * c
         px, py, pz = arm[0] + tx, arm[1] + ty, arm[2] + tz
+        length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
+        reach_m = reach * (REACH_M + REACH_RAD * length)
         if pz < NEAREST_M:
             continue
         u, v = fx * px / pz + cx, fy * py / pz + cy
@@ -203,6 +207,8 @@ def gather(
         arm[1] = r3 * a + r4 * b + r5 * c
         arm[2] = r6 * a + r7 * b + r8 * c
         px, py, pz = arm[0] + tx, arm[1] + ty, arm[2] + tz
+        length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
+        reach_m = reach * (REACH_M + REACH_RAD * length)
         if pz < NEAREST_M:
             continue
         u, v = fx * px / pz + cx, fy * py / pz + cy

@@ -26,7 +26,7 @@ from inhand_tracker.contours import Contours, find_contours
 from inhand_tracker.image import Image
 from inhand_tracker.limbs import limb_mask
 from inhand_tracker.model_file import Model
-from inhand_tracker.refine import DAMPING, REACHES_M, Prior, Refined, gather
+from inhand_tracker.refine import DAMPING, REACHES, Prior, Refined, gather
 from inhand_tracker.sight_frame import SightFrame, prepare
 from inhand_tracker.sight_kernels import weigh
 from inhand_tracker.view_grid import view_grid
@@ -38,17 +38,19 @@ SightTerm = Literal["edges", "region", "interior", "depth"]
 
 SIGHT_TERMS: tuple[SightTerm, ...] = get_args(SightTerm)
 
-TERM_WEIGHTS = np.array([5.0, 2.0, 3.0, 3.0])
+TERM_WEIGHTS = np.array([4.0, 10.0, 8.0, 4.0])
 """How many independent points each term's are worth."""
-POINT_WEIGHTS = np.array([0.3, 0.3])
+POINT_WEIGHTS = np.array([0.07, 0.07])
 """The same for a point of the outline and of the surface in refinement."""
 LIMB_WEIGHT = 0.5
-CERTAIN = 0.9
+CERTAIN = 0.8
 """How sure a pixel's colour can make one of where it belongs."""
-LIMB_SHARE = 0.5
+LIMB_SHARE = 0.25
 """How much of what speaks against the object is believed where a hand may cover it."""
 RETURNED = 0.9
 """Of objects that nothing was learned of."""
+LEAST_RETURNED = 0.5
+"""Depth that is measured of less of an object's surface is rather that of the hand around it."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,8 @@ class Sight:
         self._grid = view_grid(contours.directions)
         self._wanted = np.array([term in terms for term in SIGHT_TERMS])
         self._appearance = model.appearance
-        self._returned = RETURNED if model.appearance is None else model.appearance.returned
+        returned = RETURNED if model.appearance is None else model.appearance.returned
+        self._returned = returned if returned >= LEAST_RETURNED else 0.0
 
     def start(self) -> Colours:
         """What is known of the object's colours and its surroundings' from training."""
@@ -181,7 +184,7 @@ class Sight:
         arrays = self._arrays(view)
         information = np.zeros((6, 6))
         c = self._contours
-        for reach_m in REACHES_M:
+        for reach in REACHES:
             information, gradient = np.zeros((6, 6)), np.zeros(6)
             gather(
                 translation,
@@ -197,7 +200,7 @@ class Sight:
                 *arrays,
                 self._returned,
                 wanted,
-                reach_m,
+                reach,
                 POINT_WEIGHTS,
                 information,
                 gradient,

@@ -46,6 +46,16 @@ def _grid(directions: bytes, count: int) -> Candidates:
     return grid.reshape(6, CELLS, CELLS, -1)
 
 
+@njit(cache=True, nogil=True)
+def nearest_views(grid: Candidates, directions: Array, towards_viewer: Array) -> NDArray[np.int64]:
+    """The indices (P,) of the directions (V, 3) nearest to vectors (P, 3) of any length."""
+    views = np.empty(len(towards_viewer), np.int64)
+    for index in range(len(towards_viewer)):
+        x, y, z = towards_viewer[index]
+        views[index] = nearest_view(grid, directions, x, y, z)
+    return views
+
+
 @njit(cache=True, nogil=True, inline="always")
 def nearest_view(grid: Candidates, directions: Floats, x: float, y: float, z: float) -> int:
     """The index of the direction nearest to (x, y, z), of any length but zero."""

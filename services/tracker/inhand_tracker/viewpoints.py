@@ -11,12 +11,12 @@ import cv2
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from inhand_tracker import rotations
 from inhand_tracker.contours import Contours, find_contours, view_axes
 from inhand_tracker.raster import nearest_depths
 from inhand_tracker.shape import ObjectShape
+from inhand_tracker.view_grid import nearest_views, view_grid
 
 Array = NDArray[np.float64]
 
@@ -68,13 +68,13 @@ class VisiblePoints:
 
     def __init__(self, directions: Array, points: Array) -> None:
         self._points = points
-        self._tree = KDTree(directions)
+        self._directions = np.ascontiguousarray(directions)
+        self._grid = view_grid(directions)
 
     def place(self, translations: Array, orientations: Array) -> Array:
         """Points (P, B, 3) in the camera frame of object poses (P, 3) and (P, 4)."""
         towards_viewer = rotations.rotate(rotations.conjugate(orientations), -translations)
-        length = np.linalg.norm(towards_viewer, axis=1, keepdims=True)
-        _, views = self._tree.query(towards_viewer / np.maximum(length, 1e-9))
+        views = nearest_views(self._grid, self._directions, towards_viewer)
         turns = np.swapaxes(rotations.to_matrix(orientations), -1, -2)
         return self._points[views] @ turns + translations[:, None, :]
 
