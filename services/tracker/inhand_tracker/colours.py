@@ -96,3 +96,18 @@ def _count(bins: Bins, weights: Floats, counts: Floats) -> None:
     for row in range(bins.shape[0]):
         for column in range(bins.shape[1]):
             counts[bins[row, column]] += weights[row, column]
+
+
+@njit(cache=True, nogil=True)
+def look_up(
+    bins: Bins, limbs: NDArray[np.uint8], table: Floats, limb_share: float, scores: Floats
+) -> None:
+    """Fill ``scores`` (H, W, 2) from a table (4096, 2) of what a colour says to a pixel's being
+    within and beside an object. Of what speaks against it a share counts where limbs may be."""
+    for row in range(bins.shape[0]):
+        for column in range(bins.shape[1]):
+            within, beside = table[bins[row, column]]
+            if limbs[row, column] and within < beside:
+                within, beside = within * limb_share, beside * limb_share
+            scores[row, column, 0] = within
+            scores[row, column, 1] = beside

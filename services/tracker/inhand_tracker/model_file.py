@@ -139,8 +139,10 @@ def _named(name: str, part: Contours | Appearance) -> dict[str, Any]:
 
 def _found(name: str, kind: type[Part], arrays: dict[str, Any]) -> Part | None:
     """A part that models of older releases do not have."""
-    values = {field.name: arrays.get(f"{name}.{field.name}") for field in fields(kind)}
-    return None if any(value is None for value in values.values()) else kind(**values)
+    names = [field.name for field in fields(kind)]
+    if any(f"{name}.{field}" not in arrays for field in names):
+        return None
+    return kind(**{field: arrays[f"{name}.{field}"] for field in names})
 
 
 def _mapping_arrays() -> tuple[str, ...]:

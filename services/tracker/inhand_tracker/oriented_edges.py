@@ -17,44 +17,45 @@ CHANNELS = 4
 GRADIENT_THRESHOLD = 50.0
 """Of a Sobel operator: about 12 grey levels from one side of the edge to the other."""
 AGREEMENT = float(np.cos(np.deg2rad(33.75)))
-STEPS_PER_PIXEL = 8
-FARTHEST = 255
+FARTHEST_PIXELS = 7
 
 MATCHED_PIXELS = 1.3
 MATCHED_SHARE = 0.6
 
+_CROSS = np.asarray(cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3)), np.uint8)
+_SQUARE = np.ones((3, 3), np.uint8)
+
 
 def edge_distances(grey: Bytes) -> Bytes:
-    """(4, H, W): how far, in eighths of a pixel, the next edge of each channel is; 255 for far."""
+    """(4, H, W): how many pixels away the next edge of each channel is, 7 for far."""
     smooth = cv2.GaussianBlur(grey, (3, 3), 0.0)
     across = cv2.Sobel(smooth, cv2.CV_16S, 1, 0)
     down = cv2.Sobel(smooth, cv2.CV_16S, 0, 1)
-    no_edge = np.ones((CHANNELS, *grey.shape), np.uint8)
-    _mark_edges(np.asarray(across, np.int16), np.asarray(down, np.int16), no_edge)
-    distances = np.empty_like(no_edge)
-    for channel in range(CHANNELS):
-        if no_edge[channel].all():
-            distances[channel] = FARTHEST
-            continue
-        pixels = cv2.distanceTransform(no_edge[channel], cv2.DIST_L2, 3)
-        cv2.convertScaleAbs(pixels, distances[channel], STEPS_PER_PIXEL)
+    distances = np.ones((CHANNELS, *grey.shape), np.uint8)
+    _mark_edges(np.asarray(across, np.int16), np.asarray(down, np.int16), distances)
+    for channel in distances:
+        # A cross and a square in turns grow octagons. Many times faster than a transform.
+        left = channel.copy()
+        for step in range(1, FARTHEST_PIXELS):
+            cv2.erode(left, _CROSS if step % 2 else _SQUARE, left)
+            cv2.add(channel, left, channel)
     return distances
 
 
 def edge_scores(distances: Bytes) -> Floats:
-    """(4, 256): log p(distance | a boundary is here) / p(distance | anywhere), for a frame.
+    """(4, 8): log p(distance | a boundary is here) / p(distance | anywhere), for a frame.
 
     A boundary shows an edge within about a pixel in 60 %, and else is like anywhere. Where edges
     are everywhere, they say little.
     """
-    steps = np.arange(FARTHEST + 1)
-    near = np.exp(-np.square(steps / STEPS_PER_PIXEL) / (2.0 * MATCHED_PIXELS**2))
+    steps = np.arange(FARTHEST_PIXELS + 1)
+    near = np.exp(-np.square(steps / MATCHED_PIXELS) / 2.0)
     near /= near.sum()
-    scores = np.empty((CHANNELS, FARTHEST + 1), np.float32)
+    scores = np.empty((CHANNELS, FARTHEST_PIXELS + 1), np.float32)
     for channel in range(CHANNELS):
-        counts = np.bincount(distances[channel, ::3, ::3].ravel(), minlength=FARTHEST + 1)
-        spread = np.convolve(np.concatenate((counts[8:0:-1], counts)), np.full(9, 1 / 9.0), "same")
-        anywhere = (spread[8:] + 1e-3) / (spread[8:] + 1e-3).sum()
+        pixels = distances[channel, ::3, ::3].ravel()
+        anywhere = np.bincount(pixels, minlength=FARTHEST_PIXELS + 1) + 1.0
+        anywhere /= anywhere.sum()
         scores[channel] = np.log((1.0 - MATCHED_SHARE) + MATCHED_SHARE * near / anywhere)
     return scores
 

@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from inhand_tracker import rotations
 from inhand_tracker.sight_kernels import (
     ANYWHERE_PER_M,
     IN_FRONT_M,
@@ -47,6 +48,14 @@ class Prior:
     translation: Array
     rotation: Array
     information: Array
+
+    def added_to(
+        self, information: Array, gradient: Array, translation: Array, orientation: Array
+    ) -> tuple[Array, Array]:
+        """Information (6, 6) and gradient (6,) at a pose with what the prior says of it."""
+        turn = rotations.multiply(self.rotation, rotations.conjugate(orientation))
+        off = np.concatenate((self.translation - translation, rotations.to_vector(turn)))
+        return information + self.information, gradient + self.information @ off
 
 
 @dataclass(frozen=True)

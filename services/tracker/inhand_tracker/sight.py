@@ -8,7 +8,7 @@ farther away, which speaks against (a mixture as of Wüthrich et al. 2013).
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import cv2
 import numpy as np
@@ -21,6 +21,7 @@ from inhand_tracker.colours import (
     blend,
     histogram,
     log_odds_by_colour,
+    look_up,
 )
 from inhand_tracker.contours import Contours, find_contours
 from inhand_tracker.image import Image
@@ -28,7 +29,7 @@ from inhand_tracker.limbs import limb_mask
 from inhand_tracker.model_file import Model
 from inhand_tracker.refine import DAMPING, REACHES, Prior, Refined, gather
 from inhand_tracker.sight_frame import SightFrame, prepare
-from inhand_tracker.sight_kernels import weigh
+from inhand_tracker.sight_kernels import depth_scores, weigh
 from inhand_tracker.view_grid import view_grid
 
 Array = NDArray[np.float64]
@@ -43,6 +44,8 @@ TERM_WEIGHTS = np.array([4.0, 10.0, 8.0, 4.0])
 POINT_WEIGHTS = np.array([0.07, 0.07])
 """The same for a point of the outline and of the surface in refinement."""
 LIMB_WEIGHT = 0.5
+_REFINED_TERMS = [0, 1, 3]
+
 CERTAIN = 0.8
 """How sure a pixel's colour can make one of where it belongs."""
 LIMB_SHARE = 0.25
@@ -73,10 +76,21 @@ class Sight:
             contours = find_contours(model.shape, model.viewpoints.directions)
         self._contours: Contours = contours
         self._grid = view_grid(contours.directions)
+        self._model = (
+            self._grid,
+            contours.directions,
+            _points_last(contours.points),
+            _points_last(contours.normals),
+            contours.inside,
+            contours.outside,
+            _points_last(contours.surface_points),
+            np.sqrt(contours.areas),
+        )
         self._wanted = np.array([term in terms for term in SIGHT_TERMS])
         self._appearance = model.appearance
         returned = RETURNED if model.appearance is None else model.appearance.returned
         self._returned = returned if returned >= LEAST_RETURNED else 0.0
+        self._depth_scores = depth_scores(self._returned)
 
     def start(self) -> Colours:
         """What is known of the object's colours and its surroundings' from training."""
@@ -126,24 +140,13 @@ class Sight:
     def view(self, frame: SightFrame, colours: Colours, joints: Array | None = None) -> SightView:
         """A frame as one with these colours sees it, and a person with joints (20, 3) in it."""
         limbs = limb_mask(joints, frame.camera, frame.depth)
-        shape = (frame.camera.height, frame.camera.width, 2)
-        if frame.bins is None:
-            return SightView(frame, np.zeros((*shape[:2], 2), np.float32), limbs)
-        odds = log_odds_by_colour(colours)
-        within = 1.0 / (1.0 + np.exp(-odds))
-        scores = np.log(
-            2.0
-            * np.column_stack(
-                (
-                    CERTAIN * within + (1.0 - CERTAIN) * (1.0 - within),
-                    CERTAIN * (1.0 - within) + (1.0 - CERTAIN) * within,
-                )
-            )
-        ).astype(np.float32)
-        seen = scores[frame.bins]
-        covering = (limbs > 0) & (odds[frame.bins] < 0.0)
-        seen[covering] *= np.float32(LIMB_SHARE)
-        return SightView(frame, seen, limbs)
+        scores = np.zeros((*limbs.shape, 2), np.float32)
+        if frame.bins is not None:
+            within = 1.0 / (1.0 + np.exp(-log_odds_by_colour(colours)))
+            sure = CERTAIN * within + (1.0 - CERTAIN) * (1.0 - within)
+            table = np.log(2.0 * np.column_stack((sure, 1.0 - sure)))
+            look_up(frame.bins, limbs, table.astype(np.float32), LIMB_SHARE, scores)
+        return SightView(frame, scores, limbs)
 
     def log_likelihood(self, translations: Array, orientations: Array, view: SightView) -> Array:
         """Of poses (P, 3) and (P, 4), (P,): how many times likelier (log) the frame is with the
@@ -175,29 +178,31 @@ class Sight:
     def _refine_one(
         self, translation: Array, orientation: Array, view: SightView, prior: Prior | None
     ) -> tuple[Array, Array, Array]:
-        wanted = np.array([self._wanted[0], self._wanted[1], self._wanted[3]])
-        wanted &= [
-            view.frame.edges is not None,
-            view.frame.bins is not None,
-            view.frame.depth is not None,
-        ]
-        arrays = self._arrays(view)
+        frame = view.frame
+        coloured, deep = frame.bins is not None, frame.depth is not None
+        wanted = self._wanted[_REFINED_TERMS] & [coloured, coloured, deep]
+        lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
+        contours = self._contours
         information = np.zeros((6, 6))
-        c = self._contours
         for reach in REACHES:
             information, gradient = np.zeros((6, 6)), np.zeros(6)
             gather(
                 translation,
                 orientation,
                 self._grid,
-                c.directions,
-                c.points,
-                c.normals,
-                c.inside,
-                c.outside,
-                c.surface_points,
-                c.surface_normals,
-                *arrays,
+                contours.directions,
+                contours.points,
+                contours.normals,
+                contours.inside,
+                contours.outside,
+                contours.surface_points,
+                contours.surface_normals,
+                lens,
+                edges,
+                edge_scores,
+                colour_scores,
+                limbs,
+                depth,
                 self._returned,
                 wanted,
                 reach,
@@ -207,20 +212,11 @@ class Sight:
             )
             total, pull = information + np.diag(DAMPING), gradient
             if prior is not None:
-                off = np.concatenate(
-                    (
-                        prior.translation - translation,
-                        rotations.to_vector(
-                            rotations.multiply(prior.rotation, rotations.conjugate(orientation))
-                        ),
-                    )
-                )
-                total, pull = total + prior.information, pull + prior.information @ off
+                total, pull = prior.added_to(total, pull, translation, orientation)
             step = np.linalg.solve(total, pull)
             translation = translation + step[:3]
-            orientation = rotations.normalise(
-                rotations.multiply(rotations.from_vector(step[3:]), orientation)
-            )
+            turn = rotations.from_vector(np.asarray(step[3:], np.float64))
+            orientation = rotations.normalise(rotations.multiply(turn, orientation))
         return translation, orientation, information
 
     def _scores(self, translations: Array, orientations: Array, view: SightView) -> Array:
@@ -228,33 +224,25 @@ class Sight:
         frame = view.frame
         coloured, deep = frame.bins is not None, frame.depth is not None
         wanted = self._wanted & [coloured, coloured, coloured, deep]
-        c = self._contours
         lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
         weigh(
             np.ascontiguousarray(translations, np.float32),
             np.ascontiguousarray(orientations, np.float32),
-            self._grid,
-            c.directions,
-            c.points,
-            c.normals,
-            c.inside,
-            c.outside,
-            c.surface_points,
-            c.areas,
+            *self._model,
             lens,
             edges,
             edge_scores,
             colour_scores,
             limbs,
-            depth,
-            np.float32(self._returned),
             np.float32(LIMB_WEIGHT),
+            depth,
+            self._depth_scores,
             wanted,
             scores,
         )
         return scores.astype(float)
 
-    def _arrays(self, view: SightView) -> tuple[NDArray, ...]:
+    def _arrays(self, view: SightView) -> tuple[NDArray[Any], ...]:
         """The frame for the kernels; what it does not hold is not read, or says nothing."""
         frame, camera = view.frame, view.frame.camera
         size = (camera.height, camera.width)
@@ -262,8 +250,13 @@ class Sight:
         return (
             np.array([camera.fx, camera.fy, camera.cx, camera.cy], np.float32),
             np.zeros((4, 1, 1), np.uint8) if edges is None else edges,
-            np.zeros((4, 256), np.float32) if scores is None else scores,
+            np.zeros((4, 8), np.float32) if scores is None else scores,
             view.colour_scores,
             view.limbs,
             np.zeros(size, np.float32) if depth is None else depth,
         )
+
+
+def _points_last(points: Floats) -> Floats:
+    """(V, B, 3) as (V, 3, B), so that points are weighed several at once."""
+    return np.ascontiguousarray(np.swapaxes(points, 1, 2))

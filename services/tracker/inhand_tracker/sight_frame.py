@@ -41,7 +41,7 @@ class SightFrame:
 
     @cached_property
     def edge_scores(self) -> Floats | None:
-        """(4, 256), what those distances say."""
+        """(4, 8), what those distances say."""
         return None if self.edges is None else edge_scores(self.edges)
 
 

@@ -2,13 +2,15 @@
 
 from functools import lru_cache
 from itertools import product
+from typing import Any, TypeAlias
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-Floats = NDArray[np.float32]
+Real: TypeAlias = Any
+"""float32 or float64, or an array of it."""
 Candidates = NDArray[np.int16]
 
 CELLS = 48
@@ -57,7 +59,7 @@ def nearest_views(grid: Candidates, directions: Array, towards_viewer: Array) ->
 
 
 @njit(cache=True, nogil=True, inline="always")
-def nearest_view(grid: Candidates, directions: Floats, x: float, y: float, z: float) -> int:
+def nearest_view(grid: Candidates, directions: Real, x: Real, y: Real, z: Real) -> int:
     """The index of the direction nearest to (x, y, z), of any length but zero."""
     ax, ay, az = abs(x), abs(y), abs(z)
     if ax >= ay and ax >= az:
