@@ -26,8 +26,10 @@ LEARNED_FRAMES = 1000
 
 @dataclass(frozen=True)
 class Body:
-    """One frame's body, right-handed: b (60,), the 19 part predictors, and the height."""
+    """One frame's body, right-handed: all joints (20, 3) in the camera frame, b (60,), the 19 part
+    predictors, and the height."""
 
+    joints: Array
     pose: Array
     parts: Bases
     height: float
@@ -65,4 +67,6 @@ class BodyReader:
         self._known_pose = np.where(np.isfinite(seen), seen, self._known_pose)
         filled = pelvis.origins + height * rotations.rotate(pelvis.rotations, self._known_pose)
         complete = np.where(np.isfinite(joints), joints, filled)
-        return Body(self._known_pose.reshape(60), part_bases(complete, pelvis), height)
+        return Body(
+            complete, self._known_pose.reshape(60), part_bases(complete, pelvis), height
+        )

@@ -16,6 +16,7 @@ from inhand_runtime.errors import InhandError
 from inhand_tracker.appearance import Appearance
 from inhand_tracker.contours import Contours
 from inhand_tracker.mapping import Mapping
+from inhand_tracker.prior import Prior, prior_arrays, prior_from_arrays
 from inhand_tracker.shape import ObjectShape, Symmetry
 from inhand_tracker.viewpoints import Viewpoints
 
@@ -38,6 +39,7 @@ class Model:
     mapping: Mapping
     viewpoints: Viewpoints
     appearance: Appearance | None = None
+    prior: Prior | None = None
 
 
 def save_model(model: Model, path: Path) -> None:
@@ -66,6 +68,8 @@ def save_model(model: Model, path: Path) -> None:
         arrays |= _named("contours", model.viewpoints.contours)
     if model.appearance is not None:
         arrays |= _named("appearance", model.appearance)
+    if model.prior is not None:
+        arrays |= {f"prior.{name}": array for name, array in prior_arrays(model.prior).items()}
     temporary = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -130,7 +134,13 @@ def _assemble(description: dict[str, Any], arrays: dict[str, Any]) -> Model:
         _found("contours", Contours, arrays),
     )
     appearance = _found("appearance", Appearance, arrays)
-    return Model(description["interaction"], shape, mapping, viewpoints, appearance)
+    of_prior = {
+        name.removeprefix("prior."): array
+        for name, array in arrays.items()
+        if name.startswith("prior.")
+    }
+    prior = prior_from_arrays(of_prior) if of_prior else None
+    return Model(description["interaction"], shape, mapping, viewpoints, appearance, prior)
 
 
 def _named(name: str, part: Contours | Appearance) -> dict[str, Any]:

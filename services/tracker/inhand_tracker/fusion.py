@@ -1,0 +1,321 @@
+"""The tracker that users get: a prior from the body's motion, what it carries over, and the image.
+
+The prior (``prior``) errs by habits: how this person holds this mug is not to be seen in a body, but
+it stays as it is. So what is tracked is how the pose differs from the prior's, in the object's own
+frame: without an image the difference fades away, as learned, and with it the image's knowledge
+stays while the object is hidden. An object that was left somewhere stays there, whatever the body
+does. From these expectations come hypotheses; the image weighs them (``sight``), and the likeliest
+are refined.
+"""
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inhand_tracker import rotations
+from inhand_tracker.anchors import find_anchors
+from inhand_tracker.body import mirror_pose
+from inhand_tracker.body_reader import Body, BodyReader
+from inhand_tracker.body_window import GAP_NS, BodyWindow
+from inhand_tracker.camera import Intrinsics
+from inhand_tracker.estimate import (
+    AGREEMENT_M,
+    AGREEMENT_RAD,
+    LOST,
+    Estimate,
+)
+from inhand_tracker.image import Image
+from inhand_tracker.model_file import Model, ModelError
+from inhand_tracker.pose_gaussian import PoseGaussian, PoseMixture, lever, mixture
+from inhand_tracker.prior import predict
+from inhand_tracker.refine import Prior as RefinementPrior
+from inhand_tracker.sight import SIGHT_TERMS, Sight, SightTerm, SightView
+from inhand_tracker.sight_frame import prepare
+from inhand_tracker.viewpoints import VisiblePoints
+
+Array = NDArray[np.float64]
+
+HYPOTHESES = 400
+REFINED = 5
+SAME_M, SAME_RAD = 0.01, 0.1
+"""Refined poses no farther apart than this are the same one."""
+
+CARRIED, AFRESH, LEFT = 0.6, 0.2, 0.2
+"""How likely the difference stays, is another one, or the object stays where it is."""
+LEFT_DEVIATIONS = np.array([0.01, 0.01, 0.01, 0.05, 0.05, 0.05])
+"""By how much an object that was left, or the camera, moves from frame to frame."""
+COASTING_NS = 1_000_000_000
+COASTING_DEVIATIONS = np.repeat([0.5, 2.0], 3)
+"""By how much an object moves in a second in which its person is not seen."""
+AROUND_RATE = 0.3
+LEARNING_RATE = 0.05
+LEARNING_LOG_LIKELIHOOD = 3.0
+"""An estimate that the image supports so much teaches the object's colours."""
+
+
+class FusionTracker:
+    """Follows one object of one person through the frames of one camera.
+
+    Raises ModelError for a model of a release that learned no prior.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        *,
+        left_handed: bool = False,
+        terms: Collection[SightTerm] = SIGHT_TERMS,
+        hypotheses: int = HYPOTHESES,
+        seed: int = 0,
+    ) -> None:
+        if model.prior is None:
+            raise ModelError(
+                f"the model of {model.shape.name} is of an older release and holds no prior: "
+                "train it again, or choose another method"
+            )
+        self._prior = model.prior
+        self._mapping = model.mapping
+        self._mirror_normal = model.shape.mirror_normal
+        self._left_handed = left_handed
+        self._terms = frozenset(terms)
+        self._sight = Sight(model, terms) if terms else None
+        self._radius = float(np.linalg.norm(model.shape.vertices - self._prior.centre, axis=1).max())
+        self._count = hypotheses
+        self._seed = seed
+        self._outline = VisiblePoints(model.viewpoints.directions, model.viewpoints.boundaries)
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget the person and the object: somebody else comes into view."""
+        self._random = np.random.default_rng(self._seed)
+        self._reader = BodyReader(self._mapping, left_handed=self._left_handed)
+        self._window = BodyWindow()
+        self._colours = None if self._sight is None else self._sight.start()
+        self._expected: PoseGaussian | None = None
+        self._believed: PoseGaussian | None = None
+        self._estimate = LOST
+        self._time_ns = 0
+
+    def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
+        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
+
+        Missing joints are NaN. While the body is not seen the last pose stands for a second, as
+        predicted; then the object is lost.
+        """
+        body = None if joints is None else self._reader.read(joints)
+        if body is None:
+            return self._coast(time_ns)
+        expected = self._expect(body, time_ns)
+        belief = self._carry(expected, time_ns)
+        if image is None or self._sight is None:
+            believed = belief.parts[0]
+        else:
+            believed = self._look(belief, image, joints)
+        self._expected, self._believed, self._time_ns = expected, believed, time_ns
+        self._estimate = self._estimated(believed)
+        return self._estimate
+
+    def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
+        """The object's pose in a frame by itself; what is tracked is neither used nor changed."""
+        alone = FusionTracker.__new__(FusionTracker)
+        alone.__dict__.update(self.__dict__)
+        alone.restart()
+        return alone.step(joints, 1, image)
+
+    def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:
+        """Pixels (B, 2) of the boundary of the object at an estimate; None for a lost one."""
+        if estimate.translation is None or estimate.rotation is None:
+            return None
+        points = self._outline.place(estimate.translation[None], estimate.rotation[None])
+        return camera.project(points[0])
+
+    def _expect(self, body: Body, time_ns: int) -> PoseGaussian:
+        """What the body alone makes one expect."""
+        descriptions = self._window.add(body.joints, time_ns, body.height)
+        predicted = predict(self._prior, descriptions, find_anchors(body.joints), body.height)
+        centre, covariance = predicted.centre, predicted.covariance
+        rotation = rotations.from_matrix(predicted.rotation)
+        if self._left_handed:
+            # A rotation vector is mirrored as an axis is: what x keeps of it, y and z turn round.
+            signs = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
+            origin = centre - rotations.rotate(rotation, self._prior.centre)
+            origin, rotation = mirror_pose(origin, rotation, self._mirror_normal)
+            mirrored = self._mirrored_centre()
+            centre = origin + rotations.rotate(rotation, mirrored)
+            covariance = covariance * signs[:, None] * signs
+        return PoseGaussian(centre, rotation, covariance)
+
+    def _mirrored_centre(self) -> Array:
+        centre, normal = self._prior.centre, self._mirror_normal
+        return centre - 2.0 * (centre @ normal) * normal if self._left_handed else centre
+
+    def _carry(self, expected: PoseGaussian, time_ns: int) -> PoseMixture:
+        """What is expected now, after what was believed before."""
+        before, believed = self._expected, self._believed
+        elapsed_ns = time_ns - self._time_ns
+        if before is None or believed is None or not 0 < elapsed_ns <= GAP_NS:
+            return PoseMixture((expected,), np.ones(1))
+        kept = float(np.exp(-elapsed_ns / 1e9 / self._prior.persistence_s))
+        inverse = rotations.conjugate(before.rotation)
+        moved = rotations.rotate(inverse, believed.centre - before.centre)
+        turned = rotations.to_vector(rotations.multiply(inverse, believed.rotation))
+        rotation = rotations.multiply(expected.rotation, rotations.from_vector(kept * turned))
+        turn = rotations.multiply(rotation, rotations.conjugate(believed.rotation))
+        axes = np.kron(np.eye(2), rotations.to_matrix(turn))
+        covariance = kept**2 * axes @ believed.covariance @ axes.T
+        carried = PoseGaussian(
+            expected.centre + rotations.rotate(expected.rotation, kept * moved),
+            rotation,
+            covariance + (1.0 - kept**2) * expected.covariance,
+        )
+        left = replace(
+            believed, covariance=believed.covariance + np.diag(np.square(LEFT_DEVIATIONS))
+        )
+        return PoseMixture((carried, expected, left), np.array([CARRIED, AFRESH, LEFT]))
+
+    def _look(self, belief: PoseMixture, image: Image, joints: Array | None) -> PoseGaussian:
+        """What is believed after a look at the image."""
+        centres, orientations = belief.sample(self._count, self._random)
+        view = self._view(centres, belief.parts[0], image, joints)
+        if view is None:
+            return belief.parts[0]
+        sight = self._sight
+        assert sight is not None
+        log_weights = sight.log_likelihood(
+            self._origins(centres, orientations), orientations, view
+        )
+        likeliest = np.argsort(log_weights)[::-1][:REFINED]
+        starts = [(part.centre, part.rotation) for part in belief.parts]
+        starts += [(centres[index], orientations[index]) for index in likeliest]
+        modes = self._refine(belief, starts, view)
+        found = self._weigh_modes(belief, modes, view)
+        return found.moments()
+
+    def _view(
+        self, centres: Array, guess: PoseGaussian, image: Image, joints: Array | None
+    ) -> SightView | None:
+        """The part of the image that hypotheses (P, 3) lie in; None where they are out of it."""
+        region = self._region(centres, image.camera)
+        sight, colours = self._sight, self._colours
+        if region is None or sight is None or colours is None:
+            return None
+        frame = prepare(image, region)
+        origin = self._origins(guess.centre[None], guess.rotation[None])[0]
+        colours = sight.look_around(colours, frame, origin, guess.rotation, AROUND_RATE)
+        self._colours = colours
+        return sight.view(frame, colours, joints)
+
+    def _region(
+        self, centres: Array, camera: Intrinsics
+    ) -> tuple[float, float, float, float] | None:
+        pixels = camera.project(centres)
+        seen = np.isfinite(pixels).all(axis=1)
+        if not seen.any():
+            return None
+        around = 1.3 * self._radius * max(camera.fx, camera.fy) / centres[seen, 2]
+        left, top = (pixels[seen] - around[:, None]).min(axis=0).tolist()
+        right, bottom = (pixels[seen] + around[:, None]).max(axis=0).tolist()
+        if right <= 0.0 or bottom <= 0.0 or left >= camera.width or top >= camera.height:
+            return None
+        return left, top, right, bottom
+
+    def _refine(
+        self, belief: PoseMixture, starts: list[tuple[Array, Array]], view: SightView
+    ) -> list[PoseGaussian]:
+        """Where image and belief agree best near each start; each place once."""
+        modes: list[PoseGaussian] = []
+        sight = self._sight
+        assert sight is not None
+        for centre, rotation in starts:
+            logs = belief.log_densities(centre[None], rotation[None])[:, 0]
+            part = belief.parts[int(np.argmax(logs))]
+            information = np.linalg.inv(part.covariance)
+            refined = sight.refine(
+                self._origins(centre[None], rotation[None]),
+                rotation[None],
+                view,
+                self._at_origin(part, information),
+            )
+            turned = refined.rotations[0]
+            arm = rotations.rotate(turned, self._mirrored_centre())
+            back = lever(-arm)
+            seen = back.T @ refined.information[0] @ back
+            mode = PoseGaussian(
+                refined.translations[0] + arm, turned, np.linalg.inv(information + seen)
+            )
+            if not any(_same(mode, other) for other in modes):
+                modes.append(mode)
+        return modes
+
+    def _weigh_modes(
+        self, belief: PoseMixture, modes: list[PoseGaussian], view: SightView
+    ) -> PoseMixture:
+        """The modes by their probability (Laplace's approximation)."""
+        centres = np.array([mode.centre for mode in modes])
+        orientations = np.array([mode.rotation for mode in modes])
+        expected = np.logaddexp.reduce(belief.log_densities(centres, orientations), axis=0)
+        sight = self._sight
+        assert sight is not None
+        seen = sight.log_likelihood(self._origins(centres, orientations), orientations, view)
+        room = np.array([0.5 * np.linalg.slogdet(mode.covariance)[1] for mode in modes])
+        found = mixture(modes, expected + seen + room)
+        best = int(np.argmax(found.weights))
+        if seen[best] > LEARNING_LOG_LIKELIHOOD and self._colours is not None:
+            origin = self._origins(centres[best][None], orientations[best][None])[0]
+            self._colours = sight.learn(
+                self._colours, view.frame, origin, orientations[best], LEARNING_RATE
+            )
+        return found
+
+    def _origins(self, centres: Array, orientations: Array) -> Array:
+        """The translations (P, 3) of poses whose centres are known."""
+        return centres - rotations.rotate(orientations, self._mirrored_centre())
+
+    def _at_origin(self, part: PoseGaussian, information: Array) -> RefinementPrior:
+        arm = rotations.rotate(part.rotation, self._mirrored_centre())
+        moved = lever(arm)
+        return RefinementPrior(part.centre - arm, part.rotation, moved.T @ information @ moved)
+
+    def _estimated(self, believed: PoseGaussian) -> Estimate:
+        arm = rotations.rotate(believed.rotation, self._mirrored_centre())
+        moved = lever(-arm)
+        return Estimate(
+            "tracked",
+            _confidence(believed),
+            believed.centre - arm,
+            believed.rotation,
+            moved @ believed.covariance @ moved.T,
+        )
+
+    def _coast(self, time_ns: int) -> Estimate:
+        unseen_ns = time_ns - self._time_ns
+        covariance = self._estimate.covariance
+        if covariance is None or not 0 <= unseen_ns <= COASTING_NS:
+            self._estimate = LOST
+            return LOST
+        return replace(
+            self._estimate,
+            state="predicted",
+            confidence=self._estimate.confidence * (1.0 - unseen_ns / COASTING_NS),
+            covariance=covariance
+            + np.diag(np.square(COASTING_DEVIATIONS * (unseen_ns / 1e9))),
+        )
+
+
+def _same(one: PoseGaussian, other: PoseGaussian) -> bool:
+    apart = one.deviations(other.centre[None], other.rotation[None])[0]
+    return bool(
+        np.linalg.norm(apart[:3]) < SAME_M and np.linalg.norm(apart[3:]) < SAME_RAD
+    )
+
+
+_STANDARD = np.random.default_rng(0).normal(size=(256, 6))
+
+
+def _confidence(believed: PoseGaussian) -> float:
+    """The probability that the true pose is within 10 cm and 30° of the mean."""
+    off = _STANDARD @ np.linalg.cholesky(believed.covariance).T
+    near = np.linalg.norm(off[:, :3], axis=1) < AGREEMENT_M
+    return float((near & (np.linalg.norm(off[:, 3:], axis=1) < AGREEMENT_RAD)).mean())
