@@ -23,7 +23,7 @@ NAME_WIDTH = 116
 BESIDE_M, ABOVE_M = 0.10, 0.19
 """Shown around what moves in a row: joints are in the middle of a head."""
 PAPER, INK = 255, (30, 30, 30)
-JPEG_QUALITY = 70
+JPEG_QUALITY = 60
 SUFFIXES = (".png", ".jpg", ".jpeg")
 
 
