@@ -44,6 +44,8 @@ SAME_M, SAME_RAD = 0.01, 0.1
 
 CARRIED, AFRESH, LEFT = 0.6, 0.2, 0.2
 """How likely the difference stays, is another one, or the object stays where it is."""
+DOUBT = 4.0
+"""By how much the prior's covariance is stretched where it speaks against what was believed."""
 LEFT_DEVIATIONS = np.array([0.01, 0.01, 0.01, 0.05, 0.05, 0.05])
 """By how much an object that was left, or the camera, moves from frame to frame."""
 COASTING_NS = 1_000_000_000
@@ -173,7 +175,9 @@ class FusionTracker:
         left = replace(
             believed, covariance=believed.covariance + np.diag(np.square(LEFT_DEVIATIONS))
         )
-        return PoseMixture((carried, expected, left), np.array([CARRIED, AFRESH, LEFT]))
+        parts = (carried, expected, left)
+        off = np.array([expected.square_distance(part) for part in parts])
+        return mixture(parts, np.log([CARRIED, AFRESH, LEFT]) - 0.5 * off / DOUBT)
 
     def _look(self, belief: PoseMixture, image: Image, joints: Array | None) -> PoseGaussian:
         """What is believed after a look at the image."""

@@ -33,6 +33,11 @@ class PoseGaussian:
         turns = rotations.from_vector(deviations[:, 3:])
         return self.centre + deviations[:, :3], rotations.multiply(turns, self.rotation)
 
+    def square_distance(self, other: "PoseGaussian") -> float:
+        """Of another one's mean from this mean, in units of this covariance."""
+        off = self.deviations(other.centre[None], other.rotation[None])[0]
+        return float(off @ np.linalg.solve(self.covariance, off))
+
     def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
         """Poses (P, 3) and (P, 4)."""
         root = np.linalg.cholesky(self.covariance)
