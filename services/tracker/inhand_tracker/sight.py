@@ -27,7 +27,7 @@ from inhand_tracker.contours import Contours, find_contours
 from inhand_tracker.image import Image
 from inhand_tracker.limbs import limb_mask
 from inhand_tracker.model_file import Model
-from inhand_tracker.refine import DAMPING, REACHES, Prior, Refined, gather
+from inhand_tracker.refine import DAMPING, REACH_M, REACH_RAD, REACHES, Prior, Refined, gather
 from inhand_tracker.sight_frame import SightFrame, prepare
 from inhand_tracker.sight_kernels import depth_scores, weigh
 from inhand_tracker.view_grid import view_grid
@@ -184,7 +184,8 @@ class Sight:
         lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
         contours = self._contours
         information = np.zeros((6, 6))
-        for reach in REACHES:
+        reach_m, reach_rad = (REACH_M, REACH_RAD) if prior is None else prior.reach()
+        for share in REACHES:
             information, gradient = np.zeros((6, 6)), np.zeros(6)
             gather(
                 translation,
@@ -205,7 +206,8 @@ class Sight:
                 depth,
                 self._returned,
                 wanted,
-                reach,
+                share * reach_m,
+                share * reach_rad,
                 POINT_WEIGHTS,
                 information,
                 gradient,
