@@ -11,7 +11,7 @@ from inhand_lab.benchmark_training import SIZES, TrainingCost, benchmark_trainin
 from inhand_lab.likelihood_check import ObjectCheck, check_likelihood
 from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
-from rich.console import Console
+from rich.console import Console, Group, RenderableType
 from rich.table import Table
 
 from inhand.progress import progress_bars
@@ -51,6 +51,24 @@ def tracker_table(speed: TrackerSpeed) -> Table:
     return table
 
 
+def frames_table(speed: TrackerSpeed) -> Table:
+    """What a frame costs by hypotheses and objects, with NumPy's edges alone beside it."""
+    cores = {cost.cores for cost in speed.frames}
+    table = Table(
+        title=f"a frame, every term, on {max(cores, default=1)} cores, ms "
+        "(NumPy, edges alone, one by one)"
+    )
+    table.add_column("hypotheses an object", justify="right")
+    objects = list(dict.fromkeys(cost.objects for cost in speed.frames))
+    for count in objects:
+        table.add_column("1 object" if count == 1 else f"{count} objects", justify="right")
+    for hypotheses in dict.fromkeys(cost.hypotheses for cost in speed.frames):
+        costs = [cost for cost in speed.frames if cost.hypotheses == hypotheses]
+        cells = [f"{cost.ms:.1f} ({cost.naive_ms:,.0f})" for cost in costs]
+        table.add_row(f"{hypotheses:,}", *cells)
+    return table
+
+
 def training_table(costs: list[TrainingCost]) -> Table:
     """A column a size; in brackets, how many times the first one's."""
     table = Table("", title="training on simulated people (times the first column's)")
@@ -73,8 +91,8 @@ def likelihood_table(checks: list[ObjectCheck]) -> Table:
     """A row an object."""
     table = Table(
         title="from 3 cm and 10° off, refined (medians), in real frames",
-        caption="rank: of the true pose's likelihood, among 10,000 poses scattered by 5 cm and 20°; "
-        "box and cup (without a handle) are fitted to the surface that is seen",
+        caption="rank: of the true pose's likelihood, among 10,000 poses scattered by 5 cm and "
+        "20°; box and cup (without a handle) are fitted to the surface that is seen",
     )
     for name in ("object", "shape", "frames", "mm", "90 %", "degrees", "90 %", "rank"):
         table.add_column(name, justify="left" if name in ("object", "shape") else "right")
@@ -96,17 +114,17 @@ def _short(value: float) -> str:
     return f"{value:,.0f}" if value >= 100.0 else f"{value:.2g}"
 
 
-def _tracker(_: Path | None) -> tuple[Table, dict[str, Any]]:
+def _tracker(_: Path | None) -> tuple[RenderableType, dict[str, Any]]:
     speed = measure_tracker()
-    return tracker_table(speed), asdict(speed)
+    return Group(tracker_table(speed), frames_table(speed)), asdict(speed)
 
 
-def _likelihood(source: Path) -> tuple[Table, dict[str, Any]]:
+def _likelihood(source: Path) -> tuple[RenderableType, dict[str, Any]]:
     checks = check_likelihood(source)
     return likelihood_table(checks), {"objects": [asdict(check) for check in checks]}
 
 
-def _training(_: Path | None) -> tuple[Table, dict[str, Any]]:
+def _training(_: Path | None) -> tuple[RenderableType, dict[str, Any]]:
     with progress_bars(steps(SIZES)) as advance:
         costs = list(benchmark_training(SIZES, usable_cores(), advance))
     sizes = [{**asdict(cost.learning), **asdict(cost.asking)} for cost in costs]
@@ -128,7 +146,7 @@ _TRAINING_ROWS: dict[str, Callable[[TrainingCost], float]] = {
     "linear search, ms, p50": lambda cost: cost.asking.linear_ms,
 }
 
-SUBJECTS: dict[str, Callable[[Any], tuple[Table, dict[str, Any]]]] = {
+SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "likelihood": _likelihood,
     "tracker": _tracker,
     "training": _training,
