@@ -14,11 +14,8 @@ from numpy.typing import NDArray
 
 from inhand_tracker import rotations
 from inhand_tracker.sight_kernels import (
-    ANYWHERE_PER_M,
     IN_FRONT_M,
     NEAREST_M,
-    OCCLUDED,
-    OUTLIER,
     channel_of,
     depth_noise,
     turned,
@@ -30,12 +27,17 @@ Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 
 REACHES = tuple(np.geomspace(1.0, 0.12, 14).tolist())
-REACH_M = 0.05
-REACH_RAD = 0.2
-"""How far off a pose may be at first, and what is left of that step by step."""
+REACH_M, REACH_RAD = 0.05, 0.2
+"""How far off a pose may be at first without a prior, and what is left of that step by step."""
 SAMPLES = 12
 """On either side of a point of the outline."""
 LEAST_STEP_PIXELS = 0.5
+WIDEST_EDGE_STEP = 2.5
+"""Pixels between samples beyond which edges would be missed."""
+CONTOUR_ERROR_M = 0.002
+"""What an outline seen from the nearest of the directions, and from far away, errs by."""
+IN_FRONT_PER_M, BEHIND_PER_M = 3.0, 1.5
+"""How likely another surface is measured just before and behind the object's."""
 DAMPING = np.array([100.0, 100.0, 100.0, 1.0, 1.0, 1.0])
 """Keeps in place what nothing is seen of: 10 cm and 1 rad."""
 
@@ -48,6 +50,11 @@ class Prior:
     translation: Array
     rotation: Array
     information: Array
+
+    def reach(self) -> tuple[float, float]:
+        """The root mean squares of its translation and rotation, in metres and radians."""
+        variances = np.diag(np.linalg.inv(self.information))
+        return float(np.sqrt(variances[:3].sum())), float(np.sqrt(variances[3:].sum()))
 
     def added_to(
         self, information: Array, gradient: Array, translation: Array, orientation: Array
@@ -110,7 +117,8 @@ def gather(
     depth: Floats,
     returned: float,
     wanted: NDArray[np.bool_],
-    reach: float,
+    reach_m: float,
+    reach_rad: float,
     weights: Array,
     information: Array,
     gradient: Array,
@@ -145,7 +153,7 @@ def gather(
         arm[2] = r6 * a + r7 * b + r8 * c
         px, py, pz = arm[0] + tx, arm[1] + ty, arm[2] + tz
         length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
-        reach_m = reach * (REACH_M + REACH_RAD * length)
+        reach = reach_m + reach_rad * length
         if pz < NEAREST_M:
             continue
         u, v = fx * px / pz + cx, fy * py / pz + cy
@@ -153,7 +161,7 @@ def gather(
             continue
         column, row = int(u + 0.5), int(v + 0.5)
         measured = depth[row, column]
-        if measured > 0.0 and measured < pz - IN_FRONT_M - 2.0 * depth_noise(pz) - reach_m:
+        if measured > 0.0 and measured < pz - IN_FRONT_M - 2.0 * depth_noise(pz) - reach:
             continue
         a, b, c = normals[view, point]
         nz = (r6 * a + r7 * b + r8 * c) / pz
@@ -163,7 +171,7 @@ def gather(
         if length < 1e-9:
             continue
         nx, ny = nx / length, ny / length
-        step = max(reach_m * fx / pz / SAMPLES, LEAST_STEP_PIXELS)
+        step = max(reach * fx / pz / SAMPLES, LEAST_STEP_PIXELS)
         within = inside[view, point] * fx / pz
         beside = outside[view, point] * fx / pz
         channel = channel_of(nx, ny)
@@ -177,7 +185,7 @@ def gather(
             if wanted[1] and -away < within and away < beside:
                 inner[sample] = step * colour_scores[row, column, 0]
                 outer[sample] = step * colour_scores[row, column, 1]
-            if wanted[0] and not limbs[row, column]:
+            if wanted[0] and step < WIDEST_EDGE_STEP and not limbs[row, column]:
                 log_posterior[sample] = edge_scores[channel, edges[channel, row, column]]
         total = 0.0
         for sample in range(2 * SAMPLES + 1):
@@ -199,6 +207,7 @@ def gather(
             square += share * away * away
         mean /= mass
         variance = square / mass - mean * mean + 0.5 * step * step + 0.25
+        variance += np.square(CONTOUR_ERROR_M * fx / pz)
         flat = SAMPLES * (SAMPLES + 1) * step * step / 3.0
         certainty = 1.0 / variance - 1.0 / flat
         if certainty <= 0.0:
@@ -217,7 +226,7 @@ def gather(
         arm[2] = r6 * a + r7 * b + r8 * c
         px, py, pz = arm[0] + tx, arm[1] + ty, arm[2] + tz
         length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
-        reach_m = reach * (REACH_M + REACH_RAD * length)
+        reach = reach_m + reach_rad * length
         if pz < NEAREST_M:
             continue
         u, v = fx * px / pz + cx, fy * py / pz + cy
@@ -229,11 +238,9 @@ def gather(
             continue
         error = measured - pz
         noise = depth_noise(pz)
-        width_m = np.sqrt(noise * noise + reach_m * reach_m)
+        width_m = np.sqrt(noise * noise + reach * reach / 3.0)
         near = np.exp(-0.5 * error * error / (width_m * width_m)) / (2.5066 * width_m)
-        near *= 1.0 - OCCLUDED - OUTLIER
-        other = OUTLIER + (OCCLUDED if error < 0.0 else 0.0)
-        other = other * ANYWHERE_PER_M + (1.0 - returned) / max(returned, 1e-3) * ANYWHERE_PER_M
+        other = (IN_FRONT_PER_M if error < 0.0 else BEHIND_PER_M) / max(returned, 0.01)
         a, b, c = surface_normals[view, point]
         across[0] = r0 * a + r1 * b + r2 * c
         across[1] = r3 * a + r4 * b + r5 * c
@@ -241,6 +248,6 @@ def gather(
         # The measured point lies on the same ray, ``measured`` away.
         share = measured / pz - 1.0
         residual = share * (across[0] * px + across[1] * py + across[2] * pz)
-        spread = noise * max(abs(across[2]), 0.2)
+        spread = width_m * max(abs(across[2]), 0.2)
         certainty = near / (near + other) / (spread * spread)
         _add(information, gradient, across, arm, residual, weights[1] * certainty)

@@ -7,6 +7,7 @@ farther away, which speaks against (a mixture as of Wüthrich et al. 2013).
 """
 
 from collections.abc import Collection
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
@@ -27,7 +28,7 @@ from inhand_tracker.contours import Contours, find_contours
 from inhand_tracker.image import Image
 from inhand_tracker.limbs import limb_mask
 from inhand_tracker.model_file import Model
-from inhand_tracker.refine import DAMPING, REACHES, Prior, Refined, gather
+from inhand_tracker.refine import DAMPING, REACH_M, REACH_RAD, REACHES, Prior, Refined, gather
 from inhand_tracker.sight_frame import SightFrame, prepare
 from inhand_tracker.sight_kernels import depth_scores, weigh
 from inhand_tracker.view_grid import view_grid
@@ -41,7 +42,7 @@ SIGHT_TERMS: tuple[SightTerm, ...] = get_args(SightTerm)
 
 TERM_WEIGHTS = np.array([4.0, 10.0, 8.0, 4.0])
 """How many independent points each term's are worth."""
-POINT_WEIGHTS = np.array([0.07, 0.07])
+POINT_WEIGHTS = np.array([0.2, 1.0])
 """The same for a point of the outline and of the surface in refinement."""
 LIMB_WEIGHT = 0.5
 _REFINED_TERMS = [0, 1, 3]
@@ -50,6 +51,8 @@ CERTAIN = 0.8
 """How sure a pixel's colour can make one of where it belongs."""
 LIMB_SHARE = 0.25
 """How much of what speaks against the object is believed where a hand may cover it."""
+FEWEST_IN_THREAD = 500
+"""Poses for which another thread is worth while."""
 RETURNED = 0.9
 """Of objects that nothing was learned of."""
 LEAST_RETURNED = 0.5
@@ -67,10 +70,14 @@ class SightView:
 
 
 class Sight:
-    """Weighs and refines poses of one object."""
+    """Weighs and refines poses of one object; many poses are weighed in so many threads."""
 
-    def __init__(self, model: Model, terms: Collection[SightTerm] = SIGHT_TERMS) -> None:
+    def __init__(
+        self, model: Model, terms: Collection[SightTerm] = SIGHT_TERMS, *, threads: int = 1
+    ) -> None:
         self._shape = model.shape
+        self._threads = threads
+        self._pool = ThreadPoolExecutor(threads)
         contours = model.viewpoints.contours
         if contours is None:
             contours = find_contours(model.shape, model.viewpoints.directions)
@@ -184,7 +191,8 @@ class Sight:
         lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
         contours = self._contours
         information = np.zeros((6, 6))
-        for reach in REACHES:
+        reach_m, reach_rad = (REACH_M, REACH_RAD) if prior is None else prior.reach()
+        for share in REACHES:
             information, gradient = np.zeros((6, 6)), np.zeros(6)
             gather(
                 translation,
@@ -205,7 +213,8 @@ class Sight:
                 depth,
                 self._returned,
                 wanted,
-                reach,
+                share * reach_m,
+                share * reach_rad,
                 POINT_WEIGHTS,
                 information,
                 gradient,
@@ -220,26 +229,35 @@ class Sight:
         return translation, orientation, information
 
     def _scores(self, translations: Array, orientations: Array, view: SightView) -> Array:
-        scores = np.zeros((len(translations), len(SIGHT_TERMS)), np.float32)
         frame = view.frame
         coloured, deep = frame.bins is not None, frame.depth is not None
         wanted = self._wanted & [coloured, coloured, coloured, deep]
         lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
-        weigh(
-            np.ascontiguousarray(translations, np.float32),
-            np.ascontiguousarray(orientations, np.float32),
-            *self._model,
-            lens,
-            edges,
-            edge_scores,
-            colour_scores,
-            limbs,
-            np.float32(LIMB_WEIGHT),
-            depth,
-            self._depth_scores,
-            wanted,
-            scores,
-        )
+        scores = np.zeros((len(translations), len(SIGHT_TERMS)), np.float32)
+
+        def weigh_some(part: slice) -> None:
+            weigh(
+                np.ascontiguousarray(translations[part], np.float32),
+                np.ascontiguousarray(orientations[part], np.float32),
+                *self._model,
+                lens,
+                edges,
+                edge_scores,
+                colour_scores,
+                limbs,
+                np.float32(LIMB_WEIGHT),
+                depth,
+                self._depth_scores,
+                wanted,
+                scores[part],
+            )
+
+        share = max(FEWEST_IN_THREAD, -(-len(scores) // self._threads))
+        parts = [slice(start, start + share) for start in range(0, len(scores), share)]
+        if len(parts) > 1:
+            list(self._pool.map(weigh_some, parts))
+        elif parts:
+            weigh_some(parts[0])
         return scores.astype(float)
 
     def _arrays(self, view: SightView) -> tuple[NDArray[Any], ...]:

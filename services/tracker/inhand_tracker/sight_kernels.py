@@ -23,7 +23,7 @@ OUTLINE_PIXELS = (1.0, 2.5, 5.0)
 """How far from the outline its two sides are looked at, for an object of 60 pixels."""
 USUAL_PIXELS = 60.0
 
-DEPTH_NOISE_M = np.float32(0.006)
+DEPTH_NOISE_M = np.float32(0.003)
 DEPTH_NOISE_PER_M = np.float32(0.0025)
 """Of structured light, at 1 m, growing with the square of the distance."""
 OCCLUDED = np.float32(0.25)
