@@ -41,15 +41,12 @@ class Observation:
 
 
 def observe(
-    path: Path,
-    frames: Sequence[Frame],
-    terms: Collection[Term] = (),
-    at: Collection[int] | None = None,
+    path: Path, frames: Sequence[Frame], terms: Collection[Term] = ()
 ) -> Iterator[Observation]:
     """The frames of a recording, one after the other.
 
-    Pixels are read and decoded once, and only those that the terms of a likelihood need, of all
-    frames or of those ``at`` some times. Damaged ones are none. Raises RecordingError.
+    Pixels are read and decoded once, and only those that the terms of a likelihood need. Damaged
+    ones are none. Raises RecordingError.
     """
     name = next((frame.label.camera for frame in frames if frame.label is not None), None)
     info = load_camera_info(path, name) if terms else None
@@ -60,8 +57,7 @@ def observe(
         while current is not None and current.time_ns < frame.time_ns:
             current = next(pixels, None)
         image = None
-        wanted = at is None or frame.time_ns in at
-        if wanted and info is not None and current is not None and current.time_ns == frame.time_ns:
+        if info is not None and current is not None and current.time_ns == frame.time_ns:
             with suppress(MessageError):
                 image = image_of(current, info, terms)
         before = follower.person_id

@@ -39,6 +39,9 @@ Array = NDArray[np.float64]
 
 HYPOTHESES = 400
 REFINED = 5
+STRETCH = 4.0
+INDEPENDENT = 0.1
+SEEDS, CLOSER = 20, 0.35
 SAME_M, SAME_RAD = 0.01, 0.1
 """Refined poses no farther apart than this are the same one."""
 
@@ -48,6 +51,8 @@ DOUBT = 4.0
 """By how much the prior's covariance is stretched where it speaks against what was believed."""
 LEFT_DEVIATIONS = np.array([0.01, 0.01, 0.01, 0.05, 0.05, 0.05])
 """By how much an object that was left, or the camera, moves from frame to frame."""
+FORGETTING_S = 0.3
+"""How long what was seen makes sure of a pose: one frame errs as the next does."""
 COASTING_NS = 1_000_000_000
 COASTING_DEVIATIONS = np.repeat([0.5, 2.0], 3)
 """By how much an object moves in a second in which its person is not seen."""
@@ -166,11 +171,11 @@ class FusionTracker:
         rotation = rotations.multiply(expected.rotation, rotations.from_vector(kept * turned))
         turn = rotations.multiply(rotation, rotations.conjugate(believed.rotation))
         axes = np.kron(np.eye(2), rotations.to_matrix(turn))
-        covariance = kept**2 * axes @ believed.covariance @ axes.T
+        sure = float(np.exp(-elapsed_ns / 1e9 / FORGETTING_S))
         carried = PoseGaussian(
             expected.centre + rotations.rotate(expected.rotation, kept * moved),
             rotation,
-            covariance + (1.0 - kept**2) * expected.covariance,
+            sure**2 * axes @ believed.covariance @ axes.T + (1.0 - sure**2) * expected.covariance,
         )
         left = replace(
             believed, covariance=believed.covariance + np.diag(np.square(LEFT_DEVIATIONS))
@@ -187,15 +192,31 @@ class FusionTracker:
             return belief.parts[0]
         sight = self._sight
         assert sight is not None
-        log_weights = sight.log_likelihood(
-            self._origins(centres, orientations), orientations, view
-        )
-        likeliest = np.argsort(log_weights)[::-1][:REFINED]
+        scores = self._scores(belief, centres, orientations, view)
+        if CLOSER < 1.0:
+            best = np.resize(np.argsort(scores)[::-1][:SEEDS], self._count)
+            root = np.linalg.cholesky(belief.moments().covariance)
+            shifts = CLOSER * self._random.normal(size=(self._count, 6)) @ root.T
+            nearer = centres[best] + shifts[:, :3]
+            turned = rotations.multiply(rotations.from_vector(shifts[:, 3:]), orientations[best])
+            centres = np.concatenate((centres, nearer))
+            orientations = np.concatenate((orientations, turned))
+            scores = np.concatenate((scores, self._scores(belief, nearer, turned, view)))
+        likeliest = np.argsort(scores)[::-1][:REFINED]
         starts = [(part.centre, part.rotation) for part in belief.parts]
         starts += [(centres[index], orientations[index]) for index in likeliest]
         modes = self._refine(belief, starts, view)
         found = self._weigh_modes(belief, modes, view)
         return found.moments()
+
+    def _scores(
+        self, belief: PoseMixture, centres: Array, orientations: Array, view: SightView
+    ) -> Array:
+        """The log-posterior (P,) of poses (P, 3) and (P, 4), up to a constant."""
+        sight = self._sight
+        assert sight is not None
+        seen = sight.log_likelihood(self._origins(centres, orientations), orientations, view)
+        return seen + np.logaddexp.reduce(belief.log_densities(centres, orientations), axis=0)
 
     def _view(
         self, centres: Array, guess: PoseGaussian, image: Image, joints: Array | None
@@ -240,12 +261,12 @@ class FusionTracker:
                 self._origins(centre[None], rotation[None]),
                 rotation[None],
                 view,
-                self._at_origin(part, information),
+                self._at_origin(part, information / STRETCH),
             )
             turned = refined.rotations[0]
             arm = rotations.rotate(turned, self._mirrored_centre())
             back = lever(-arm)
-            seen = back.T @ refined.information[0] @ back
+            seen = INDEPENDENT * back.T @ refined.information[0] @ back
             mode = PoseGaussian(
                 refined.translations[0] + arm, turned, np.linalg.inv(information + seen)
             )
