@@ -34,7 +34,16 @@ from inhand_tracker.contours import Contours, find_contours
 from inhand_tracker.image import Image
 from inhand_tracker.limbs import limb_mask
 from inhand_tracker.model_file import Model
-from inhand_tracker.refine import DAMPING, REACH_M, REACH_RAD, REACHES, Prior, Refined, gather
+from inhand_tracker.refine import (
+    DAMPING,
+    REACH_M,
+    REACH_RAD,
+    REACHES,
+    TRUST,
+    Prior,
+    Refined,
+    gather,
+)
 from inhand_tracker.sight_frame import SightFrame, prepare
 from inhand_tracker.sight_kernels import depth_scores, weigh
 from inhand_tracker.view_grid import view_grid
@@ -232,7 +241,7 @@ class Sight:
             translation = translation + step[:3]
             turn = rotations.from_vector(np.asarray(step[3:], np.float64))
             orientation = rotations.normalise(rotations.multiply(turn, orientation))
-        return translation, orientation, information
+        return translation, orientation, TRUST * information
 
     def _scores(self, translations: Array, orientations: Array, view: SightView) -> Array:
         frame = view.frame

@@ -46,8 +46,8 @@ def depth_scores(returned: float, behind: float) -> Floats:
     """(DEPTH_ROWS, DEPTH_COLUMNS): log how many times likelier a measured depth is for a surface
     of the object there, by how far away the surface is and how far behind it was measured.
 
-    ``returned`` and ``behind`` are those of ``Appearance``. What is in front may hide the object as well
-    as anything else, and says nothing.
+    ``returned`` and ``behind`` are those of ``Appearance``. What is in front may hide the object
+    as well as anything else, and says nothing.
     """
     noise = depth_noise((np.arange(DEPTH_ROWS)[:, None] + 0.5) / DEPTH_ROWS_PER_M)
     off = (np.arange(DEPTH_COLUMNS) - DEPTH_COLUMNS // 2) / DEPTH_COLUMNS_PER_NOISE
