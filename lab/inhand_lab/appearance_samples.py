@@ -10,17 +10,18 @@ from inhand_tracker.conversion import image_of, joints_of
 
 from inhand_lab.dataset import Dataset, Entry, iterate_pixels, load_camera_info, load_frames
 
-FRAMES = 60
-"""Of all recordings together."""
+RECORDINGS, FRAMES = 12, 60
+"""At the most, evenly spaced: an object looks much the same in all."""
 
 
 def appearance_samples(dataset: Dataset, entries: Sequence[Entry]) -> Iterator[Sample]:
-    """Some frames of each recording of one object, evenly spaced; none of those without images.
+    """Some frames of some recordings of one object; none of recordings without images.
 
     Damaged pixels are passed over. Raises DatasetError or RecordingError.
     """
-    wanted = -(-FRAMES // max(len(entries), 1))
-    for entry in entries:
+    some = entries[:: -(-len(entries) // RECORDINGS)]
+    wanted = FRAMES // max(len(some), 1)
+    for entry in some:
         path = dataset.path(entry)
         frames = load_frames(path, entry.object)
         labels = [frame.label for frame in frames if frame.label is not None]

@@ -24,6 +24,8 @@ BESIDE = 1.0
 IN_FRONT_M = 0.05
 FEWEST_PIXELS = 200
 MOST_COVERED = 0.8
+RETURNED, BEHIND = 0.9, 0.05
+"""Where no depth was seen in training."""
 
 Sample = tuple[Image, Array, Array, Array | None]
 """A frame, the object's true translation (3,) and rotation (4,), and the joints (20, 3) of the
@@ -34,11 +36,13 @@ person, or None."""
 class Appearance:
     """``of_object`` and ``around`` (4096,): histograms of the colours within an object's outline
     (without the fingers that lie over it) and around it. ``returned`` is the share of its
-    surface of which a depth sensor measures the depth."""
+    surface of which a depth sensor measures the depth, and ``behind`` the share of which it
+    measures something farther away; nothing is measured of the rest."""
 
     of_object: Floats
     around: Floats
     returned: float
+    behind: float
 
 
 def learn_appearance(shape: ObjectShape, samples: Iterable[Sample]) -> Appearance | None:
@@ -48,7 +52,7 @@ def learn_appearance(shape: ObjectShape, samples: Iterable[Sample]) -> Appearanc
     and so is the share of the colours of arms and hands that fingers over the object make likely.
     """
     of_object, around, of_limbs = np.zeros((3, BINS))
-    returned = asked = 0
+    returned = behind = asked = 0
     for image, translation, rotation, joints in samples:
         region = region_around(shape, translation, rotation, image.camera)
         if region is None:
@@ -59,8 +63,10 @@ def learn_appearance(shape: ObjectShape, samples: Iterable[Sample]) -> Appearanc
         if frame.depth is not None:
             covered = (frame.depth > 0.0) & (frame.depth < depths - IN_FRONT_M)
             seen = _interior(silhouette) & ~covered
-            near = np.abs(frame.depth - np.where(seen, depths, 0.0)) < IN_FRONT_M
-            returned, asked = returned + int((seen & near).sum()), asked + int(seen.sum())
+            off = frame.depth[seen] - depths[seen]
+            returned += int((np.abs(off) < IN_FRONT_M).sum())
+            behind += int((off >= IN_FRONT_M).sum())
+            asked += len(off)
             silhouette &= ~covered
         if frame.bins is not None:
             of_object += _counts(frame.bins, silhouette)
@@ -73,7 +79,8 @@ def learn_appearance(shape: ObjectShape, samples: Iterable[Sample]) -> Appearanc
     return Appearance(
         smoothed(_without_limbs(of_object / of_object.sum(), of_limbs)),
         smoothed((around / around.sum()).astype(np.float32)),
-        returned / asked if asked else 1.0,
+        returned / asked if asked else RETURNED,
+        behind / asked if asked else BEHIND,
     )
 
 

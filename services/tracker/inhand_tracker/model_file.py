@@ -152,7 +152,8 @@ def _found(name: str, kind: type[Part], arrays: dict[str, Any]) -> Part | None:
     names = [field.name for field in fields(kind)]
     if any(f"{name}.{field}" not in arrays for field in names):
         return None
-    return kind(**{field: arrays[f"{name}.{field}"] for field in names})
+    values = {field: arrays[f"{name}.{field}"] for field in names}
+    return kind(**{f: value if value.ndim else value.item() for f, value in values.items()})
 
 
 def _mapping_arrays() -> tuple[str, ...]:

@@ -38,6 +38,10 @@ CONTOUR_ERROR_M = 0.002
 """What an outline seen from the nearest of the directions, and from far away, errs by."""
 IN_FRONT_PER_M, BEHIND_PER_M = 3.0, 1.5
 """How likely another surface is measured just before and behind the object's."""
+COLOUR_WEIGHT, LIMB_FACTOR = 3.0, 20.0
+"""How much a measured surface is rather another's for its colour, and for a limb's being there."""
+TRUST = 0.25
+"""How much of the information that adds up here holds in fact, measured on simulated frames."""
 DAMPING = np.array([100.0, 100.0, 100.0, 1.0, 1.0, 1.0])
 """Keeps in place what nothing is seen of: 10 cm and 1 rad."""
 
@@ -241,6 +245,12 @@ def gather(
         width_m = np.sqrt(noise * noise + reach * reach / 3.0)
         near = np.exp(-0.5 * error * error / (width_m * width_m)) / (2.5066 * width_m)
         other = (IN_FRONT_PER_M if error < 0.0 else BEHIND_PER_M) / max(returned, 0.01)
+        if wanted[1]:
+            # A colour of the surroundings rather than of the object's tells whose surface it is.
+            against = colour_scores[row, column, 1] - colour_scores[row, column, 0]
+            other *= np.exp(COLOUR_WEIGHT * against)
+        if limbs[row, column]:
+            other *= LIMB_FACTOR
         a, b, c = surface_normals[view, point]
         across[0] = r0 * a + r1 * b + r2 * c
         across[1] = r3 * a + r4 * b + r5 * c

@@ -16,7 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inhand_tracker import rotations
-from inhand_tracker.appearance import pixels_within, region_around, silhouette_depths
+from inhand_tracker.appearance import (
+    BEHIND,
+    RETURNED,
+    pixels_within,
+    region_around,
+    silhouette_depths,
+)
 from inhand_tracker.colours import (
     Colours,
     blend,
@@ -28,7 +34,16 @@ from inhand_tracker.contours import Contours, find_contours
 from inhand_tracker.image import Image
 from inhand_tracker.limbs import limb_mask
 from inhand_tracker.model_file import Model
-from inhand_tracker.refine import DAMPING, REACH_M, REACH_RAD, REACHES, Prior, Refined, gather
+from inhand_tracker.refine import (
+    DAMPING,
+    REACH_M,
+    REACH_RAD,
+    REACHES,
+    TRUST,
+    Prior,
+    Refined,
+    gather,
+)
 from inhand_tracker.sight_frame import SightFrame, prepare
 from inhand_tracker.sight_kernels import depth_scores, weigh
 from inhand_tracker.view_grid import view_grid
@@ -40,7 +55,7 @@ SightTerm = Literal["edges", "region", "interior", "depth"]
 
 SIGHT_TERMS: tuple[SightTerm, ...] = get_args(SightTerm)
 
-TERM_WEIGHTS = np.array([4.0, 10.0, 8.0, 4.0])
+TERM_WEIGHTS = np.array([4.5, 13.0, 6.0, 5.0])
 """How many independent points each term's are worth."""
 POINT_WEIGHTS = np.array([0.2, 1.0])
 """The same for a point of the outline and of the surface in refinement."""
@@ -53,8 +68,6 @@ LIMB_SHARE = 0.25
 """How much of what speaks against the object is believed where a hand may cover it."""
 FEWEST_IN_THREAD = 500
 """Poses for which another thread is worth while."""
-RETURNED = 0.9
-"""Of objects that nothing was learned of."""
 LEAST_RETURNED = 0.5
 """Depth that is measured of less of an object's surface is rather that of the hand around it."""
 
@@ -95,9 +108,11 @@ class Sight:
         )
         self._wanted = np.array([term in terms for term in SIGHT_TERMS])
         self._appearance = model.appearance
-        returned = RETURNED if model.appearance is None else model.appearance.returned
+        returned, behind = RETURNED, BEHIND
+        if model.appearance is not None:
+            returned, behind = model.appearance.returned, model.appearance.behind
         self._returned = returned if returned >= LEAST_RETURNED else 0.0
-        self._depth_scores = depth_scores(self._returned)
+        self._depth_scores = depth_scores(self._returned, behind)
 
     def start(self) -> Colours:
         """What is known of the object's colours and its surroundings' from training."""
@@ -226,7 +241,7 @@ class Sight:
             translation = translation + step[:3]
             turn = rotations.from_vector(np.asarray(step[3:], np.float64))
             orientation = rotations.normalise(rotations.multiply(turn, orientation))
-        return translation, orientation, information
+        return translation, orientation, TRUST * information
 
     def _scores(self, translations: Array, orientations: Array, view: SightView) -> Array:
         frame = view.frame

@@ -26,11 +26,11 @@ USUAL_PIXELS = 60.0
 DEPTH_NOISE_M = np.float32(0.003)
 DEPTH_NOISE_PER_M = np.float32(0.0025)
 """Of structured light, at 1 m, growing with the square of the distance."""
-OCCLUDED = np.float32(0.25)
-OUTLIER = np.float32(0.01)
-ANYWHERE_PER_M = np.float32(0.5)
-"""Densities of a measurement of the object: the prior share of what is in front, of what is
-behind all the same, and of what is measured where the object is not."""
+ANYWHERE_PER_M = 0.5
+"""The density of what is measured where the object is not."""
+MEASURED = 0.9
+LEAST_BEHIND = 0.02
+"""How much of the rest of the world is measured, and how seldom something is behind by error."""
 DEPTH_ROWS, DEPTH_ROWS_PER_M = 64, 8
 DEPTH_COLUMNS, DEPTH_COLUMNS_PER_NOISE = 128, 8
 """The table of ``depth_scores``."""
@@ -42,17 +42,18 @@ def depth_noise(depth: Real) -> Real:
     return DEPTH_NOISE_M + DEPTH_NOISE_PER_M * depth * depth
 
 
-def depth_scores(returned: float) -> Floats:
+def depth_scores(returned: float, behind: float) -> Floats:
     """(DEPTH_ROWS, DEPTH_COLUMNS): log how many times likelier a measured depth is for a surface
     of the object there, by how far away the surface is and how far behind it was measured.
 
-    ``returned`` is how much of the object's surface gives back depth.
+    ``returned`` and ``behind`` are those of ``Appearance``. What is in front may hide the object
+    as well as anything else, and says nothing.
     """
     noise = depth_noise((np.arange(DEPTH_ROWS)[:, None] + 0.5) / DEPTH_ROWS_PER_M)
-    behind = (np.arange(DEPTH_COLUMNS) - DEPTH_COLUMNS // 2) / DEPTH_COLUMNS_PER_NOISE
-    near = np.exp(-0.5 * behind**2) / (np.sqrt(2.0 * np.pi) * noise)
-    seen = (1.0 - OCCLUDED - OUTLIER) * near / ANYWHERE_PER_M + OUTLIER + OCCLUDED * (behind < 0.0)
-    return np.log(returned * seen + 1.0 - returned).astype(np.float32)
+    off = (np.arange(DEPTH_COLUMNS) - DEPTH_COLUMNS // 2) / DEPTH_COLUMNS_PER_NOISE
+    near = np.exp(-0.5 * off**2) / (np.sqrt(2.0 * np.pi) * noise)
+    other = np.where(off < 0.0, 1.0, max(behind / MEASURED, LEAST_BEHIND))
+    return np.log(returned * near / ANYWHERE_PER_M + other).astype(np.float32)
 
 
 @njit(cache=True, nogil=True, inline="always", fastmath=True)
