@@ -77,12 +77,22 @@ def track_recording(
 def track_together(
     trackers: Sequence[Tracker], path: Path, frames: Sequence[Frame], terms: Collection[Term]
 ) -> tuple[Array, list[Track]]:
-    """The joints (T, 20, 3) that several trackers saw of a recording, and their tracks."""
+    """The joints (T, 20, 3) that several trackers saw of a recording, and their tracks.
+
+    The trackers share their model and the person's handedness, so each body is read once for all.
+    """
     joints = np.full((len(frames), 20, 3), np.nan)
     tracks = [empty_track(len(frames)) for _ in trackers]
-    for index, observation in enumerate(observe(path, frames, terms)):
-        if observation.joints is not None:
-            joints[index] = observation.joints
+    reader = trackers[0].new_reader()
+    for index, seen in enumerate(observe(path, frames, terms)):
+        if seen.somebody_else:
+            reader = trackers[0].new_reader()
+        body = None
+        if seen.joints is not None:
+            joints[index] = seen.joints
+            body = reader.read(seen.joints)
         for tracker, track in zip(trackers, tracks, strict=True):
-            track.put(index, observation.show(tracker))
+            if seen.somebody_else:
+                tracker.restart()
+            track.put(index, tracker.step_body(body, seen.time_ns, seen.image))
     return joints, tracks

@@ -66,7 +66,7 @@ class Tracker:
 
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""
-        self._reader = self._new_reader()
+        self._reader = self.new_reader()
         self._particles: Particles | None = None
         self._weights = np.full(self._count, 1.0 / self._count)
         self._estimate = LOST
@@ -79,6 +79,10 @@ class Tracker:
         not seen the last pose stands for a second, as predicted; then the object is lost.
         """
         body = None if joints is None else self._reader.read(joints)
+        return self.step_body(body, time_ns, image)
+
+    def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
+        """One frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
         if body is None:
             return self._coast(time_ns)
         particles = self._reinitialise(self._predict(time_ns), body)
@@ -93,7 +97,7 @@ class Tracker:
 
         ``joints`` (20, 3) as in ``step``; what is tracked is neither used nor changed.
         """
-        body = self._new_reader().read(joints)
+        body = self.new_reader().read(joints)
         if body is None:
             return LOST
         random = np.random.default_rng(self._seed)
@@ -109,7 +113,8 @@ class Tracker:
         points = self._outline.place(estimate.translation[None], estimate.rotation[None])
         return camera.project(points[0])
 
-    def _new_reader(self) -> BodyReader:
+    def new_reader(self) -> BodyReader:
+        """A reader of bodies for trackers of this model and handedness."""
         return BodyReader(self._mapping, left_handed=self._left_handed)
 
     def _predict(self, time_ns: int) -> Particles | None:
