@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from inhand_lab.joints import Joint
 from inhand_lab.kinematics import Body
 from inhand_lab.person import Person
+from inhand_lab.solids import belly, head_radii, pelvis, rib_cage
 from inhand_lab.surfaces import Colour, Surface, ellipsoid, joined, limb
 from inhand_lab.transforms import MIRROR, Floats, Transform, normalised
 
@@ -77,32 +78,6 @@ def build_figure(person: Person, joints: Floats) -> Figure:
     parts += [hand, left]
     counts = [len(part.vertices) for part in parts]
     return Figure(joined(parts), np.repeat(np.arange(len(parts)), counts))
-
-
-def head_radii(person: Person) -> Floats:
-    """Half axes (3,) of the head's ellipsoid about its middle, metres."""
-    body = person.proportions
-    return np.array([body.head_half_width, body.head_half_depth, body.head_half_height])
-
-
-def rib_cage(person: Person) -> tuple[Floats, Floats]:
-    """Centre and half axes (3,) of an ellipsoid in the chest's frame, metres."""
-    size, trunk = person.height * person.girth, person.proportions.chest
-    radii = np.array([0.094 * size, 0.066 * size, 0.66 * trunk])
-    return np.array([0.0, 0.004, -0.45 * trunk]), radii
-
-
-def belly(person: Person) -> tuple[Floats, Floats]:
-    """Centre and half axes (3,) of an ellipsoid in the chest's frame, metres."""
-    size, trunk = person.height * person.girth, person.proportions.chest
-    radii = np.array([0.088 * size, 0.066 * size, 0.50 * trunk])
-    return np.array([0.0, 0.008, -0.90 * trunk]), radii
-
-
-def pelvis(person: Person) -> tuple[Floats, Floats]:
-    """Centre and half axes (3,) of an ellipsoid in the pelvis's frame, metres."""
-    size, drop = person.height * person.girth, person.proportions.hip_drop
-    return np.array([0.0, 0.0, -0.6 * drop]), np.array([0.093, 0.068, 0.075]) * size
 
 
 def _distance(joints: Floats, parent: Joint, child: Joint) -> float:

@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from inhand_lab.joints import MIRRORED_JOINTS
 from inhand_lab.person import Person, Proportions
+from inhand_lab.solids import rib_cage
 from inhand_lab.transforms import MIRROR, Floats, Transform, normalised, rotation_about
 
 ELBOW_EXTENSION = np.radians(172.0)
@@ -24,6 +25,10 @@ WRIST_LIMIT = np.radians(75.0)
 SWIVELS = np.linspace(-0.4, 1.7, 22)
 STOUT_ELBOWS = 0.30
 """How much further from the trunk stout people carry their elbows, in statures a share of girth."""
+UPPER_ARM = ((0.35, 0.0275), (0.6, 0.0265))
+"""Places along the upper arm that press into the ribs, and its radii there in statures."""
+EASY_SQUEEZE = 0.025
+"""How deep, as a share of the chest's radius, an arm is pressed to it with ease."""
 BALL_HEIGHT = 0.02
 
 
@@ -214,7 +219,8 @@ def _choose_elbow(
     chest_edge = sides - np.clip(ahead - 0.05 - stout, 0.0, None)
     pressed = np.clip(chest_edge - sideways, 0.0, None)
     cost = (
-        ((SWIVELS - person.manner.elbow_flare) / 0.35) ** 2
+        _squeeze(person, from_chest, shoulder, elbows)
+        + ((SWIVELS - person.manner.elbow_flare) / 0.35) ** 2
         + (bend / 0.9) ** 2
         + (twist / 1.2) ** 2
         + (pressed / 0.03) ** 2
@@ -223,6 +229,21 @@ def _choose_elbow(
     swivel = (ease @ SWIVELS) / ease.sum(axis=1)
     chosen = np.cos(swivel)[:, None] * down + np.sin(swivel)[:, None] * outward
     return np.asarray(circle.centre + circle.radius[:, None] * chosen)
+
+
+def _squeeze(person: Person, from_chest: Transform, shoulder: Floats, elbows: Floats) -> Floats:
+    """Cost (T, K) of elbows (T, K, 3) whose upper arms press into the ribs."""
+    centre, radii = rib_cage(person)
+    cost = np.zeros(elbows.shape[:2])
+    for share, thickness in UPPER_ARM:
+        points = shoulder[:, None] + share * (elbows - shoulder[:, None])
+        offset = points - from_chest.translation[:, None]
+        local = np.einsum("tji,tkj->tki", from_chest.rotation, offset) - centre
+        around = radii + thickness * person.height * person.girth
+        cost += (
+            np.clip(1.0 - np.linalg.norm(local / around, axis=2), 0.0, None) / EASY_SQUEEZE
+        ) ** 2
+    return cost
 
 
 def _relieve_wrist(forearm: Floats, rotation: Floats) -> Floats:

@@ -3,11 +3,11 @@
 from functools import cache
 
 import numpy as np
-from inhand_lab.figure import head_radii
 from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.kinematics import Body, place_body
 from inhand_lab.motions.performance import Performance
 from inhand_lab.person import Person, sample_person
+from inhand_lab.solids import head_radii
 from inhand_lab.transforms import Floats, Transform
 
 SEED = 20

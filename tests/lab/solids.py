@@ -4,11 +4,12 @@ from functools import cache
 
 import numpy as np
 import trimesh
-from inhand_lab.figure import LIMBS, belly, head_radii, pelvis, rib_cage
+from inhand_lab.figure import LIMBS
 from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.joints import Joint
 from inhand_lab.kinematics import Body
 from inhand_lab.person import Person
+from inhand_lab.solids import belly, head_radii, pelvis, rib_cage
 from inhand_lab.transforms import Floats, Transform
 
 SPACING = 0.03
@@ -19,6 +20,8 @@ ARM_JOINTS = {
 }
 FOREARM_RADII = (0.024, 0.016)
 """Shares of the stature, at elbow and wrist."""
+UPPER_ARM_RADII = (0.029, 0.025)
+"""Shares of the stature, at shoulder and elbow."""
 HAND_RADIUS = 0.012
 """Of the stature: half the thickness of a palm."""
 
@@ -53,6 +56,17 @@ def forearm_and_hand(person: Person, body: Body, side: str) -> tuple[Floats, Flo
     root, tip = FOREARM_RADII
     radii = [*(root + shares * (tip - root)) * person.girth, HAND_RADIUS]
     return np.concatenate([along, hand[:, None]], axis=1), np.array(radii) * person.height
+
+
+def upper_arm(person: Person, body: Body, side: str) -> tuple[Floats, Floats]:
+    """Centres (T, K, 3) and radii (K,) of balls that fill the lower two thirds of an upper arm:
+    the rest lies against the ribs at the armpit."""
+    elbow = ARM_JOINTS[side][0]
+    shoulder, end = body.joints[:, elbow - 1], body.joints[:, elbow]
+    shares = np.linspace(1.0 / 3.0, 1.0, 7)
+    root, tip = UPPER_ARM_RADII
+    centres = shoulder[:, None] + shares[:, None] * (end - shoulder)[:, None]
+    return centres, (root + shares * (tip - root)) * person.girth * person.height
 
 
 @cache

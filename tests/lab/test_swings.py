@@ -100,7 +100,7 @@ def test_the_club_starts_at_the_ball_on_the_floor(participant: int) -> None:
     _, club, contact = swung("hitGolfBall", participant)
     sole = club.apply(np.array([0.0, 0.03, SOLE]))
     hit = int(speeds(sole).argmax())
-    before = slice(hit - 2 * RATE, hit - RATE // 2)
+    before = slice(hit - 3 * RATE // 2, hit - RATE // 2)
     assert (contact[before] == Contact.BOTH_HANDS).all()
     address = before.start + int(sole[before, 2].argmin())
     assert -0.005 < sole[address, 2] < 0.06

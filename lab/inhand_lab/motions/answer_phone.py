@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from inhand_lab.figure import head_radii
 from inhand_lab.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT
 from inhand_lab.kinematics import Trunk, place_trunk
 from inhand_lab.motions.furniture import Box, side_table
@@ -24,6 +23,7 @@ from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, named
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.phone import PHONE_LENGTH, PHONE_THICKNESS
 from inhand_lab.person import Person
+from inhand_lab.solids import head_radii
 from inhand_lab.transforms import (
     Floats,
     Transform,

@@ -1,11 +1,21 @@
-"""A golf swing as body, arms and club turn in it.
+"""A golf swing as body, arms and club turn in it, put together from published figures.
 
-Two levers, the arms and the club, turn in planes that lean towards the player (Cochran & Stobbs,
-*Search for the Perfect Swing*, 1968): the wrists cock in the backswing, keep their angle in the
-first half of the downswing and let go before impact. The backswing takes three times as long as
-the downswing (Novosel & Garrity, *Tour Tempo*, 2004), the hips lead the shoulders.
-The figures follow one good player's five measured swings, rounded, and moved where another body
-would go through itself.
+Two levers, the arms and the club, turn in planes that lean towards the player [1]: the wrists cock
+in the backswing until club and left arm are square, keep their angle in the first half of the
+downswing and let go before impact, where left arm and club are nearly in line. The backswing takes
+three times as long as the downswing: 24 frames to 8 at 30 Hz [2]. Shoulders turn by 90 degrees or
+a little more [3], 48 degrees further than the hips; these turn back first, which widens the
+difference by an eighth or so [4]. At impact the hips are about 32 degrees open and the shoulders
+about 26 [5].
+
+1. Cochran & Stobbs, *Search for the Perfect Swing*, 1968.
+2. Novosel & Garrity, *Tour Tempo*, 2004.
+3. Burden, Grimshaw & Wallace, *Hip and shoulder rotations during the golf swing of sub-10 handicap
+   players*, Journal of Sports Sciences 16, 1998.
+4. Cheetham et al., *The importance of stretching the "X-Factor" in the downswing of golf*, in
+   Thomas (ed.), *Optimising Performance in Golf*, 2001.
+5. McTeigue et al., *Spine and hip motion analysis during the golf swing*, in Cochran & Farrally
+   (eds.), *Science and Golf II*, 1994.
 """
 
 from __future__ import annotations
@@ -18,38 +28,43 @@ from inhand_lab.motions.timeline import Stage, flow
 from inhand_lab.person import Person
 from inhand_lab.transforms import Floats
 
-DOWNSWING = (-0.26, 0.12)
+DOWNSWING = (-0.267, 0.14)
 DOWNSWING_RATE = (0.95, 1.4)
-"""How much slower than in MOMENTS, which are a good player's, the downswing is at least and at
+"""How much slower than in MOMENTS, which are good players', the downswing is at least and at
 most."""
 
 MOMENTS = np.array(
     [
         # time, pelvis, chest, arms, lag, reach, inside, lean, slide, heel, gaze
-        (-1.06, 3, -5, -8, 17, 0.94, 0.24, 40, 0.00, 0, 0.0),
-        (-0.82, -8, -25, 10, 32, 0.96, 0.24, 38, 0.00, 0, 0.0),
-        (-0.60, -24, -70, 82, 70, 0.91, 0.20, 35, 0.00, 0, 0.0),
-        (-0.43, -35, -93, 135, 105, 0.80, 0.08, 35, 0.00, 0, 0.0),
-        (-0.26, -36, -98, 155, 112, 0.66, 0.02, 36, -0.02, 0, 0.0),
-        (-0.16, -20, -77, 135, 112, 0.68, 0.06, 36, -0.03, 0, 0.0),
-        (-0.08, 4, -42, 78, 104, 0.81, 0.01, 34, -0.05, 4, 0.0),
-        (-0.04, 15, -25, 33, 79, 0.91, 0.02, 32, -0.055, 7, 0.0),
-        (0.00, 23, -8, -4, 38, 0.95, 0.08, 30, -0.06, 10, 0.0),
-        (0.03, 27, 4, -23, -7, 0.97, 0.06, 26, -0.06, 12, 0.0),
-        (0.06, 31, 24, -41, -36, 0.95, 0.09, 24, -0.065, 14, 0.05),
-        (0.12, 43, 78, -76, -64, 0.92, 0.15, 21, -0.07, 20, 0.3),
-        (0.22, 65, 110, -125, -93, 0.78, 0.17, 18, -0.085, 35, 0.7),
-        (0.35, 80, 118, -160, -110, 0.64, 0.12, 15, -0.095, 48, 1.0),
-        (0.50, 85, 124, -178, -124, 0.54, 0.05, 13, -0.10, 52, 1.0),
+        (-1.067, 0, 4, -4, 12, 0.90, 0.25, 40, 0.00, 0, 0.0),  # address
+        (-0.88, -8, -16, 20, 25, 0.88, 0.24, 39, 0.00, 0, 0.0),
+        (-0.69, -20, -45, 55, 50, 0.84, 0.20, 38, 0.00, 0, 0.0),
+        (-0.50, -34, -74, 100, 88, 0.78, 0.11, 37, 0.00, 0, 0.0),  # arms level
+        (-0.267, -42, -90, 148, 108, 0.70, 0.03, 36, 0.00, 0, 0.0),  # top
+        (-0.18, -27, -80, 135, 110, 0.72, 0.00, 36, -0.01, 0, 0.0),
+        (-0.105, -4, -52, 90, 108, 0.80, -0.10, 34, -0.02, 3, 0.0),  # arms level
+        (-0.05, 13, -18, 37, 71, 0.88, -0.10, 32, -0.035, 6, 0.0),  # club level
+        (0.0, 32, 26, -9, 18, 0.94, 0.00, 30, -0.04, 10, 0.0),  # impact
+        (0.035, 42, 46, -34, -14, 0.95, 0.04, 28, -0.045, 13, 0.0),
+        (0.07, 51, 62, -55, -40, 0.93, 0.11, 25, -0.05, 16, 0.1),  # club level
+        (0.14, 64, 84, -92, -72, 0.85, 0.14, 21, -0.06, 24, 0.4),  # arms level
+        (0.25, 78, 105, -132, -94, 0.74, 0.15, 17, -0.075, 37, 0.8),
+        (0.38, 85, 116, -158, -108, 0.63, 0.10, 14, -0.085, 46, 1.0),
+        (0.52, 88, 120, -170, -116, 0.56, 0.06, 12, -0.09, 50, 1.0),  # finish
     ]
 )
 """Seconds from impact; turns of pelvis and chest to the left, degrees; angle of the arms from
 hanging, to the right, and of the club from the arms, degrees; distance of the hands from the
 shoulders and how far inside the arms' plane they are, in lengths of the arm; lean of the spine,
 degrees; hips to the right, in statures; right heel off the floor, degrees; the eyes from the ball
-(0) to where it flies (1)."""
+(0) to where it flies (1).
 
-RETURNING = np.array((30, 45, -70, -60, 0.84, 0.08, 25, -0.05, 15, 0.4))
+Times and turns are those of the sources. The angle of the club is that from the middle of the
+shoulders, 15 to 20 degrees more than from the left arm. The reach is what a straight left arm
+allows up to impact, and a straight right arm after it, until both fold. For the lean, the slide,
+the heel and the eyes there is no source: they are drawn."""
+
+RETURNING = np.array((38, 62, -64, -60, 0.86, -0.08, 25, -0.05, 15, 0.4))
 """On the way back from the finish to the address, as in MOMENTS."""
 TAKING = np.array((2, 5, 0, 0, 0.80, 0.20, 52, 0.02, 0, 0.0))
 """While the club is fetched and brought back."""
