@@ -9,11 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from inhand_tracker.class_filter import ClassFilter
-from inhand_tracker.movement_classes import MovementClasses, strangeness_inputs
+from inhand_tracker.movement_classes import MovementClasses
 from numpy.typing import NDArray
 from scipy.cluster.vq import kmeans2
 from scipy.linalg import eigh
-from sklearn.linear_model import LogisticRegression
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -21,6 +20,10 @@ Flags = NDArray[np.bool_]
 
 GAUSSIANS = 3
 """To an action."""
+BACKGROUND_GAUSSIANS = 60
+"""To people who use nothing, who may do anything."""
+KEPT = 0.98
+"""The share of frames of people left out within the limits of strangeness."""
 SHRINKAGE = 0.05
 """How far the covariance goes towards the identity of standardised features."""
 GROUPS = 5
@@ -32,7 +35,10 @@ TEMPERS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.4)
 
 @dataclass(frozen=True)
 class MovementSequence:
-    """Features (N, D) of frames of a recording at ``times_ns`` (N,); actions count from 0."""
+    """Features (N, D) of frames of a recording at ``times_ns`` (N,).
+
+    Actions count from 0; the number after the last is that of people who use nothing.
+    """
 
     action: int
     participant: str
@@ -63,18 +69,20 @@ def train_movements(
 ) -> tuple[MovementClasses, float]:
     """Classes of movements, and how much of each frame's evidence is new.
 
-    The sequences are of two participants at least, and of every action.
+    The sequences are of two participants at least, and of every action and of none.
     """
     frames = _frames(sequences, actions)
     judges = [(out, _fit(frames.of(~out), actions)) for out in _left_out(frames.people)]
-    says = np.full((actions * GAUSSIANS, actions), PRIOR_COUNT)
+    classes = actions + 1
+    says = np.full((len(_owners(actions)), classes), PRIOR_COUNT)
     for out, judge in judges:
         shares, _ = judge.gaussians(frames.features[out])
-        for action in range(actions):
-            says[:, action] += shares[frames.actions[out] == action].sum(axis=0)
+        for number in range(classes):
+            says[:, number] += shares[frames.actions[out] == number].sum(axis=0)
+    frequencies = np.bincount(frames.actions, minlength=classes) / len(frames.actions)
     learned = {
-        "says": says / says.sum(axis=1, keepdims=True),
-        "strangeness": _strangeness([_distances(judge, frames.of(out)) for out, judge in judges]),
+        "says": says / says.sum(axis=1, keepdims=True) / frequencies,
+        "limits": _limits(judges, frames),
     }
     people = [set(frames.people[out]) for out, _ in judges]
     temper = _best_temper(
@@ -89,40 +97,47 @@ def train_movements(
     return replace(_fit(frames, actions), **learned), temper
 
 
+def _owners(actions: int) -> Indices:
+    """The class (G,) of each Gaussian."""
+    counts = [GAUSSIANS] * actions + [BACKGROUND_GAUSSIANS]
+    return np.repeat(np.arange(actions + 1), counts)
+
+
 def _frames(sequences: Sequence[MovementSequence], actions: int) -> _Frames:
     lengths = [len(one.features) for one in sequences]
     features = np.concatenate([one.features for one in sequences])
     labels = np.repeat([one.action for one in sequences], lengths)
     people = np.repeat([one.participant for one in sequences], lengths)
-    first = _fit(_Frames(features, labels, people, GAUSSIANS * labels), actions)
-    inside, _ = first.project(features)
-    gaussians = GAUSSIANS * labels
-    for action in range(actions):
-        ours = labels == action
-        _, nearest = kmeans2(inside[ours], GAUSSIANS, minit="++", rng=np.random.default_rng(action))
+    owners = _owners(actions)
+    gaussians = np.searchsorted(owners, labels)
+    inside, _ = _fit(_Frames(features, labels, people, gaussians), actions).project(features)
+    for number in range(actions + 1):
+        ours = labels == number
+        count = int((owners == number).sum())
+        _, nearest = kmeans2(inside[ours], count, minit="++", rng=np.random.default_rng(number))
         gaussians[ours] += nearest
     return _Frames(features, labels, people, gaussians)
 
 
 def _fit(frames: _Frames, actions: int) -> MovementClasses:
-    """Gaussians with one covariance; one without frames stands where its action's middle is."""
-    count = actions * GAUSSIANS
+    """Gaussians with one covariance; one without frames stands where its class's middle is."""
+    owners = _owners(actions)
     means, spreads = frames.features.mean(axis=0), frames.features.std(axis=0) + 1e-6
     scaled = (frames.features - means) / spreads
-    centres = np.zeros((count, scaled.shape[1]))
-    sizes = np.full(count, 1e-3)
+    centres = np.zeros((len(owners), scaled.shape[1]))
+    sizes = np.full(len(owners), 1e-3)
     residuals = np.empty_like(scaled)
-    for gaussian in range(count):
+    for gaussian, owner in enumerate(owners):
         ours = frames.gaussians == gaussian
-        same_action = frames.actions == gaussian // GAUSSIANS
-        centres[gaussian] = scaled[ours if ours.any() else same_action].mean(axis=0)
+        centres[gaussian] = scaled[ours if ours.any() else frames.actions == owner].mean(axis=0)
         sizes[gaussian] += ours.sum()
         residuals[ours] = scaled[ours] - centres[gaussian]
+    # What people do who use nothing is too wide to tell how actions vary.
+    residuals = residuals[frames.actions < actions]
     covariance = residuals.T @ residuals / len(residuals)
     width = len(covariance)
     level = np.trace(covariance) / width
-    shrunk = (1.0 - SHRINKAGE) * covariance + SHRINKAGE * level * np.eye(width)
-    values, axes = eigh(shrunk)
+    values, axes = eigh((1.0 - SHRINKAGE) * covariance + SHRINKAGE * level * np.eye(width))
     whitening = axes / np.sqrt(values)
     white = centres @ whitening
     _, strength, directions = np.linalg.svd(white - white.mean(axis=0), full_matrices=False)
@@ -133,36 +148,24 @@ def _fit(frames: _Frames, actions: int) -> MovementClasses:
         directions,
         white @ directions,
         np.log(sizes / sizes.sum()),
-        np.full((count, actions), 1.0 / actions),
-        np.zeros(3),
+        np.full((len(owners), actions + 1), 1.0),
+        np.full(2, np.inf),
     )
 
 
 def _left_out(people: NDArray[np.str_]) -> Iterator[Flags]:
     names = np.unique(people)
-    for first in range(min(GROUPS, len(names))):
-        yield np.isin(people, names[first::GROUPS])
+    count = min(GROUPS, len(names))
+    for first in range(count):
+        yield np.isin(people, names[first::count])
 
 
-def _distances(judge: MovementClasses, frames: _Frames) -> tuple[Array, Array]:
-    """Both distances of frames, (N, 2), as they are and as if their actions were not trained."""
-    _, known = judge.gaussians(frames.features)
-    strange = known.copy()
-    owners = np.arange(len(judge.centres)) // GAUSSIANS
-    for action in np.unique(frames.actions):
-        ours = frames.actions == action
-        others = owners != action
-        without = replace(judge, centres=judge.centres[others], log_shares=judge.log_shares[others])
-        strange[ours] = without.gaussians(frames.features[ours])[1]
-    return known, strange
-
-
-def _strangeness(distances: Sequence[tuple[Array, Array]]) -> Array:
-    known, strange = (np.concatenate(ones) for ones in zip(*distances, strict=True))
-    inputs = strangeness_inputs(np.concatenate((known, strange)))
-    labels = np.repeat([0, 1], [len(known), len(strange)])
-    model = LogisticRegression(fit_intercept=False, C=1e3, max_iter=1000).fit(inputs, labels)
-    return np.asarray(model.coef_[0], float)
+def _limits(judges: Sequence[tuple[Flags, MovementClasses]], frames: _Frames) -> Array:
+    last = frames.actions.max()
+    known = [
+        judge.gaussians(frames.features[out & (frames.actions < last)])[1] for out, judge in judges
+    ]
+    return np.quantile(np.concatenate(known), KEPT, axis=0)
 
 
 def _best_temper(judged: Sequence[tuple[MovementSequence, MovementClasses]], actions: int) -> float:

@@ -8,6 +8,7 @@ from inhand_tracker.recogniser import Recogniser
 from numpy.typing import NDArray
 
 from inhand_lab.dataset import Dataset, DatasetError, Entry
+from inhand_lab.idle_people import Idleness, watch_idle
 from inhand_lab.movement_training import MovementSequence, train_movements
 from inhand_lab.svm_training import train_svm
 from inhand_lab.watched_people import Watched, poses_and_movements, usual_poses, watch
@@ -17,6 +18,9 @@ Array = NDArray[np.float64]
 STEP = 4
 """Every so many-th body is learned from: successive ones are much the same."""
 KEPT_POSES = 1000
+IDLE_PEOPLE, IDLE_SEED, IDLE_STEP = 16, 7, 6
+IDLE_KINDS: tuple[Idleness, ...] = ("fidget", "stand", "walkOnSpot", "walkAbout")
+"""Simulated people who use nothing, of whom every recogniser learns."""
 READING, LEARNING = "recordings", "actions"
 
 
@@ -56,7 +60,7 @@ def recogniser_of(people: Sequence[Watched], named: str = "the recordings") -> R
             "compares two actions at the least, by two participants at the least"
         )
     usual = usual_poses(people)
-    poses, labels, sequences = [], [], []
+    poses, labels, sequences = [], [], _background(len(actions))
     for one in people:
         theirs, features, frames = poses_and_movements(one, usual, STEP)
         if not len(frames):
@@ -72,6 +76,27 @@ def recogniser_of(people: Sequence[Watched], named: str = "the recordings") -> R
     movements, temper = train_movements(sequences, len(actions))
     kept = all_poses[:: max(1, len(all_poses) // KEPT_POSES)]
     return Recogniser(actions, kept, train_svm(all_poses, all_labels), movements, temper)
+
+
+@lru_cache(maxsize=1)
+def _idle_people() -> tuple[Watched, ...]:
+    return tuple(
+        watch_idle(idleness, participant, IDLE_SEED)
+        for participant in range(IDLE_PEOPLE)
+        for idleness in IDLE_KINDS
+    )
+
+
+def _background(number: int) -> list[MovementSequence]:
+    """People who use nothing, as the class of that number."""
+    people = _idle_people()
+    usual = usual_poses(people)
+    sequences = []
+    for one in people:
+        _, features, frames = poses_and_movements(one, usual, IDLE_STEP)
+        named = f"idle {one.participant}"
+        sequences.append(MovementSequence(number, named, features, one.times_ns[frames]))
+    return sequences
 
 
 # Folds share recordings.

@@ -15,6 +15,7 @@ from inhand_tracker.likelihood import DEFAULT_TERMS
 from inhand_tracker.methods import METHODS
 from inhand_tracker.model_file import Model
 from inhand_tracker.recogniser import Recogniser
+from inhand_tracker.tracking import Tracker
 from inhand_tracker.viewpoints import Viewpoints, find_viewpoints
 from numpy.typing import NDArray
 
@@ -33,6 +34,8 @@ Array = NDArray[np.float64]
 AnyCascade = Cascade2012 | Cascade
 
 CASCADES = ("cascade-2012", "cascade")
+TRACKING = "gd-stable-proximate"
+"""The method of the trackers under `cascade`."""
 
 
 @dataclass(frozen=True)
@@ -162,13 +165,11 @@ def _tracker(
     left_handed = entry.handedness == "left"
     if name == "cascade-2012":
         return Cascade2012(recogniser, models, left_handed=left_handed, seed=protocol.seed)
-    return Cascade(
-        recogniser,
-        models,
-        METHODS[protocol.tracking],
-        left_handed=left_handed,
-        seed=protocol.seed,
-    )
+    method = METHODS[protocol.tracking]
+    trackers = [
+        Tracker(model, method, left_handed=left_handed, seed=protocol.seed) for model in models
+    ]
+    return Cascade(recogniser, trackers, left_handed=left_handed)
 
 
 # Folds share the objects, whose boundaries take seconds to find.

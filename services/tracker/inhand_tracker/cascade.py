@@ -4,7 +4,8 @@ tracker of the default method.
 Nothing is known while nobody uses anything, or does what nobody taught.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +14,8 @@ from inhand_tracker.body_reader import BodyReader
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.estimate import LOST, Estimate
 from inhand_tracker.image import Image
-from inhand_tracker.likelihood import DEFAULT_TERMS, Term
-from inhand_tracker.methods import Method
-from inhand_tracker.model_file import Model
 from inhand_tracker.recogniser import MovementRecogniser, Recogniser
 from inhand_tracker.recognition import Recognition, boxes_around, known_action
-from inhand_tracker.tracking import PARTICLES, Tracker
 
 Array = NDArray[np.float64]
 
@@ -28,29 +25,34 @@ WORTH_FOLLOWING = 0.2
 """Of the probability of all actions, the share from which a second action's object is tracked."""
 
 
+class ObjectTracker(Protocol):
+    """Follows one object that is given, as ``tracking.Tracker`` does."""
+
+    def restart(self) -> None:
+        """Forget the person and the object."""
+
+    def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
+        """One frame."""
+
+    def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:
+        """Pixels (B, 2) of the object's boundary."""
+
+
 class Cascade:
-    """Follows whatever one person uses, of ``models`` in the order of the recogniser's actions."""
+    """Follows whatever one person uses: ``trackers`` in the order of the recogniser's actions, each
+    of one object."""
 
     def __init__(
         self,
         recogniser: Recogniser,
-        models: Sequence[Model],
-        method: Method,
+        trackers: Sequence[ObjectTracker],
         *,
         left_handed: bool = False,
-        terms: Collection[Term] = DEFAULT_TERMS,
-        particles: int = PARTICLES,
-        seed: int = 0,
     ) -> None:
         self._learned = recogniser
         self._left_handed = left_handed
         self._recogniser = MovementRecogniser(recogniser)
-        self._trackers = [
-            Tracker(
-                model, method, left_handed=left_handed, terms=terms, particles=particles, seed=seed
-            )
-            for model in models
-        ]
+        self._trackers = trackers
         self.restart()
 
     def restart(self) -> None:

@@ -2,8 +2,9 @@
 
 Mixture discriminant analysis (Hastie and Tibshirani 1996): each action is a few Gaussians with one
 covariance for all, shrunk. What a Gaussian says about the action is what it said of people left out
-in training, so that poses which all actions share, such as rest, speak for none. A movement far
-from all of them speaks for none of the actions (a logistic model of two distances).
+in training, so that poses which all actions share, such as rest, speak for none. One class is that
+of people who use nothing. A movement farther from all of them than those of people are speaks for
+none of the actions, too.
 """
 
 from dataclasses import dataclass
@@ -13,16 +14,20 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+CAUTION = 1.0
+"""What speaks for none in every frame: a false object is worse than one that is found later."""
+STRANGENESS = 8.0
+"""How much a movement at e times the limit speaks against every action."""
+
 
 @dataclass(frozen=True)
 class MovementClasses:
-    """K actions by G Gaussians.
+    """K actions and, last, none of them, by G Gaussians.
 
     ``means`` (D,) and ``whitening`` (D, D) make the covariance of features the identity,
     ``directions`` (D, E) span the Gaussians' ``centres`` (G, E), ``log_shares`` (G,) are their
-    weights, ``says`` (G, K) is P(action | Gaussian); ``strangeness`` (3,) are the coefficients of
-    the log odds that a movement was not trained: constant, log distance to the nearest centre
-    within the span, log distance outside of it.
+    weights, ``says`` (G, K + 1) is P(class | Gaussian) over P(class); ``limits`` (2,) are the
+    distances, to the nearest centre within the span and outside of it, that people keep.
     """
 
     means: Array
@@ -31,7 +36,7 @@ class MovementClasses:
     centres: Array
     log_shares: Array
     says: Array
-    strangeness: Array
+    limits: Array
 
     def evidence(self, features: Array) -> Array:
         """Log evidence (N, K + 1) of features (N, D), for each action and, last, for none.
@@ -39,10 +44,11 @@ class MovementClasses:
         0 is what speaks neither for nor against.
         """
         shares, distances = self.gaussians(features)
-        actions = np.log(shares @ self.says * self.says.shape[1])
-        odds = strangeness_inputs(distances) @ self.strangeness
-        known, strange = -np.logaddexp(0.0, odds), -np.logaddexp(0.0, -odds)
-        return np.column_stack((actions + known[:, None], strange)) + np.log(2.0)
+        evidence = np.log(shares @ self.says)
+        beyond = np.log(np.maximum(distances / self.limits, 1.0)).sum(axis=1)
+        evidence[:, :-1] -= STRANGENESS * beyond[:, None]
+        evidence[:, -1] += CAUTION
+        return np.asarray(evidence)
 
     def gaussians(self, features: Array) -> tuple[Array, Array]:
         """P(Gaussian | features), (N, G), and the two distances (N, 2)."""
@@ -59,8 +65,3 @@ class MovementClasses:
         inside = white @ self.directions
         rest = np.square(white).sum(axis=1) - np.square(inside).sum(axis=1)
         return inside, np.maximum(rest, 0.0)
-
-
-def strangeness_inputs(distances: Array) -> Array:
-    """What the logistic model reads, (N, 3), of two distances (N, 2)."""
-    return np.column_stack((np.ones(len(distances)), np.log(np.maximum(distances, 1e-6))))
