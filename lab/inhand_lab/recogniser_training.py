@@ -60,7 +60,7 @@ def recogniser_of(people: Sequence[Watched], named: str = "the recordings") -> R
             "compares two actions at the least, by two participants at the least"
         )
     usual = usual_poses(people)
-    poses, labels, sequences = [], [], _background(len(actions))
+    poses, labels, sequences = [], [], list(_background(len(actions)))
     for one in people:
         theirs, features, frames = poses_and_movements(one, usual, STEP)
         if not len(frames):
@@ -78,18 +78,14 @@ def recogniser_of(people: Sequence[Watched], named: str = "the recordings") -> R
     return Recogniser(actions, kept, train_svm(all_poses, all_labels), movements, temper)
 
 
-@lru_cache(maxsize=1)
-def _idle_people() -> tuple[Watched, ...]:
-    return tuple(
+@lru_cache(maxsize=4)
+def _background(number: int) -> list[MovementSequence]:
+    """People who use nothing, as the class of that number."""
+    people = [
         watch_idle(idleness, participant, IDLE_SEED)
         for participant in range(IDLE_PEOPLE)
         for idleness in IDLE_KINDS
-    )
-
-
-def _background(number: int) -> list[MovementSequence]:
-    """People who use nothing, as the class of that number."""
-    people = _idle_people()
+    ]
     usual = usual_poses(people)
     sequences = []
     for one in people:
