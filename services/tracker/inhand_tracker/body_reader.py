@@ -1,6 +1,7 @@
 """From a person's joints, of which some may be missing or wild, to what a tracker predicts from."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,6 @@ from inhand_tracker.body import (
     pelvis_basis,
     without_impossible,
 )
-from inhand_tracker.mapping import Mapping
 
 Array = NDArray[np.float64]
 
@@ -35,18 +35,26 @@ class Body:
     height: float
 
 
+class Learned(Protocol):
+    """Anything that was learned from people, of whom it keeps body poses b (N, 60)."""
+
+    @property
+    def body_poses(self) -> Array:
+        """(N, 60)."""
+
+
 class BodyReader:
     """Reads the bodies of one person, frame by frame.
 
     A missing joint keeps its last place in the pelvis basis, and at first that of the people that
-    the mapping was learned from. Left-handed people are mirrored.
+    was learned from. Left-handed people are mirrored.
     """
 
-    def __init__(self, mapping: Mapping, *, left_handed: bool) -> None:
-        step = max(1, len(mapping.body_poses) // LEARNED_FRAMES)
-        learned = np.asarray(mapping.body_poses[::step], float).reshape(-1, 20, 3)
-        self._known_pose = learned.mean(axis=0)
-        self._height = RunningHeight(np.median(part_lengths(learned), axis=0))
+    def __init__(self, learned: Learned, *, left_handed: bool) -> None:
+        step = max(1, len(learned.body_poses) // LEARNED_FRAMES)
+        poses = np.asarray(learned.body_poses[::step], float).reshape(-1, 20, 3)
+        self._known_pose = poses.mean(axis=0)
+        self._height = RunningHeight(np.median(part_lengths(poses), axis=0))
         self._left_handed = left_handed
 
     def read(self, joints: Array) -> Body | None:

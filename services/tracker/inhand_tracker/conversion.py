@@ -56,6 +56,7 @@ def object_pose_message(
     person: int | None,
     rig_from_camera: Pose | None,
     box: Box | None,
+    class_probabilities: dict[str, float] | None = None,
 ) -> ObjectPose:
     """An estimate as a message; ``sequence`` and ``time_ns`` are the source frame's."""
     pose = None
@@ -77,6 +78,7 @@ def object_pose_message(
         if estimate.covariance is None
         else tuple(estimate.covariance.ravel().tolist()),
         box=box,
+        class_probabilities=class_probabilities or {},
     )
 
 
