@@ -92,7 +92,7 @@ def learn_from(
     models = []
     for action in recogniser.actions:
         theirs = tuple(entry for entry in entries if entry.interaction == action)
-        model = fold_model(dataset, Fold(action, (), theirs), images=False)
+        model = fold_model(dataset, Fold(action, (), theirs), images=False, fused=True)
         seen = _viewpoints(dataset, model.shape.name) if images else model.viewpoints
         models.append(Model(action, model.shape, model.mapping, seen))
     return recogniser, models

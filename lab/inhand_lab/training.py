@@ -6,18 +6,25 @@ from inhand_schemas.errors import MessageError
 from inhand_tracker.appearance import learn_appearance
 from inhand_tracker.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.model_file import Model
+from inhand_tracker.prior_learning import learn_prior
 from inhand_tracker.viewpoints import find_viewpoints
 
 from inhand_lab.appearance_samples import appearance_samples
 from inhand_lab.dataset import Dataset, DatasetError, Entry, labelled_sequence
 from inhand_lab.training_checks import check_hands, check_sequence
 
-READING, VIEWPOINTS, APPEARANCE = "recordings", "viewpoints", "appearance"
+READING, VIEWPOINTS, APPEARANCE, PRIOR = "recordings", "viewpoints", "appearance", "prior"
 
 
 def stages(recordings: int) -> dict[str, int]:
     """What training goes through, each with the number of its steps."""
-    return {READING: recordings, **dict.fromkeys(STAGES, recordings), VIEWPOINTS: 1, APPEARANCE: 1}
+    return {
+        READING: recordings,
+        **dict.fromkeys(STAGES, recordings),
+        VIEWPOINTS: 1,
+        APPEARANCE: 1,
+        PRIOR: 1,
+    }
 
 
 def entries_for(
@@ -83,7 +90,9 @@ def train(
     on_step(VIEWPOINTS)
     appearance = learn_appearance(shape, appearance_samples(dataset, entries))
     on_step(APPEARANCE)
-    return Model(first.interaction, shape, mapping, viewpoints, appearance)
+    prior = learn_prior(sequences, shape)
+    on_step(PRIOR)
+    return Model(first.interaction, shape, mapping, viewpoints, appearance, prior)
 
 
 def checked_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:

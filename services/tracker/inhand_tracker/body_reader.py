@@ -75,6 +75,4 @@ class BodyReader:
         self._known_pose = np.where(np.isfinite(seen), seen, self._known_pose)
         filled = pelvis.origins + height * rotations.rotate(pelvis.rotations, self._known_pose)
         complete = np.where(np.isfinite(joints), joints, filled)
-        return Body(
-            complete, self._known_pose.reshape(60), part_bases(complete, pelvis), height
-        )
+        return Body(complete, self._known_pose.reshape(60), part_bases(complete, pelvis), height)

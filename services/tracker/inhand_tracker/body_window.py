@@ -5,7 +5,6 @@ of whether glasses are worn or lie on a table: that shows in what the hands did 
 """
 
 from collections import deque
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,19 +83,19 @@ class Memory:
     def add(self, place: Array, step_s: float) -> Array:
         """Take the places (20, 3) of a frame that is so much later than the last one."""
         self._elapsed_s += step_s
-        share = np.maximum(
-            1.0 - np.exp(-step_s / np.array(MEMORIES_S)), step_s / self._elapsed_s
-        )
+        share = np.maximum(1.0 - np.exp(-step_s / np.array(MEMORIES_S)), step_s / self._elapsed_s)
         self._means = self._means + share[:, None, None] * (place[REMEMBERED] - self._means)
         return self._means
 
 
-def remember(all_places: Array, times: Sequence[float], step_s: float) -> Array:
+def remember(all_places: Array, times: Array, step_s: float) -> Array:
     """The memories (T, M, 5, 3) of a recording's places (T, 20, 3) at times in seconds, whose first
     frame counts for one step."""
     memory = Memory()
     steps = np.diff(times, prepend=times[0] - step_s)
-    return np.array([memory.add(place, step) for place, step in zip(all_places, steps, strict=True)])
+    return np.array(
+        [memory.add(place, step) for place, step in zip(all_places, steps, strict=True)]
+    )
 
 
 class BodyWindow:

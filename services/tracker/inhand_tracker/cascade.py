@@ -5,7 +5,6 @@ Nothing is known while nobody uses anything, or does what nobody taught.
 """
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,7 @@ from inhand_tracker.estimate import LOST, Estimate
 from inhand_tracker.image import Image
 from inhand_tracker.recogniser import MovementRecogniser, Recogniser
 from inhand_tracker.recognition import Recognition, boxes_around, known_action
+from inhand_tracker.trackers import ObjectTracker
 
 Array = NDArray[np.float64]
 
@@ -23,19 +23,6 @@ FOLLOWED = 2
 """So many actions' objects are tracked at a time at most, the likeliest."""
 WORTH_FOLLOWING = 0.2
 """Of the probability of all actions, the share from which a second action's object is tracked."""
-
-
-class ObjectTracker(Protocol):
-    """Follows one object that is given, as ``tracking.Tracker`` does."""
-
-    def restart(self) -> None:
-        """Forget the person and the object."""
-
-    def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
-        """One frame."""
-
-    def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:
-        """Pixels (B, 2) of the object's boundary."""
 
 
 class Cascade:

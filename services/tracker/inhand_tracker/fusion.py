@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from inhand_tracker import rotations
 from inhand_tracker.anchors import find_anchors
-from inhand_tracker.body import mirror_pose
+from inhand_tracker.body import mirror_joints, mirror_pose
 from inhand_tracker.body_reader import Body, BodyReader
 from inhand_tracker.body_window import GAP_NS, BodyWindow
 from inhand_tracker.camera import Intrinsics
+from inhand_tracker.coasting import coasted
 from inhand_tracker.estimate import (
     AGREEMENT_M,
     AGREEMENT_RAD,
@@ -39,9 +40,12 @@ Array = NDArray[np.float64]
 
 HYPOTHESES = 400
 REFINED = 5
-STRETCH = 4.0
-INDEPENDENT = 0.1
 SEEDS, CLOSER = 20, 0.35
+"""Around so many of the likeliest hypotheses as many again, so much nearer, are tried."""
+TEMPER = 0.4
+"""How much of an image's log-likelihood counts: one frame's errors are the next one's too."""
+INDEPENDENT = 0.1
+"""The same of what it says in refinement."""
 SAME_M, SAME_RAD = 0.01, 0.1
 """Refined poses no farther apart than this are the same one."""
 
@@ -53,9 +57,6 @@ LEFT_DEVIATIONS = np.array([0.01, 0.01, 0.01, 0.05, 0.05, 0.05])
 """By how much an object that was left, or the camera, moves from frame to frame."""
 FORGETTING_S = 0.3
 """How long what was seen makes sure of a pose: one frame errs as the next does."""
-COASTING_NS = 1_000_000_000
-COASTING_DEVIATIONS = np.repeat([0.5, 2.0], 3)
-"""By how much an object moves in a second in which its person is not seen."""
 AROUND_RATE = 0.3
 LEARNING_RATE = 0.05
 LEARNING_LOG_LIKELIHOOD = 3.0
@@ -88,7 +89,9 @@ class FusionTracker:
         self._left_handed = left_handed
         self._terms = frozenset(terms)
         self._sight = Sight(model, terms) if terms else None
-        self._radius = float(np.linalg.norm(model.shape.vertices - self._prior.centre, axis=1).max())
+        self._radius = float(
+            np.linalg.norm(model.shape.vertices - self._prior.centre, axis=1).max()
+        )
         self._count = hypotheses
         self._seed = seed
         self._outline = VisiblePoints(model.viewpoints.directions, model.viewpoints.boundaries)
@@ -97,7 +100,7 @@ class FusionTracker:
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""
         self._random = np.random.default_rng(self._seed)
-        self._reader = BodyReader(self._mapping, left_handed=self._left_handed)
+        self._reader = self.new_reader()
         self._window = BodyWindow()
         self._colours = None if self._sight is None else self._sight.start()
         self._expected: PoseGaussian | None = None
@@ -112,6 +115,10 @@ class FusionTracker:
         predicted; then the object is lost.
         """
         body = None if joints is None else self._reader.read(joints)
+        return self.step_body(body, time_ns, image)
+
+    def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
+        """One frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
         if body is None:
             return self._coast(time_ns)
         expected = self._expect(body, time_ns)
@@ -119,7 +126,7 @@ class FusionTracker:
         if image is None or self._sight is None:
             believed = belief.parts[0]
         else:
-            believed = self._look(belief, image, joints)
+            believed = self._look(belief, image, body)
         self._expected, self._believed, self._time_ns = expected, believed, time_ns
         self._estimate = self._estimated(believed)
         return self._estimate
@@ -137,6 +144,10 @@ class FusionTracker:
             return None
         points = self._outline.place(estimate.translation[None], estimate.rotation[None])
         return camera.project(points[0])
+
+    def new_reader(self) -> BodyReader:
+        """A reader of bodies for trackers of this model and handedness."""
+        return BodyReader(self._mapping, left_handed=self._left_handed)
 
     def _expect(self, body: Body, time_ns: int) -> PoseGaussian:
         """What the body alone makes one expect."""
@@ -184,24 +195,24 @@ class FusionTracker:
         off = np.array([expected.square_distance(part) for part in parts])
         return mixture(parts, np.log([CARRIED, AFRESH, LEFT]) - 0.5 * off / DOUBT)
 
-    def _look(self, belief: PoseMixture, image: Image, joints: Array | None) -> PoseGaussian:
+    def _look(self, belief: PoseMixture, image: Image, body: Body) -> PoseGaussian:
         """What is believed after a look at the image."""
         centres, orientations = belief.sample(self._count, self._random)
+        joints = mirror_joints(body.joints) if self._left_handed else body.joints
         view = self._view(centres, belief.parts[0], image, joints)
         if view is None:
             return belief.parts[0]
         sight = self._sight
         assert sight is not None
         scores = self._scores(belief, centres, orientations, view)
-        if CLOSER < 1.0:
-            best = np.resize(np.argsort(scores)[::-1][:SEEDS], self._count)
-            root = np.linalg.cholesky(belief.moments().covariance)
-            shifts = CLOSER * self._random.normal(size=(self._count, 6)) @ root.T
-            nearer = centres[best] + shifts[:, :3]
-            turned = rotations.multiply(rotations.from_vector(shifts[:, 3:]), orientations[best])
-            centres = np.concatenate((centres, nearer))
-            orientations = np.concatenate((orientations, turned))
-            scores = np.concatenate((scores, self._scores(belief, nearer, turned, view)))
+        best = np.resize(np.argsort(scores)[::-1][:SEEDS], self._count)
+        root = np.linalg.cholesky(belief.moments().covariance)
+        shifts = CLOSER * self._random.normal(size=(self._count, 6)) @ root.T
+        nearer = centres[best] + shifts[:, :3]
+        turned = rotations.multiply(rotations.from_vector(shifts[:, 3:]), orientations[best])
+        centres = np.concatenate((centres, nearer))
+        orientations = np.concatenate((orientations, turned))
+        scores = np.concatenate((scores, self._scores(belief, nearer, turned, view)))
         likeliest = np.argsort(scores)[::-1][:REFINED]
         starts = [(part.centre, part.rotation) for part in belief.parts]
         starts += [(centres[index], orientations[index]) for index in likeliest]
@@ -216,10 +227,12 @@ class FusionTracker:
         sight = self._sight
         assert sight is not None
         seen = sight.log_likelihood(self._origins(centres, orientations), orientations, view)
-        return seen + np.logaddexp.reduce(belief.log_densities(centres, orientations), axis=0)
+        return TEMPER * seen + np.logaddexp.reduce(
+            belief.log_densities(centres, orientations), axis=0
+        )
 
     def _view(
-        self, centres: Array, guess: PoseGaussian, image: Image, joints: Array | None
+        self, centres: Array, guess: PoseGaussian, image: Image, joints: Array
     ) -> SightView | None:
         """The part of the image that hypotheses (P, 3) lie in; None where they are out of it."""
         region = self._region(centres, image.camera)
@@ -256,12 +269,12 @@ class FusionTracker:
         for centre, rotation in starts:
             logs = belief.log_densities(centre[None], rotation[None])[:, 0]
             part = belief.parts[int(np.argmax(logs))]
-            information = np.linalg.inv(part.covariance)
+            information = np.asarray(np.linalg.inv(part.covariance), np.float64)
             refined = sight.refine(
                 self._origins(centre[None], rotation[None]),
                 rotation[None],
                 view,
-                self._at_origin(part, information / STRETCH),
+                self._at_origin(part, information / INDEPENDENT),
             )
             turned = refined.rotations[0]
             arm = rotations.rotate(turned, self._mirrored_centre())
@@ -285,7 +298,7 @@ class FusionTracker:
         assert sight is not None
         seen = sight.log_likelihood(self._origins(centres, orientations), orientations, view)
         room = np.array([0.5 * np.linalg.slogdet(mode.covariance)[1] for mode in modes])
-        found = mixture(modes, expected + seen + room)
+        found = mixture(modes, expected + TEMPER * seen + room)
         best = int(np.argmax(found.weights))
         if seen[best] > LEARNING_LOG_LIKELIHOOD and self._colours is not None:
             origin = self._origins(centres[best][None], orientations[best][None])[0]
@@ -315,25 +328,15 @@ class FusionTracker:
         )
 
     def _coast(self, time_ns: int) -> Estimate:
-        unseen_ns = time_ns - self._time_ns
-        covariance = self._estimate.covariance
-        if covariance is None or not 0 <= unseen_ns <= COASTING_NS:
+        predicted = coasted(self._estimate, time_ns - self._time_ns)
+        if predicted.state == "lost":
             self._estimate = LOST
-            return LOST
-        return replace(
-            self._estimate,
-            state="predicted",
-            confidence=self._estimate.confidence * (1.0 - unseen_ns / COASTING_NS),
-            covariance=covariance
-            + np.diag(np.square(COASTING_DEVIATIONS * (unseen_ns / 1e9))),
-        )
+        return predicted
 
 
 def _same(one: PoseGaussian, other: PoseGaussian) -> bool:
     apart = one.deviations(other.centre[None], other.rotation[None])[0]
-    return bool(
-        np.linalg.norm(apart[:3]) < SAME_M and np.linalg.norm(apart[3:]) < SAME_RAD
-    )
+    return bool(np.linalg.norm(apart[:3]) < SAME_M and np.linalg.norm(apart[3:]) < SAME_RAD)
 
 
 _STANDARD = np.random.default_rng(0).normal(size=(256, 6))

@@ -76,7 +76,8 @@ def fit(
 
     names = np.unique(groups)
     sums = [_sums(features, targets, offset, np.flatnonzero(groups == name)) for name in names]
-    scatter, cross = sum(s for s, _ in sums), sum(c for _, c in sums)
+    scatter = np.sum([group for group, _ in sums], axis=0)
+    cross = np.sum([group for _, group in sums], axis=0)
     residuals = np.empty((len(landmarks), targets.shape[1]))
     for name, (group_scatter, group_cross) in zip(names, sums, strict=True):
         held_out = np.flatnonzero(groups[landmark_rows] == name)
@@ -106,4 +107,4 @@ def _chunks(rows: Indices) -> Sequence[Indices]:
 
 
 def _solve(scatter: Array, cross: Array) -> Array:
-    return np.linalg.solve(scatter + RIDGE * np.eye(len(scatter)), cross)
+    return np.asarray(np.linalg.solve(scatter + RIDGE * np.eye(len(scatter)), cross), np.float64)

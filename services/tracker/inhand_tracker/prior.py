@@ -1,13 +1,14 @@
 """Where an object is, from the body alone: many predictions, fused by how well each does here.
 
-A kernel regression predicts the object in each anchor of the body (``anchors``), once from the whole
-body's description and once from the upper body's. Where predictions were wrong, and how their errors
-went together, is known from people who were held out in training. So those of like body poses give
-the weights of the best linear unbiased combination, and the covariance of what comes out.
+A kernel regression predicts the object in each anchor of the body (``anchors``), from each view of
+the body's last moments (``body_window``). Where predictions were wrong, and how their errors went
+together, is known from people who were held out in training. So those of like body poses give the
+weights of the best linear unbiased combination, and the covariance of what comes out.
 """
 
 from dataclasses import dataclass
 from itertools import count
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ Singles = NDArray[np.float32]
 TARGETS = 12
 """Of each anchor: the object's centre, in body heights, then its rotation matrix, row by row."""
 DISTRUST = 0.1
-"""Of each prediction's own variance, added to it: keeps weights from living on small differences."""
+"""Of each prediction's own variance, added to it: no weight lives on small differences."""
 BASE = 0.1
 """Share of the covariance over all body poses in that of any."""
 
@@ -89,9 +90,7 @@ def predict(
     covariance = prior.calibration * covariance_at(local, nearness, prior.errors)[0]
     turn = np.kron(np.eye(2), anchors.axes[0])
     scale = np.repeat([height, 1.0], 3)
-    return Prediction(
-        centre[0], rotation[0], turn @ (covariance * scale[:, None] * scale) @ turn.T
-    )
+    return Prediction(centre[0], rotation[0], turn @ (covariance * scale[:, None] * scale) @ turn.T)
 
 
 def locality(kernel: Array) -> tuple[Array, Array]:
@@ -160,9 +159,9 @@ def repeated(anchors: Anchors, times: int) -> Anchors:
     return Anchors(np.tile(origins, (1, times, 1)), np.tile(axes, (1, times, 1, 1)))
 
 
-def prior_arrays(prior: Prior) -> dict[str, Array]:
+def prior_arrays(prior: Prior) -> dict[str, NDArray[Any]]:
     """All of a prior as arrays by name, for a file."""
-    arrays = {
+    arrays: dict[str, NDArray[Any]] = {
         "centre": prior.centre,
         "spread": prior.spread,
         "translation_products": prior.translation_products,
@@ -177,7 +176,7 @@ def prior_arrays(prior: Prior) -> dict[str, Array]:
     return arrays
 
 
-def prior_from_arrays(arrays: dict[str, Array]) -> Prior:
+def prior_from_arrays(arrays: dict[str, NDArray[Any]]) -> Prior:
     """The prior that ``prior_arrays`` took apart."""
     regressions = []
     for view in count():

@@ -116,10 +116,9 @@ def learn_prior(sequences: Sequence[LabelledSequence], shape: ObjectShape) -> Pr
     )
 
 
-def _samples(
-    sequences: Sequence[LabelledSequence], shape: ObjectShape, centre: Array
-) -> _Samples:
-    owners = {name: number for number, name in enumerate(dict.fromkeys(s.participant for s in sequences))}
+def _samples(sequences: Sequence[LabelledSequence], shape: ObjectShape, centre: Array) -> _Samples:
+    names = dict.fromkeys(sequence.participant for sequence in sequences)
+    owners = {name: number for number, name in enumerate(names)}
     parts = []
     for number, sequence in enumerate(sequences):
         group = (number if len(owners) == 1 else owners[sequence.participant]) % GROUPS

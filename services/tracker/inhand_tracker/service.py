@@ -24,12 +24,18 @@ from inhand_tracker.conversion import (
 )
 from inhand_tracker.following import PeopleWatched, published
 from inhand_tracker.image import Image
-from inhand_tracker.likelihood import DEFAULT_TERMS, Term
-from inhand_tracker.methods import DEFAULT_METHOD, METHODS, MethodName
 from inhand_tracker.model_file import load_model
 from inhand_tracker.pairing import Pairing
 from inhand_tracker.recogniser_file import load_recogniser
-from inhand_tracker.tracking import PARTICLES, Tracker
+from inhand_tracker.trackers import (
+    DEFAULT_METHOD,
+    AnyTerm,
+    MethodName,
+    ObjectTracker,
+    needs_of,
+    new_tracker,
+    usual_terms,
+)
 from inhand_tracker.watching import GivenObjects, RecognisedObjects, Seen, Watcher
 
 log = logging.getLogger(__name__)
@@ -49,8 +55,8 @@ class TrackerSettings(Section):
     camera: Name = "camera"
     method: MethodName = DEFAULT_METHOD
     left_handed: bool = False
-    likelihood: tuple[Term, ...] = DEFAULT_TERMS
-    particles: PositiveInt = PARTICLES
+    likelihood: tuple[AnyTerm, ...] | None = None
+    particles: PositiveInt | None = None
     recogniser: Path | None = None
     people: PositiveInt = 1
     seed: int = Field(default=0, ge=0)
@@ -64,7 +70,8 @@ class TrackerService:
     ) -> None:
         self._daemon = daemon
         self._camera = settings.camera
-        self._terms = settings.likelihood
+        terms = usual_terms(settings.method) if settings.likelihood is None else settings.likelihood
+        self._needs = needs_of(settings.method, terms)
         self._people = PeopleWatched(new_watcher, settings.people)
         self._publishers: dict[str, Publisher[ObjectPose]] = {
             name: daemon.publisher(POSE, name) for name in self._people.names
@@ -74,7 +81,7 @@ class TrackerService:
         self._info: CameraInfo | None = None
         daemon.subscribe(INFO, settings.camera)
         daemon.subscribe(SKELETONS, settings.camera)
-        if self._terms:
+        if self._needs:
             daemon.subscribe(RGBD, settings.camera)
         self._keys = {topic: topic.key(daemon.site, settings.camera) for topic in (INFO, RGBD)}
 
@@ -135,7 +142,7 @@ class TrackerService:
         if frame is None or self._info is None:
             return None
         try:
-            return image_of(frame, self._info, self._terms)
+            return image_of(frame, self._info, self._needs)
         except MessageError as error:
             self._daemon.health.malformed(self._keys[RGBD], error)
             return None
@@ -174,12 +181,14 @@ def load_watcher(instance: str, settings: TrackerSettings) -> Watcher:
     return RecognisedObjects(cascade, objects)
 
 
-def _files(settings: TrackerSettings, trackers: Mapping[str, Tracker]) -> list[tuple[Path, str]]:
+def _files(
+    settings: TrackerSettings, trackers: Mapping[str, ObjectTracker]
+) -> list[tuple[Path, str]]:
     files = settings.models if settings.model is None else (settings.model,)
     return list(zip(files, trackers, strict=True))
 
 
-def load_trackers(instance: str, settings: TrackerSettings) -> dict[str, Tracker]:
+def load_trackers(instance: str, settings: TrackerSettings) -> dict[str, ObjectTracker]:
     """A tracker for each model, by object; raises SettingsError or ModelError."""
     where = f"[tracker.{instance}]"
     if settings.model is not None and settings.models:
@@ -189,15 +198,15 @@ def load_trackers(instance: str, settings: TrackerSettings) -> dict[str, Tracker
         raise SettingsError(
             f'{where} names no model: write model = "FILE"; `inhand train` makes one'
         )
-    trackers: dict[str, Tracker] = {}
+    trackers: dict[str, ObjectTracker] = {}
     for file in files:
         model = load_model(file)
         name = model.shape.name
         if name in trackers:
             raise SettingsError(f"{where} has two models of {name!r}: an object has one pose key")
-        trackers[name] = Tracker(
+        trackers[name] = new_tracker(
             model,
-            METHODS[settings.method],
+            settings.method,
             left_handed=settings.left_handed,
             terms=settings.likelihood,
             particles=settings.particles,

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inhand_tracker.camera import Intrinsics
-from inhand_tracker.cascade import Cascade, ObjectTracker
+from inhand_tracker.cascade import Cascade
 from inhand_tracker.estimate import LOST, Estimate
 from inhand_tracker.image import Image
+from inhand_tracker.trackers import ObjectTracker
 
 Array = NDArray[np.float64]
 OnFailure = Callable[[str, Exception], None]
