@@ -1,8 +1,9 @@
 """Whether the tracker's likelihood finds objects in real frames with true poses (YCB-Video).
 
 Nothing is learned beforehand. Each object is followed through the frames from one pose that is
-off, and what its colours are is learned from where it was followed to; a frame is tested with the
-colours that the frames before it taught. The truth makes the starting poses and the scores only.
+off, and what its colours are is learned from that pose and from where it was followed to; a frame
+is tested with the colours that the frames before it taught (the first one, with those at the pose
+that is off). The truth makes the starting poses and the scores only.
 """
 
 from collections.abc import Iterator
@@ -13,12 +14,13 @@ import cv2
 import numpy as np
 from inhand_tracker import rotations
 from inhand_tracker.camera import Intrinsics
+from inhand_tracker.colours import Colours
 from inhand_tracker.image import Image
 from inhand_tracker.model_file import Model
 from inhand_tracker.refine import Prior
 from inhand_tracker.shape import ObjectShape
 from inhand_tracker.sight import Sight, SightView
-from inhand_tracker.sight_frame import prepare
+from inhand_tracker.sight_frame import SightFrame, prepare
 from inhand_tracker.viewpoints import find_viewpoints
 from numpy.typing import NDArray
 
@@ -31,6 +33,7 @@ from inhand_lab.pose_errors import ErrorGauge
 from inhand_lab.tracks import Track
 
 Array = NDArray[np.float64]
+Pose = tuple[Array, Array]
 
 START_M, START_RAD = 0.03, np.deg2rad(10.0)
 """How far off a start is, in a direction and about an axis at random."""
@@ -39,6 +42,8 @@ SCATTER_M, SCATTER_RAD = 0.05, np.deg2rad(20.0)
 """The root mean squares of the poses that the true one is ranked among."""
 SCATTERED = 10_000
 LEARNING_RATE = 0.3
+DRAWN, REFINED = 1000, 5
+"""Poses that are tried about where an object was, and those of them that are refined."""
 SEED = 0
 
 
@@ -61,11 +66,11 @@ class ObjectCheck:
 
 
 def check_likelihood(
-    source: Path, starts: int = STARTS, scattered: int = SCATTERED
+    source: Path, starts: int = STARTS, scattered: int = SCATTERED, seed: int = SEED
 ) -> list[ObjectCheck]:
     """Every object of a folder of YCB-Video, or of an excerpt; raises DatasetError."""
     return [
-        _check(clip, name, starts, scattered)
+        _check(clip, name, starts, scattered, seed)
         for clip in read_clips(source)
         for name in clip.annotations[0].camera_from_objects
     ]
@@ -91,16 +96,20 @@ def whole_shape(name: str, clip: Clip) -> tuple[ObjectShape, str]:
     return box_around(name, points), "box"
 
 
-def _check(clip: Clip, name: str, starts: int, scattered: int) -> ObjectCheck:
+def _check(clip: Clip, name: str, starts: int, scattered: int, seed: int) -> ObjectCheck:
     shape, kind = whole_shape(name, clip)
     # The mapping of a model, from bodies to objects, is not asked for here.
     sight = Sight(Model("none", shape, None, find_viewpoints(shape)))  # type: ignore[arg-type]
-    gauge, random = ErrorGauge(shape), np.random.default_rng(SEED)
+    gauge, random = ErrorGauge(shape), np.random.default_rng(seed)
     colours = sight.start()
-    followed: tuple[Array, Array] | None = None
+    followed: Pose | None = None
     moved, turned, ranks = [], [], []
     for image, truth in _frames(clip, name):
         frame = prepare(image)
+        if followed is None:
+            ((translation,), (rotation,)) = _off(*truth, 1, random)
+            followed = (translation, rotation)
+            colours = _learn(sight, colours, frame, followed)
         view = sight.view(frame, colours)
         refined = [
             _refined(sight, view, start)
@@ -110,12 +119,8 @@ def _check(clip: Clip, name: str, starts: int, scattered: int) -> ObjectCheck:
         moved.append(errors.translation_m)
         turned.append(errors.rotation_rad)
         ranks.append(_rank(sight, view, truth, scattered, random))
-        if followed is None:
-            ((translation,), (rotation,)) = _off(*truth, 1, random)
-            followed = (translation, rotation)
-        followed = _refined(sight, view, followed)
-        colours = sight.look_around(colours, frame, *followed)
-        colours = sight.learn(colours, frame, *followed, rate=LEARNING_RATE)
+        followed = _follow(sight, view, followed, random)
+        colours = _learn(sight, colours, frame, followed)
     millimetres, degrees = 1e3 * np.concatenate(moved), np.rad2deg(np.concatenate(turned))
     return ObjectCheck(
         name,
@@ -130,7 +135,7 @@ def _check(clip: Clip, name: str, starts: int, scattered: int) -> ObjectCheck:
     )
 
 
-def _frames(clip: Clip, name: str) -> Iterator[tuple[Image, tuple[Array, Array]]]:
+def _frames(clip: Clip, name: str) -> Iterator[tuple[Image, Pose]]:
     for path, annotation in zip(clip.frames, clip.annotations, strict=True):
         if name not in annotation.camera_from_objects:
             continue
@@ -164,29 +169,51 @@ def _directions(count: int, random: np.random.Generator) -> Array:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
-def _refined(sight: Sight, view: SightView, start: tuple[Array, Array]) -> tuple[Array, Array]:
-    information = np.repeat([3.0 / START_M**2, 3.0 / START_RAD**2], 3)
-    prior = Prior(*start, np.diag(information))
-    refined = sight.refine(start[0][None], start[1][None], view, prior)
+def _prior(pose: Pose) -> Prior:
+    return Prior(*pose, np.diag(np.repeat([3.0 / START_M**2, 3.0 / START_RAD**2], 3)))
+
+
+def _refined(sight: Sight, view: SightView, start: Pose) -> Pose:
+    refined = sight.refine(start[0][None], start[1][None], view, _prior(start))
     return refined.translations[0], refined.rotations[0]
+
+
+def _follow(sight: Sight, view: SightView, last: Pose, random: np.random.Generator) -> Pose:
+    """As a tracker does: the best of many poses near the last one, refined."""
+    prior, drawn = _prior(last), _scatter(last, DRAWN, START_M, START_RAD, random)
+    likely = np.argsort(-sight.log_likelihood(*drawn, view))[:REFINED]
+    refined = sight.refine(drawn[0][likely], drawn[1][likely], view, prior)
+    poses = refined.translations, refined.rotations
+    best = np.argmax(sight.log_likelihood(*poses, view) + prior.log_density(*poses))
+    return poses[0][best], poses[1][best]
+
+
+def _learn(sight: Sight, colours: Colours, frame: SightFrame, pose: Pose) -> Colours:
+    around = sight.look_around(colours, frame, *pose)
+    return sight.learn(around, frame, *pose, rate=LEARNING_RATE)
 
 
 def _rank(
     sight: Sight,
     view: SightView,
-    truth: tuple[Array, Array],
+    truth: Pose,
     scattered: int,
     random: np.random.Generator,
 ) -> float:
-    shifts, turns = random.normal(size=(2, scattered, 3)) / np.sqrt(3.0)
-    poses = (
-        truth[0] + SCATTER_M * shifts,
-        rotations.multiply(rotations.from_vector(SCATTER_RAD * turns), truth[1][None]),
-    )
+    poses = _scatter(truth, scattered, SCATTER_M, SCATTER_RAD, random)
     (reference,) = sight.log_likelihood(truth[0][None], truth[1][None], view)
     return float((sight.log_likelihood(*poses, view) > reference).mean())
 
 
-def _track(poses: list[tuple[Array, Array]]) -> Track:
+def _scatter(
+    pose: Pose, count: int, metres: float, radians: float, random: np.random.Generator
+) -> tuple[Array, Array]:
+    """Poses (P, 3) and (P, 4) about one, by root mean squares."""
+    shifts, turns = random.normal(size=(2, count, 3)) / np.sqrt(3.0)
+    turned = rotations.multiply(rotations.from_vector(radians * turns), pose[1][None])
+    return pose[0] + metres * shifts, turned
+
+
+def _track(poses: list[Pose]) -> Track:
     translations, turns = zip(*poses, strict=True)
     return Track(np.array(translations), np.array(turns))

@@ -60,6 +60,12 @@ class Prior:
         variances = np.diag(np.linalg.inv(self.information))
         return float(np.sqrt(variances[:3].sum())), float(np.sqrt(variances[3:].sum()))
 
+    def log_density(self, translations: Array, orientations: Array) -> Array:
+        """Of poses (K, 3) and (K, 4), (K,), up to a constant."""
+        turns = rotations.multiply(orientations, rotations.conjugate(self.rotation))
+        off = np.concatenate((translations - self.translation, rotations.to_vector(turns)), axis=1)
+        return -0.5 * np.einsum("ki,ij,kj->k", off, self.information, off)
+
     def added_to(
         self, information: Array, gradient: Array, translation: Array, orientation: Array
     ) -> tuple[Array, Array]:
@@ -72,7 +78,7 @@ class Prior:
 @dataclass(frozen=True)
 class Refined:
     """Poses (K, 3) and (K, 4), and ``information`` (K, 6, 6), what the image alone says of each,
-    in the order of ``Prior.information``."""
+    in the order of ``Prior.information``; none of a pose that could not be made likelier."""
 
     translations: Array
     rotations: Array

@@ -189,13 +189,29 @@ class Sight:
         view: SightView,
         prior: Prior | None = None,
     ) -> Refined:
-        """Poses (K, 3) and (K, 4) moved to where the frame and the prior agree best nearby."""
+        """Poses (K, 3) and (K, 4) moved to where the frame and the prior agree best nearby; one
+        that does not become likelier stays where it is."""
         placed = [
             self._refine_one(translation, orientation, view, prior)
             for translation, orientation in zip(translations, orientations, strict=True)
         ]
         moved, turned, information = (np.array(column) for column in zip(*placed, strict=True))
-        return Refined(moved, turned, information)
+        worse = self._posterior(moved, turned, view, prior) < self._posterior(
+            translations, orientations, view, prior
+        )
+        return Refined(
+            np.where(worse[:, None], translations, moved),
+            np.where(worse[:, None], orientations, turned),
+            np.where(worse[:, None, None], 0.0, information),
+        )
+
+    def _posterior(
+        self, translations: Array, orientations: Array, view: SightView, prior: Prior | None
+    ) -> Array:
+        likelihood = self.log_likelihood(translations, orientations, view)
+        if prior is None:
+            return likelihood
+        return likelihood + prior.log_density(translations, orientations)
 
     def _refine_one(
         self, translation: Array, orientation: Array, view: SightView, prior: Prior | None
