@@ -38,8 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--terms",
         default="own",
         metavar="a,b",
-        help="what of an image weighs: own (each method's usual terms, the default), none, or any "
-        f"of {'+'.join(ALL_TERMS)}; the first is reported, and how much better it is than the others",
+        help="what of an image weighs: own (what usually does in each method, the default), none, "
+        f"or any of {'+'.join(ALL_TERMS)}; the first is reported, and how much better it is than "
+        "the others",
     )
     parser.add_argument("--seeds", type=int, default=1, metavar="N", help="repetitions (1)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")

@@ -1,7 +1,7 @@
 """The body over time, as the prior is learned from it: its pose, where it goes, where it has been.
 
-A brush on its way up and one on its way down meet the same body pose, and arms that hang tell nothing
-of whether glasses are worn or lie on a table: that shows in what the hands did before.
+A brush on its way up and one on its way down meet the same body pose, and arms that hang tell
+nothing of whether glasses are worn or lie on a table: that shows in what the hands did before.
 """
 
 from collections import deque

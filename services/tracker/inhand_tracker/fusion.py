@@ -1,11 +1,10 @@
 """The tracker that users get: a prior from the body's motion, what it carries over, and the image.
 
-The prior (``prior``) errs by habits: how this person holds this mug is not to be seen in a body, but
-it stays as it is. So what is tracked is how the pose differs from the prior's, in the object's own
-frame: without an image the difference fades away, as learned, and with it the image's knowledge
-stays while the object is hidden. An object that was left somewhere stays there, whatever the body
-does. From these expectations come hypotheses; the image weighs them (``sight``), and the likeliest
-are refined.
+The prior (``prior``) errs by habits: how this person holds this mug is not to be seen in a body,
+but it stays as it is. So what is tracked is how the pose differs from the prior's, in the object's
+own frame: what an image showed of it fades away, as learned, while the object is hidden. And an
+object that was left somewhere stays there, whatever the body does. From these expectations come
+hypotheses; the image weighs them (``sight``), and the likeliest are refined.
 """
 
 from collections.abc import Collection
@@ -89,6 +88,8 @@ class FusionTracker:
         self._left_handed = left_handed
         self._terms = frozenset(terms)
         self._sight = Sight(model, terms) if terms else None
+        centre, normal = self._prior.centre, self._mirror_normal
+        self._centre = centre - 2.0 * (centre @ normal) * normal if left_handed else centre
         self._radius = float(
             np.linalg.norm(model.shape.vertices - self._prior.centre, axis=1).max()
         )
@@ -160,14 +161,9 @@ class FusionTracker:
             signs = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
             origin = centre - rotations.rotate(rotation, self._prior.centre)
             origin, rotation = mirror_pose(origin, rotation, self._mirror_normal)
-            mirrored = self._mirrored_centre()
-            centre = origin + rotations.rotate(rotation, mirrored)
+            centre = origin + rotations.rotate(rotation, self._centre)
             covariance = covariance * signs[:, None] * signs
         return PoseGaussian(centre, rotation, covariance)
-
-    def _mirrored_centre(self) -> Array:
-        centre, normal = self._prior.centre, self._mirror_normal
-        return centre - 2.0 * (centre @ normal) * normal if self._left_handed else centre
 
     def _carry(self, expected: PoseGaussian, time_ns: int) -> PoseMixture:
         """What is expected now, after what was believed before."""
@@ -263,28 +259,33 @@ class FusionTracker:
         self, belief: PoseMixture, starts: list[tuple[Array, Array]], view: SightView
     ) -> list[PoseGaussian]:
         """Where image and belief agree best near each start; each place once."""
-        modes: list[PoseGaussian] = []
         sight = self._sight
         assert sight is not None
-        for centre, rotation in starts:
-            logs = belief.log_densities(centre[None], rotation[None])[:, 0]
-            part = belief.parts[int(np.argmax(logs))]
+        centres = np.array([centre for centre, _ in starts])
+        orientations = np.array([rotation for _, rotation in starts])
+        nearest = np.argmax(belief.log_densities(centres, orientations), axis=0)
+        modes: list[PoseGaussian] = []
+        for index, part in enumerate(belief.parts):
+            chosen = nearest == index
+            if not chosen.any():
+                continue
             information = np.asarray(np.linalg.inv(part.covariance), np.float64)
             refined = sight.refine(
-                self._origins(centre[None], rotation[None]),
-                rotation[None],
+                self._origins(centres[chosen], orientations[chosen]),
+                orientations[chosen],
                 view,
-                self._at_origin(part, information / INDEPENDENT),
+                self._at_origin(part, information),
+                INDEPENDENT,
             )
-            turned = refined.rotations[0]
-            arm = rotations.rotate(turned, self._mirrored_centre())
-            back = lever(-arm)
-            seen = INDEPENDENT * back.T @ refined.information[0] @ back
-            mode = PoseGaussian(
-                refined.translations[0] + arm, turned, np.linalg.inv(information + seen)
-            )
-            if not any(_same(mode, other) for other in modes):
-                modes.append(mode)
+            for origin, turned, seen in zip(
+                refined.translations, refined.rotations, refined.information, strict=True
+            ):
+                arm = rotations.rotate(turned, self._centre)
+                back = lever(-arm)
+                covariance = np.linalg.inv(information + back.T @ seen @ back)
+                mode = PoseGaussian(origin + arm, turned, covariance)
+                if not any(_same(mode, other) for other in modes):
+                    modes.append(mode)
         return modes
 
     def _weigh_modes(
@@ -293,9 +294,9 @@ class FusionTracker:
         """The modes by their probability (Laplace's approximation)."""
         centres = np.array([mode.centre for mode in modes])
         orientations = np.array([mode.rotation for mode in modes])
-        expected = np.logaddexp.reduce(belief.log_densities(centres, orientations), axis=0)
         sight = self._sight
         assert sight is not None
+        expected = np.logaddexp.reduce(belief.log_densities(centres, orientations), axis=0)
         seen = sight.log_likelihood(self._origins(centres, orientations), orientations, view)
         room = np.array([0.5 * np.linalg.slogdet(mode.covariance)[1] for mode in modes])
         found = mixture(modes, expected + TEMPER * seen + room)
@@ -309,15 +310,15 @@ class FusionTracker:
 
     def _origins(self, centres: Array, orientations: Array) -> Array:
         """The translations (P, 3) of poses whose centres are known."""
-        return centres - rotations.rotate(orientations, self._mirrored_centre())
+        return centres - rotations.rotate(orientations, self._centre)
 
     def _at_origin(self, part: PoseGaussian, information: Array) -> RefinementPrior:
-        arm = rotations.rotate(part.rotation, self._mirrored_centre())
+        arm = rotations.rotate(part.rotation, self._centre)
         moved = lever(arm)
         return RefinementPrior(part.centre - arm, part.rotation, moved.T @ information @ moved)
 
     def _estimated(self, believed: PoseGaussian) -> Estimate:
-        arm = rotations.rotate(believed.rotation, self._mirrored_centre())
+        arm = rotations.rotate(believed.rotation, self._centre)
         moved = lever(-arm)
         return Estimate(
             "tracked",

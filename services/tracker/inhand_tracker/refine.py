@@ -67,12 +67,12 @@ class Prior:
         return -0.5 * np.einsum("ki,ij,kj->k", off, self.information, off)
 
     def added_to(
-        self, information: Array, gradient: Array, translation: Array, orientation: Array
+        self, information: Array, gradients: Array, translations: Array, orientations: Array
     ) -> tuple[Array, Array]:
-        """Information (6, 6) and gradient (6,) at a pose with what the prior says of it."""
-        turn = rotations.multiply(self.rotation, rotations.conjugate(orientation))
-        off = np.concatenate((self.translation - translation, rotations.to_vector(turn)))
-        return information + self.information, gradient + self.information @ off
+        """Information (K, 6, 6) and gradients (K, 6) at poses with what the prior says of them."""
+        turns = rotations.multiply(self.rotation, rotations.conjugate(orientations))
+        off = np.concatenate((self.translation - translations, rotations.to_vector(turns)), axis=1)
+        return information + self.information, gradients + off @ self.information
 
 
 @dataclass(frozen=True)

@@ -188,76 +188,89 @@ class Sight:
         orientations: Array,
         view: SightView,
         prior: Prior | None = None,
+        trust: float = 1.0,
     ) -> Refined:
         """Poses (K, 3) and (K, 4) moved to where the frame and the prior agree best nearby; one
-        that does not become likelier stays where it is."""
-        placed = [
-            self._refine_one(translation, orientation, view, prior)
-            for translation, orientation in zip(translations, orientations, strict=True)
-        ]
-        moved, turned, information = (np.array(column) for column in zip(*placed, strict=True))
-        worse = self._posterior(moved, turned, view, prior) < self._posterior(
-            translations, orientations, view, prior
+        that does not become likelier stays where it is.
+
+        The frame counts by ``trust``: less than 1 where the frames before have said the same.
+        """
+        moved, turned, information = self._steps(translations, orientations, view, prior, trust)
+        worse = self._posterior(moved, turned, view, prior, trust) < self._posterior(
+            translations, orientations, view, prior, trust
         )
         return Refined(
             np.where(worse[:, None], translations, moved),
             np.where(worse[:, None], orientations, turned),
-            np.where(worse[:, None, None], 0.0, information),
+            np.where(worse[:, None, None], 0.0, TRUST * information),
         )
 
     def _posterior(
-        self, translations: Array, orientations: Array, view: SightView, prior: Prior | None
+        self,
+        translations: Array,
+        orientations: Array,
+        view: SightView,
+        prior: Prior | None,
+        trust: float,
     ) -> Array:
-        likelihood = self.log_likelihood(translations, orientations, view)
+        likelihood = trust * self.log_likelihood(translations, orientations, view)
         if prior is None:
             return likelihood
         return likelihood + prior.log_density(translations, orientations)
 
-    def _refine_one(
-        self, translation: Array, orientation: Array, view: SightView, prior: Prior | None
+    def _steps(
+        self,
+        translations: Array,
+        orientations: Array,
+        view: SightView,
+        prior: Prior | None,
+        trust: float,
     ) -> tuple[Array, Array, Array]:
+        """Poses (K, 3) and (K, 4) after all Gauss-Newton steps, and the image's (K, 6, 6)."""
         frame = view.frame
         coloured, deep = frame.bins is not None, frame.depth is not None
         wanted = self._wanted[_REFINED_TERMS] & [coloured, coloured, deep]
         lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
         contours = self._contours
-        information = np.zeros((6, 6))
+        information = np.zeros((len(translations), 6, 6))
         reach_m, reach_rad = (REACH_M, REACH_RAD) if prior is None else prior.reach()
         for share in REACHES:
-            information, gradient = np.zeros((6, 6)), np.zeros(6)
-            gather(
-                translation,
-                orientation,
-                self._grid,
-                contours.directions,
-                contours.points,
-                contours.normals,
-                contours.inside,
-                contours.outside,
-                contours.surface_points,
-                contours.surface_normals,
-                lens,
-                edges,
-                edge_scores,
-                colour_scores,
-                limbs,
-                depth,
-                self._returned,
-                wanted,
-                share * reach_m,
-                share * reach_rad,
-                POINT_WEIGHTS,
-                information,
-                gradient,
-            )
-            total, pull = information + np.diag(DAMPING), gradient
+            information = np.zeros((len(translations), 6, 6))
+            gradients = np.zeros((len(translations), 6))
+            for index in range(len(translations)):
+                gather(
+                    translations[index],
+                    orientations[index],
+                    self._grid,
+                    contours.directions,
+                    contours.points,
+                    contours.normals,
+                    contours.inside,
+                    contours.outside,
+                    contours.surface_points,
+                    contours.surface_normals,
+                    lens,
+                    edges,
+                    edge_scores,
+                    colour_scores,
+                    limbs,
+                    depth,
+                    self._returned,
+                    wanted,
+                    share * reach_m,
+                    share * reach_rad,
+                    trust * POINT_WEIGHTS,
+                    information[index],
+                    gradients[index],
+                )
+            total, pull = information + np.diag(DAMPING), gradients
             if prior is not None:
-                total, pull = prior.added_to(total, pull, translation, orientation)
-            step = np.linalg.solve(total, pull)
-            translation = translation + step[:3]
-            turn = rotations.from_vector(np.asarray(step[3:], np.float64))
-            orientation = rotations.normalise(rotations.multiply(turn, orientation))
-        return translation, orientation, TRUST * information
+                total, pull = prior.added_to(total, pull, translations, orientations)
+            steps = np.linalg.solve(total, pull[..., None])[..., 0]
+            translations = translations + steps[:, :3]
+            turns = rotations.from_vector(np.asarray(steps[:, 3:], np.float64))
+            orientations = rotations.normalise(rotations.multiply(turns, orientations))
+        return translations, orientations, information
 
     def _scores(self, translations: Array, orientations: Array, view: SightView) -> Array:
         frame = view.frame
