@@ -38,7 +38,7 @@ from inhand_tracker.viewpoints import VisiblePoints
 Array = NDArray[np.float64]
 
 HYPOTHESES = 400
-REFINED = 5
+REFINED = 4
 SEEDS, CLOSER = 20, 0.35
 """Around so many of the likeliest hypotheses as many again, so much nearer, are tried."""
 TEMPER = 0.4
