@@ -28,6 +28,7 @@ VERBS = {
     "import": "make a dataset of real data: utd-mhad, motion, ycb-video",
     "train": "learn a model from a labelled dataset",
     "evaluate": "measure methods on people that were not trained on",
+    "recognise": "measure tracking where the object is not given, and recognition alone",
     "bench": "measure what things cost on this machine: tracker, training",
     "recording": "info, verify and recover recordings",
     "topics": "list what a running site publishes",

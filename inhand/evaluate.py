@@ -2,6 +2,7 @@
 
 import argparse
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,8 @@ from inhand_lab.summary import summarise, terms_name, with_terms, worth
 from inhand_lab.tables import shown_grids
 from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
-from inhand_tracker.likelihood import DEFAULT_TERMS, TERMS
-from inhand_tracker.methods import METHODS, TABLE_1
+from inhand_tracker.methods import TABLE_1
+from inhand_tracker.trackers import ALL_METHODS, ALL_TERMS, FUSION, MethodName, terms_of
 from rich.console import Console
 
 from inhand.progress import progress_bar
@@ -26,16 +27,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("dataset", type=Path, metavar="DATASET", help="learn from it")
     parser.add_argument("--test-on", type=Path, metavar="DATASET", help="test on another one")
     parser.add_argument(
-        "--methods", default=",".join(TABLE_1), metavar="a,b", help="(default: all of Table 1)"
+        "--methods",
+        default=",".join((*TABLE_1, FUSION)),
+        metavar="a,b",
+        help="(default: all of the published Table 1, and fusion)",
     )
     images = parser.add_mutually_exclusive_group()
     images.add_argument("--no-images", action="store_true", help="from bodies alone: --terms none")
     images.add_argument(
         "--terms",
-        default=terms_name(DEFAULT_TERMS),
+        default="own",
         metavar="a,b",
-        help="what of an image weighs: none, edges, depth or edges+depth (default: edges); the "
-        "first is reported, and how much better it is than the others",
+        help="what of an image weighs: own (what usually does in each method, the default), none, "
+        f"or any of {'+'.join(ALL_TERMS)}; the first is reported, and how much better it is than "
+        "the others",
     )
     parser.add_argument("--seeds", type=int, default=1, metavar="N", help="repetitions (1)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
@@ -66,12 +71,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _protocol(arguments: argparse.Namespace) -> Protocol:
     methods = arguments.methods.split(",")
-    unknown = [name for name in methods if name not in METHODS]
+    unknown = [name for name in methods if name not in ALL_METHODS]
     if unknown:
-        raise SettingsError(f"no method {unknown[0]!r}; there are: {', '.join(METHODS)}")
+        raise SettingsError(f"no method {unknown[0]!r}; there are: {', '.join(ALL_METHODS)}")
     if arguments.seeds < 1:
         raise SettingsError("--seeds is 1 or more")
+    methods = tuple(name for name in ALL_METHODS if name in methods)
     terms = "none" if arguments.no_images else arguments.terms
+    chosen = tuple(dict.fromkeys(_terms(name, methods) for name in terms.split(",")))
     trained = load_dataset(arguments.dataset)
     tested = trained if arguments.test_on is None else load_dataset(arguments.test_on)
     folds = (
@@ -83,19 +90,26 @@ def _protocol(arguments: argparse.Namespace) -> Protocol:
         trained,
         tested,
         tuple(folds),
-        tuple(dict.fromkeys(methods)),
-        tuple(dict.fromkeys(_terms(name) for name in terms.split(","))),
+        methods,
+        chosen,
         arguments.seeds,
     )
 
 
-def _terms(name: str) -> Terms:
+def _terms(name: str, methods: Sequence[MethodName]) -> Terms:
+    if name == "own":
+        return "own"
     if name == "none":
         return ()
     named = name.split("+")
-    if unknown := [term for term in named if term not in TERMS]:
-        raise SettingsError(f"no term {unknown[0]!r}; there are: none, {', '.join(TERMS)}")
-    return tuple(term for term in TERMS if term in named)
+    if unknown := [term for term in named if term not in ALL_TERMS]:
+        raise SettingsError(f"no term {unknown[0]!r}; there are: own, none, {', '.join(ALL_TERMS)}")
+    for method in methods:
+        if unknown := [term for term in named if term not in terms_of(method)]:
+            raise SettingsError(
+                f"{method} does not weigh {unknown[0]!r}; it knows: {', '.join(terms_of(method))}"
+            )
+    return tuple(term for term in ALL_TERMS if term in named)
 
 
 def _result(protocol: Protocol, trials: list[Trial], seconds: float) -> dict[str, Any]:

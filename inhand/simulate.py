@@ -65,7 +65,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Write what was asked for; raises SettingsError, DatasetError or RecordingError."""
     if arguments.realism:
-        return show_realism(arguments.data, arguments.json)
+        if arguments.seed < 0:
+            raise SettingsError("the seed is 0 or more")
+        return show_realism(arguments.data, arguments.seed, arguments.json)
     chosen = arguments.interactions
     unknown = [name for name in chosen or () if name not in INTERACTIONS]
     if unknown:

@@ -5,22 +5,26 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_schemas.messages import RgbdFrame
 from inhand_tracker import rotations
-from inhand_tracker.body import PARTS, Bases, part_bases, pelvis_basis
-from inhand_tracker.conversion import image_of
+from inhand_tracker.body import PARTS, part_bases, pelvis_basis
+from inhand_tracker.conversion import Need, image_of
 from inhand_tracker.image import Image
 from inhand_tracker.learning import LabelledSequence, learn
-from inhand_tracker.likelihood import TERMS, Likelihood
+from inhand_tracker.likelihood import Likelihood
 from inhand_tracker.model_file import Model
 from inhand_tracker.particles import Particles
+from inhand_tracker.sight import Sight
+from inhand_tracker.sight_frame import Region, prepare
 from inhand_tracker.viewpoints import BOUNDARY_POINTS, Viewpoints, find_viewpoints
 from numpy.typing import NDArray
 
 from inhand_lab.simulated_messages import camera_info, shape_of
+from inhand_lab.workers import usable_cores
 from inhand_lab.world import Simulation, simulate
 
 Array = NDArray[np.float64]
@@ -33,15 +37,33 @@ SHOWN_FRAME = 60
 HYPOTHESES = 1000
 NAIVE_HYPOTHESES = 100
 SECONDS = 6.0
+FRAME_CORES = 2
+HYPOTHESIS_COUNTS = (100, 1_000, 10_000)
+OBJECT_COUNTS = (1, 2, 4)
+REGION_MARGIN = 60.0
+NEEDS: tuple[Need, ...] = ("edges", "depth", "colour")
+
+
+@dataclass(frozen=True)
+class FrameCost:
+    """Milliseconds on ``cores`` cores to prepare a frame and to weigh so many hypotheses of each of
+    so many objects by every term; ``naive_ms``, what NumPy takes for their published edges alone,
+    one hypothesis after the other."""
+
+    objects: int
+    hypotheses: int
+    cores: int
+    ms: float
+    naive_ms: float
 
 
 @dataclass(frozen=True)
 class TrackerSpeed:
     """Rates on one core at ``points`` boundary points, an image given and prepared.
 
-    ``edge_hypotheses_per_second`` weighs poses by edges; ``full_hypotheses_per_second`` also finds
-    the poses from particles and weighs them by every term. ``naive_ratio`` is the first over the
-    rate of NumPy called for one hypothesis after the other.
+    ``edge_hypotheses_per_second`` weighs poses by the published edges;
+    ``full_hypotheses_per_second`` by every term of ``sight``. ``naive_ratio`` is the first over the
+    rate of NumPy called for one hypothesis after the other. ``frames`` is what whole frames cost.
     """
 
     edge_hypotheses_per_second: float
@@ -49,22 +71,22 @@ class TrackerSpeed:
     cores: int
     full_hypotheses_per_second: float
     naive_ratio: float
+    frames: tuple[FrameCost, ...] = ()
 
 
 def measure_tracker(seconds: float = SECONDS) -> TrackerSpeed:
     """Measure for so many seconds, on one core."""
     shown = simulate(INTERACTION, PEOPLE, SEED, LEARNED_FRAMES)
     model, image = _model(), _image(shown)
-    particles, parts = _particles(model, shown)
-    edges, all_terms = Likelihood(model), Likelihood(model, TERMS)
-    translations, orientations = particles.poses(model.mapping, parts, shown.person.height)
+    translations, orientations = _poses(model, shown, HYPOTHESES)
+    edges, sight = Likelihood(model), Sight(model)
+    view = sight.view(prepare(image), sight.start())
 
     def weigh_by_edges() -> Array:
         return edges.log_weights(translations, orientations, image)
 
     def weigh_fully() -> Array:
-        poses = particles.poses(model.mapping, parts, shown.person.height)
-        return all_terms.log_weights(*poses, image)
+        return sight.log_likelihood(translations, orientations, view)
 
     def weigh_naively() -> Array:
         few = translations[:NAIVE_HYPOTHESES], orientations[:NAIVE_HYPOTHESES]
@@ -73,7 +95,44 @@ def measure_tracker(seconds: float = SECONDS) -> TrackerSpeed:
     with _one_core():
         edges_s, full_s, naive_s = _fastest((weigh_by_edges, weigh_fully, weigh_naively), seconds)
     edge_rate, naive_rate = HYPOTHESES / edges_s, NAIVE_HYPOTHESES / naive_s
-    return TrackerSpeed(edge_rate, BOUNDARY_POINTS, 1, HYPOTHESES / full_s, edge_rate / naive_rate)
+    return TrackerSpeed(
+        edge_rate,
+        BOUNDARY_POINTS,
+        1,
+        HYPOTHESES / full_s,
+        edge_rate / naive_rate,
+        tuple(_frame_costs(model, shown, image, 1e3 / naive_rate, seconds)),
+    )
+
+
+def _frame_costs(
+    model: Model, shown: Simulation, image: Image, naive_ms: float, seconds: float
+) -> Iterator[FrameCost]:
+    """Every count of hypotheses with every count of objects, which here are all the same one.
+
+    ``naive_ms`` is what NumPy takes for one hypothesis.
+    """
+    cores = min(FRAME_CORES, usable_cores())
+    objects = [Sight(model, threads=cores) for _ in range(max(OBJECT_COUNTS))]
+    joints = shown.true_joints_in_camera[SHOWN_FRAME]
+    for hypotheses, count in product(HYPOTHESIS_COUNTS, OBJECT_COUNTS):
+        poses = _poses(model, shown, hypotheses)
+        around = image.camera.project(poses[0])
+        low, high = around.min(axis=0) - REGION_MARGIN, around.max(axis=0) + REGION_MARGIN
+
+        def weigh_frame(
+            count: int = count,
+            poses: tuple[Array, Array] = poses,
+            region: Region = (*low.tolist(), *high.tolist()),  # noqa: B008
+        ) -> None:
+            frame = prepare(image, region)
+            for sight in objects[:count]:
+                colours = sight.look_around(sight.start(), frame, poses[0][0], poses[1][0])
+                sight.log_likelihood(*poses, sight.view(frame, colours, joints))
+
+        share = seconds / (len(HYPOTHESIS_COUNTS) * len(OBJECT_COUNTS))
+        (took_s,) = _fastest((weigh_frame,), share)
+        yield FrameCost(count, hypotheses, cores, 1e3 * took_s, naive_ms * hypotheses * count)
 
 
 def naive_edge_log_weights(
@@ -123,19 +182,21 @@ def _image(shown: Simulation) -> Image:
         colour=encode_colour(seen.colour),
         depth=encode_depth(seen.depth),
     )
-    image = image_of(frame, camera_info(shown.intrinsics, shown.frame_rate), TERMS)
+    image = image_of(frame, camera_info(shown.intrinsics, shown.frame_rate), NEEDS)
     if image is None:
         raise ValueError("a simulated frame has colour and depth")
     return image
 
 
-def _particles(model: Model, shown: Simulation) -> tuple[Particles, Bases]:
-    """Particles all over the training frames, and the part predictors of the person shown."""
+def _poses(model: Model, shown: Simulation, count: int) -> tuple[Array, Array]:
+    """Poses (P, 3) and (P, 4) that particles all over the training frames have in the frame."""
     random = np.random.default_rng(SEED)
-    frames = random.integers(len(model.mapping.body_poses), size=(2, HYPOTHESES))
-    parts = random.integers(len(PARTS), size=(2, HYPOTHESES))
+    frames = random.integers(len(model.mapping.body_poses), size=(2, count))
+    numbers = random.integers(len(PARTS), size=(2, count))
     joints = shown.true_joints_in_camera[SHOWN_FRAME]
-    return Particles(*frames, *parts), part_bases(joints, pelvis_basis(joints))
+    bases = part_bases(joints, pelvis_basis(joints))
+    particles = Particles(*frames, *numbers)
+    return particles.poses(model.mapping, bases, shown.person.height)
 
 
 def _fastest(works: Sequence[Callable[[], object]], seconds: float) -> list[float]:

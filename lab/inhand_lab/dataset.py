@@ -236,7 +236,12 @@ def labelled_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
             translations[index] = frame.label.camera_from_object.translation
             orientations[index] = frame.label.camera_from_object.rotation
     return LabelledSequence(
-        entry.participant, entry.handedness == "left", joints, translations, orientations
+        entry.participant,
+        entry.handedness == "left",
+        joints,
+        translations,
+        orientations,
+        entry.frame_rate,
     )
 
 

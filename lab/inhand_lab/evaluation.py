@@ -8,16 +8,27 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
+from typing import Literal
 
 import numpy as np
+from inhand_tracker.appearance import learn_appearance
+from inhand_tracker.conversion import Need
 from inhand_tracker.learning import LabelledSequence, UnusableSequenceError, learn
-from inhand_tracker.likelihood import DEFAULT_TERMS, Term
-from inhand_tracker.methods import METHODS
 from inhand_tracker.model_file import Model
+from inhand_tracker.prior_learning import learn_prior
 from inhand_tracker.shape import ObjectShape
-from inhand_tracker.tracking import Tracker
+from inhand_tracker.trackers import (
+    FUSION,
+    AnyTerm,
+    MethodName,
+    ObjectTracker,
+    needs_of,
+    new_tracker,
+    usual_terms,
+)
 from inhand_tracker.viewpoints import Viewpoints, find_viewpoints
 
+from inhand_lab.appearance_samples import appearance_samples
 from inhand_lab.dataset import Dataset, DatasetError, Entry, load_frames
 from inhand_lab.folds import Fold
 from inhand_lab.observations import track_together
@@ -27,16 +38,25 @@ from inhand_lab.training import checked_sequence
 from inhand_lab.training_checks import check_hands
 from inhand_lab.workers import in_processes
 
-Terms = tuple[Term, ...]
+Terms = tuple[AnyTerm, ...] | Literal["own"]
+"""What of an image weighs; ``own``: what usually does in each method."""
 
 
 @dataclass(frozen=True)
 class Candidate:
     """A tracker that is evaluated: its method, the terms of its likelihood, and its seed."""
 
-    method: str
-    terms: Terms = DEFAULT_TERMS
+    method: MethodName
+    terms: Terms = "own"
     seed: int = 0
+
+    def chosen_terms(self) -> tuple[AnyTerm, ...]:
+        """What of an image weighs."""
+        return usual_terms(self.method) if self.terms == "own" else self.terms
+
+    def needs(self) -> tuple[Need, ...]:
+        """What of a frame must be decoded for it."""
+        return needs_of(self.method, self.chosen_terms())
 
 
 @dataclass(frozen=True)
@@ -57,7 +77,7 @@ class Protocol:
     trained: Dataset
     tested: Dataset
     folds: tuple[Fold, ...]
-    methods: tuple[str, ...]
+    methods: tuple[MethodName, ...]
     terms: tuple[Terms, ...]
     seeds: int
 
@@ -90,8 +110,9 @@ def evaluate(
     return [trial for trials in done for trial in trials]
 
 
-def fold_model(trained: Dataset, fold: Fold, *, images: bool) -> Model:
-    """What is learned for a fold; without images no boundaries are looked for.
+def fold_model(trained: Dataset, fold: Fold, *, images: bool, fused: bool) -> Model:
+    """What is learned for a fold; without images no boundaries are looked for, and a prior and an
+    appearance for ``fusion`` alone.
 
     Raises DatasetError or RecordingError.
     """
@@ -103,14 +124,21 @@ def fold_model(trained: Dataset, fold: Fold, *, images: bool) -> Model:
     except UnusableSequenceError as error:
         raise DatasetError(f"{trained.folder}, {fold.interaction}: {error}") from None
     viewpoints = Viewpoints(np.eye(3), np.zeros((3, 1, 3)))
+    appearance = prior = None
     if images:
         viewpoints = _viewpoints(trained, shape.name)
-    return Model(fold.interaction, shape, mapping, viewpoints)
+    if fused:
+        prior = learn_prior(sequences, shape)
+    if fused and images:
+        appearance = learn_appearance(shape, appearance_samples(trained, fold.trained))
+    return Model(fold.interaction, shape, mapping, viewpoints, appearance, prior)
 
 
 def _evaluate_fold(protocol: Protocol) -> list[Trial]:
     (fold,) = protocol.folds
-    model = fold_model(protocol.trained, fold, images=any(protocol.terms))
+    model = fold_model(
+        protocol.trained, fold, images=any(protocol.terms), fused=FUSION in protocol.methods
+    )
     gauge = ErrorGauge(model.shape)
     return [
         Trial(candidate, fold.interaction, entry.participant, entry.file, score)
@@ -126,8 +154,8 @@ def _evaluate_recording(
     frames = load_frames(path, entry.object)
     candidates = protocol.candidates()
     trackers = [tracker_of(candidate, model, entry) for candidate in candidates]
-    terms = {term for chosen in protocol.terms for term in chosen}
-    joints, tracks = track_together(trackers, path, frames, terms)
+    needs = {need for candidate in candidates for need in candidate.needs()}
+    joints, tracks = track_together(trackers, path, frames, needs)
     judge = Judge(frames, joints, gauge)
     for candidate, track in zip(candidates, tracks, strict=True):
         score = judge.score(track)
@@ -139,13 +167,13 @@ def _evaluate_recording(
         yield candidate, score
 
 
-def tracker_of(candidate: Candidate, model: Model, entry: Entry) -> Tracker:
+def tracker_of(candidate: Candidate, model: Model, entry: Entry) -> ObjectTracker:
     """A candidate's tracker for one recording."""
-    return Tracker(
+    return new_tracker(
         model,
-        METHODS[candidate.method],
+        candidate.method,
         left_handed=entry.handedness == "left",
-        terms=candidate.terms,
+        terms=candidate.chosen_terms(),
         seed=candidate.seed,
     )
 

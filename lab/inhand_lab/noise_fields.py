@@ -42,11 +42,13 @@ def noise_fields(grain: float, lateral_deviation: float, patch: float) -> NoiseF
         field = gaussian_filter(random.normal(size=(FIELD, FIELD)), pixels, mode="wrap")
         return np.asarray(field / field.std())
 
-    axial = correlated(grain)
-    lateral = np.stack([correlated(0.8 * grain), correlated(0.8 * grain)], axis=-1)
+    axial = correlated(grain).astype(np.float32)
+    lateral = np.empty((FIELD, FIELD, 2), np.int8)
+    for axis in range(2):
+        lateral[..., axis] = np.rint(lateral_deviation * correlated(0.8 * grain))
     return NoiseFields(
-        axial.astype(np.float32),
-        np.rint(lateral_deviation * lateral).astype(np.int8),
+        axial,
+        lateral,
         random.random((FIELD, FIELD)).astype(np.float32),
         ndtr(correlated(patch)).astype(np.float32),
         random.normal(size=(FIELD, FIELD)).astype(np.float32),

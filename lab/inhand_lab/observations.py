@@ -7,12 +7,11 @@ from pathlib import Path
 
 import numpy as np
 from inhand_schemas.errors import MessageError
-from inhand_tracker.conversion import image_of, joints_of
+from inhand_tracker.conversion import Need, image_of, joints_of
 from inhand_tracker.estimate import Estimate
 from inhand_tracker.following import Follower
 from inhand_tracker.image import Image
-from inhand_tracker.likelihood import Term
-from inhand_tracker.tracking import Tracker
+from inhand_tracker.trackers import ObjectTracker
 from numpy.typing import NDArray
 
 from inhand_lab.dataset import Frame, iterate_pixels, load_camera_info
@@ -33,7 +32,7 @@ class Observation:
     image: Image | None
     somebody_else: bool
 
-    def show(self, tracker: Tracker) -> Estimate:
+    def show(self, tracker: ObjectTracker) -> Estimate:
         """Let a tracker see the frame."""
         if self.somebody_else:
             tracker.restart()
@@ -41,15 +40,15 @@ class Observation:
 
 
 def observe(
-    path: Path, frames: Sequence[Frame], terms: Collection[Term] = ()
+    path: Path, frames: Sequence[Frame], needs: Collection[Need] = ()
 ) -> Iterator[Observation]:
     """The frames of a recording, one after the other.
 
-    Pixels are read and decoded once, and only those that the terms of a likelihood need. Damaged
+    Pixels are read and decoded once, and only those that are needed. Damaged
     ones are none. Raises RecordingError.
     """
     name = next((frame.label.camera for frame in frames if frame.label is not None), None)
-    info = load_camera_info(path, name) if terms else None
+    info = load_camera_info(path, name) if needs else None
     pixels = iterate_pixels(path, name) if info is not None else iter(())
     current = next(pixels, None)
     follower = Follower()
@@ -59,7 +58,7 @@ def observe(
         image = None
         if info is not None and current is not None and current.time_ns == frame.time_ns:
             with suppress(MessageError):
-                image = image_of(current, info, terms)
+                image = image_of(current, info, needs)
         before = follower.person_id
         person = follower.choose(frame.people, frame.time_ns)
         joints = None if person is None else joints_of(person)
@@ -67,15 +66,15 @@ def observe(
 
 
 def track_recording(
-    tracker: Tracker, path: Path, frames: Sequence[Frame], terms: Collection[Term] = ()
+    tracker: ObjectTracker, path: Path, frames: Sequence[Frame], needs: Collection[Need] = ()
 ) -> Iterator[Estimate]:
     """A tracker's estimates for the frames of a recording, as the tracker daemon makes them."""
-    for observation in observe(path, frames, terms):
+    for observation in observe(path, frames, needs):
         yield observation.show(tracker)
 
 
 def track_together(
-    trackers: Sequence[Tracker], path: Path, frames: Sequence[Frame], terms: Collection[Term]
+    trackers: Sequence[ObjectTracker], path: Path, frames: Sequence[Frame], needs: Collection[Need]
 ) -> tuple[Array, list[Track]]:
     """The joints (T, 20, 3) that several trackers saw of a recording, and their tracks.
 
@@ -84,7 +83,7 @@ def track_together(
     joints = np.full((len(frames), 20, 3), np.nan)
     tracks = [empty_track(len(frames)) for _ in trackers]
     reader = trackers[0].new_reader()
-    for index, seen in enumerate(observe(path, frames, terms)):
+    for index, seen in enumerate(observe(path, frames, needs)):
         if seen.somebody_else:
             reader = trackers[0].new_reader()
         body = None

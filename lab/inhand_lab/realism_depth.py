@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,8 +17,6 @@ PATCH = 6
 """Half the width of the patch on the chest, in pixels of an image 320 wide."""
 RESTING = 0.002
 """A chest that moves less than this, in metres, between two frames is at rest."""
-FEWEST_HOLES = 15
-"""Frames that the share of holes must rest on."""
 SMOOTHED = 5
 """Width, in pixels, of the median that an outline is ragged against."""
 CHEST = (Joint.SPINE, Joint.SHOULDER_CENTER)
@@ -40,15 +38,40 @@ class DepthPair:
     centre: tuple[float, float]
 
 
-def measure_depth(pairs: Iterable[DepthPair]) -> list[Figure]:
+@dataclass(frozen=True)
+class SeenDepth:
+    """What two frames in a row tell: the distances (L,) in the first one, and the rest as in the
+    figures, nothing where it cannot be told."""
+
+    levels: NDArray[np.uint16]
+    roughness: float | None
+    changed: float | None
+    deviation: float | None
+    holes: float | None
+    behind_hand: bool
+    ragged: float
+
+
+def observe_depth(pair: DepthPair) -> SeenDepth:
+    """What is measured of a pair, once."""
+    roughness, changed, deviation = _chest(pair)
+    trunk, behind_hand = _trunk(pair)
+    person = pair.depths[0] > 0
+    outline = np.count_nonzero(person & ~binary_erosion(person))
+    ragged = np.count_nonzero(person ^ median_filter(person, SMOOTHED)) / outline
+    holes = float(np.mean(trunk == 0)) if trunk.size else None
+    levels = np.unique(pair.depths[0])
+    return SeenDepth(levels, roughness, changed, deviation, holes, behind_hand, ragged)
+
+
+def measure_depth(seen: Sequence[SeenDepth]) -> list[Figure]:
     """Figures of pairs of frames, the same in the same order for any pairs."""
-    seen = list(pairs)
-    return [*_steps(seen), *_chest(seen), *_silhouette(seen)]
+    return [*_steps(seen), *_noise(seen), *_silhouette(seen)]
 
 
-def _steps(pairs: list[DepthPair]) -> Iterator[Figure]:
+def _steps(seen: Sequence[SeenDepth]) -> Iterator[Figure]:
     """Between the distances that are measured at all, over the distance squared."""
-    levels = np.unique(np.concatenate([np.unique(pair.depths[0]) for pair in pairs]))
+    levels = np.unique(np.concatenate([one.levels for one in seen]))
     levels = levels[(levels > 2000) & (levels < 3400)].astype(float)
     ratios = 1e6 * np.diff(levels) / levels[1:] ** 2
     middle = 2700.0
@@ -60,49 +83,55 @@ def _steps(pairs: list[DepthPair]) -> Iterator[Figure]:
         yield Figure("depth step over squared distance", "mm/m²", on, value)
 
 
-def _chest(pairs: list[DepthPair]) -> Iterator[Figure]:
-    roughness, changed, deviations = [], [], []
-    for pair in pairs:
-        before, after = (_patch(pair, frame) for frame in (0, 1))
-        if before is None or after is None:
-            continue
-        roughness.append(_roughness(before))
-        moved = np.subtract(*pair.joints)[[Joint.HIP_CENTER, *CHEST]]
-        if np.linalg.norm(moved, axis=1).max() < RESTING:
-            changed.append(np.mean(before != after))
-            deviations.append(np.std(after - before) / np.sqrt(2.0))
-    on = "chest, less its curvature"
-    yield Figure("depth roughness", "mm", on, float(np.median(roughness)))
-    yield Figure("depth deviation in time", "mm", "resting chest", float(np.mean(deviations)))
-    yield Figure("pixels that change", "%", "resting chest", 100.0 * float(np.mean(changed)))
+def _noise(seen: Sequence[SeenDepth]) -> Iterator[Figure]:
+    rough = [one.roughness for one in seen if one.roughness is not None]
+    value = float(np.median(rough)) if rough else np.nan
+    yield Figure("depth roughness", "mm", "chest, less its curvature", value)
+    deviation = _mean(one.deviation for one in seen)
+    yield Figure("depth deviation in time", "mm", "resting chest", deviation)
+    changed = 100.0 * _mean(one.changed for one in seen)
+    yield Figure("pixels that change", "%", "resting chest", changed)
 
 
-def _silhouette(pairs: list[DepthPair]) -> Iterator[Figure]:
-    holes, ragged = [], []
-    for pair in pairs:
-        person = pair.depths[0] > 0
-        outline = np.count_nonzero(person & ~binary_erosion(person))
-        if (trunk := _trunk_behind_hand(pair)).size:
-            holes.append(np.mean(trunk == 0))
-        ragged.append(np.count_nonzero(person ^ median_filter(person, SMOOTHED)) / outline)
-    share = 100.0 * float(np.mean(holes)) if len(holes) >= FEWEST_HOLES else np.nan
-    yield Figure("holes", "%", "trunk behind a hand", share)
-    yield Figure("ragged pixels", "%", "person's outline", 100.0 * float(np.mean(ragged)))
+def _silhouette(seen: Sequence[SeenDepth]) -> Iterator[Figure]:
+    holes = 100.0 * _mean(one.holes for one in seen)
+    yield Figure("holes", "%", "trunk that faces the camera", holes)
+    behind = 100.0 * _mean(one.holes for one in seen if one.behind_hand)
+    yield Figure("holes", "%", "trunk behind a hand", behind)
+    ragged = 100.0 * _mean(one.ragged for one in seen)
+    yield Figure("ragged pixels", "%", "person's outline", ragged)
 
 
-def _trunk_behind_hand(pair: DepthPair) -> NDArray[np.uint16]:
-    """The depth from the shoulders' centre to the hips', and no wider than the hips; nothing where
-    no hand is before it, and of people who bend or stand sideways."""
+def _mean(values: Iterable[float | None]) -> float:
+    told = [value for value in values if value is not None]
+    return float(np.mean(told)) if told else np.nan
+
+
+def _chest(pair: DepthPair) -> tuple[float | None, float | None, float | None]:
+    """Roughness, share of pixels that change and deviation in time of a patch of the chest; the
+    last two only of a chest at rest."""
+    before, after = (_patch(pair, frame) for frame in (0, 1))
+    if before is None or after is None:
+        return None, None, None
+    moved = np.subtract(*pair.joints)[[Joint.HIP_CENTER, *CHEST]]
+    if np.linalg.norm(moved, axis=1).max() >= RESTING:
+        return _roughness(before), None, None
+    changed, deviation = float(np.mean(before != after)), float(np.std(after - before))
+    return _roughness(before), changed, deviation / np.sqrt(2.0)
+
+
+def _trunk(pair: DepthPair) -> tuple[NDArray[np.uint16], bool]:
+    """The depth from the shoulders' centre to the hips', and no wider than the hips, and whether a
+    hand is before it; nothing of people who bend or stand sideways."""
     joints = pair.joints[0]
     u, v = _project(pair, joints)
     rows = slice(v[Joint.SHOULDER_CENTER], v[Joint.HIP_CENTER])
     columns = slice(*sorted(u[[Joint.HIP_LEFT, Joint.HIP_RIGHT]]))
+    if rows.stop - rows.start < UPRIGHT or columns.stop - columns.start < FACING:
+        return np.zeros((0, 0), np.uint16), False
     inside = (rows.start <= v) & (v < rows.stop) & (columns.start <= u) & (u < columns.stop)
     before = joints[:, 2] < joints[Joint.SHOULDER_CENTER, 2] - REACHING
-    upright = rows.stop - rows.start >= UPRIGHT and columns.stop - columns.start >= FACING
-    if not upright or not (inside & before)[list(HANDS)].any():
-        return np.zeros((0, 0), np.uint16)
-    return pair.depths[0][rows, columns]
+    return pair.depths[0][rows, columns], bool((inside & before)[list(HANDS)].any())
 
 
 def _project(pair: DepthPair, points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -23,8 +23,6 @@ WINDOW = 45
 """Frames over which the deviation of a bone's length is taken."""
 LAG = 8
 """Frames between which a slow wander is measured."""
-FEWEST, FEWEST_WINDOWS, FEWEST_EVENTS = 500, 40, 15
-"""Values that a figure must rest on."""
 
 GROUPS: dict[str, tuple[Joint, ...]] = {
     "trunk": (Joint.SPINE, Joint.SHOULDER_CENTER, Joint.HIP_LEFT, Joint.HIP_RIGHT),
@@ -65,7 +63,7 @@ Arm = tuple[Joint, Joint, Joint]
 class Figure:
     """One measured property: a name, its unit, and what it was measured on.
 
-    nan where too little was recorded to tell.
+    nan where nothing was recorded to tell.
     """
 
     name: str
@@ -94,14 +92,15 @@ class Observed:
         return (self.speeds >= lowest) & (self.speeds < highest)
 
 
-def measure_skeletons(recordings: Sequence[Floats]) -> list[Figure]:
-    """Figures of recordings (T, 20, 3), the same in the same order for any recordings."""
-    seen = [Observed.of(joints) for joints in recordings]
+def measure_skeletons(people: Sequence[Sequence[Observed]]) -> list[Figure]:
+    """Figures of people's recordings, the same in the same order for any people."""
+    seen = [recording for recordings in people for recording in recordings]
     return [
         *_jitter(seen),
         *_drift(seen),
         *_bone_steps(seen),
         *_bone_deviations(seen),
+        *_bone_stretches(people),
         *_departures(seen),
         *_flips(seen),
         *_proportions(seen),
@@ -176,8 +175,28 @@ def _bone_deviations(recordings: Sequence[Observed]) -> Iterator[Figure]:
             on = f"{group} that goes {lowest:.1f} to {highest:.1f} m in 1.5 s"
             for name, spread in (("", np.std), ("robust ", _robust_deviation)):
                 found = [float(spread(values)) for values in chosen]
-                value = 1000.0 * float(np.mean(found)) if len(found) >= FEWEST_WINDOWS else np.nan
+                value = 1000.0 * float(np.mean(found)) if found else np.nan
                 yield Figure(f"{group} bone, {name}deviation", "mm", on, value)
+
+
+def _bone_stretches(people: Sequence[Sequence[Observed]]) -> Iterator[Figure]:
+    """How much a bone's usual length in WINDOW frames differs between such stretches of a person,
+    in whatever recording: their deviation, its mean over people and bones."""
+    medians = [
+        np.array(
+            [
+                np.median(seen.bones[start : start + WINDOW], axis=0)
+                for seen in recordings
+                for start in range(0, len(seen.joints) - WINDOW + 1, WINDOW)
+            ]
+        )
+        for recordings in people
+    ]
+    spreads = [np.std(one, axis=0, ddof=1) for one in medians if len(one) > 1]
+    for group, joints in GROUPS.items():
+        value = 1000.0 * float(np.mean(np.array(spreads)[:, joints])) if spreads else np.nan
+        name = f"{group} bone, deviation between stretches"
+        yield Figure(name, "mm", "1.5 s of one person", value)
 
 
 def _departures(recordings: Sequence[Observed]) -> Iterator[Figure]:
@@ -207,7 +226,7 @@ def _episodes(name: str, masks: list[tuple[Floats, NDArray[np.bool_]]]) -> Itera
     for pace in ("slow", "brisk", "fast"):
         lowest, highest = PACES[pace]
         inside = concerned[(speed >= lowest) & (speed < highest)]
-        share = 100.0 * float(inside.mean()) if inside.sum() >= FEWEST_EVENTS else np.nan
+        share = 100.0 * float(inside.mean()) if len(inside) else np.nan
         yield Figure(name, "% of frames", f"{pace} wrist", share)
     lengths = np.concatenate([_run_lengths(mask) for _, mask in masks])
     mean = float(lengths.mean()) if len(lengths) else np.nan
@@ -232,7 +251,7 @@ def _spread(name: str, on: str, found: list[Floats]) -> Iterator[Figure]:
 
 def _quantile(found: list[Floats], share: float) -> float:
     values = np.concatenate(found)
-    return float(np.quantile(values, share)) if len(values) >= FEWEST else np.nan
+    return float(np.quantile(values, share)) if len(values) else np.nan
 
 
 def _robust_deviation(values: Floats) -> float:

@@ -14,6 +14,7 @@ from typing import Any
 
 from inhand_runtime.errors import InhandError
 from inhand_tracker.model_file import Model
+from inhand_tracker.trackers import FUSION
 from rich.console import Console
 
 from inhand_lab.dataset import load_frames
@@ -83,7 +84,9 @@ def _shown(folds: Sequence[Fold]) -> list[Fold]:
 def _draw(task: _Drawing) -> list[str]:
     """Draw the figures of a fold, and give the names of the files."""
     protocol, fold = task.protocol, task.fold
-    model = fold_model(protocol.trained, fold, images=bool(protocol.terms[0]))
+    model = fold_model(
+        protocol.trained, fold, images=bool(protocol.terms[0]), fused=FUSION in protocol.methods
+    )
     files = {
         name: task.folder / f"{name}_{_slug(fold.interaction)}{suffix}"
         for name, suffix in FIGURE_SUFFIXES.items()
@@ -102,11 +105,11 @@ def _draw(task: _Drawing) -> list[str]:
 def _draw_frames(task: _Drawing, model: Model, file: Path) -> bool:
     protocol, entry = task.protocol, task.fold.tested[0]
     method = REFERENCE_METHOD if REFERENCE_METHOD in protocol.methods else protocol.methods[-1]
-    terms = protocol.terms[0]
-    tracker = tracker_of(Candidate(method, terms), model, entry)
+    candidate = Candidate(method, protocol.terms[0])
+    tracker = tracker_of(candidate, model, entry)
     path = protocol.tested.path(entry)
     frames = load_frames(path, entry.object)
-    joints, (track,) = track_together([tracker], path, frames, terms)
+    joints, (track,) = track_together([tracker], path, frames, candidate.needs())
     title = f"{entry.interaction}, participant {entry.participant}, {method}"
     return draw_tracked_frames(Seen(path, frames, joints, track), model.shape, title, file)
 

@@ -17,13 +17,13 @@ Pixels = NDArray[np.uint8]
 PICTURES = 8
 FIRST, LAST = 0.10, 0.90
 """The first and the last picture of a row, as shares of its time."""
-WIDTH, HEIGHT = 124, 172
+WIDTH, HEIGHT = 100, 138
 """Of one picture, in pixels."""
-NAME_WIDTH = 118
+NAME_WIDTH = 116
 BESIDE_M, ABOVE_M = 0.10, 0.19
 """Shown around what moves in a row: joints are in the middle of a head."""
 PAPER, INK = 255, (30, 30, 30)
-JPEG_QUALITY = 82
+JPEG_QUALITY = 60
 SUFFIXES = (".png", ".jpg", ".jpeg")
 
 

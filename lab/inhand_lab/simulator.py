@@ -1,5 +1,6 @@
 """The source ``simulator``: somebody who uses an object before a camera, for ever if need be."""
 
+import itertools
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -21,6 +22,9 @@ CAMERA = "simulator"
 
 LONGEST_DELAY_S = 0.5
 """A source that is later than this lets the world stand still instead of hurrying after it."""
+
+PREPARED_AHEAD_S = 4.0
+"""How long before it is shown the next performance is prepared: memory holds two from then on."""
 
 
 def _known(interaction: str) -> str:
@@ -53,42 +57,45 @@ class SimulatorSource:
         except ValidationError as error:
             raise SourceError(explain(error, None, ("options",), SimulatorOptions)) from None
         self._closed = threading.Event()
-        self._first = self._perform(0)
+        self._first: Simulation | None = self._perform(0)
 
     @property
     def info(self) -> CameraInfo:
         """How the simulated camera sees."""
-        return camera_info(self._first.intrinsics, self._options.frame_rate)
+        camera = CAMERAS[self._options.camera]
+        return camera_info(camera.intrinsics, self._options.frame_rate)
 
     def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured]:
         """Frames when they are due, rendered before that if pixels are wanted."""
         period = 1.0 / self._options.frame_rate
         due, due_ns = time.monotonic(), time.time_ns()
-        for simulation in self._performances():
-            for frame in range(simulation.frames):
-                ready = simulation.render(frame) if wanted() else None
-                if self._closed.wait(max(0.0, due - time.monotonic())):
-                    return
-                if time.monotonic() - due > LONGEST_DELAY_S:
-                    due, due_ns = time.monotonic(), time.time_ns()
-                yield _captured(simulation, frame, due_ns, ready)
-                due, due_ns = due + period, due_ns + round(1e9 * period)
+        for simulation, frame in self._frames():
+            ready = simulation.render(frame) if wanted() else None
+            if self._closed.wait(max(0.0, due - time.monotonic())):
+                return
+            if time.monotonic() - due > LONGEST_DELAY_S:
+                due, due_ns = time.monotonic(), time.time_ns()
+            yield _captured(simulation, frame, due_ns, ready)
+            due, due_ns = due + period, due_ns + round(1e9 * period)
 
     def close(self) -> None:
         """End ``captures``."""
         self._closed.set()
 
-    def _performances(self) -> Iterator[Simulation]:
-        """One performance after another, the next prepared while this one is shown."""
-        current = self._first
+    def _frames(self) -> Iterator[tuple[Simulation, int]]:
+        """The frames of one performance after another, the next prepared in time for it."""
+        current, self._first = self._first or self._perform(0), None
+        ahead = round(PREPARED_AHEAD_S * self._options.frame_rate)
         with ThreadPoolExecutor(1, "simulator") as executor:
-            performance = 1
-            while self._options.loop:
-                following: Future[Simulation] = executor.submit(self._perform, performance)
-                yield current
-                current = following.result()
-                performance += 1
-        yield current
+            for following in itertools.count(1):
+                prepared: Future[Simulation] | None = None
+                for frame in range(current.frames):
+                    if self._options.loop and frame == max(current.frames - ahead, 0):
+                        prepared = executor.submit(self._perform, following)
+                    yield current, frame
+                if prepared is None:
+                    return
+                current = prepared.result()
 
     def _perform(self, performance: int) -> Simulation:
         options = self._options

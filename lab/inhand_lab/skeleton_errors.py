@@ -4,8 +4,8 @@ A tracker errs by pose: what it takes for the elbow changes as the arm moves, ha
 rests, and is the same again when the arm comes back. On top of that errors wander, with the way
 that a joint goes rather than with time, in calm spells and busy ones; and a joint inherits a part
 of its parent's. Hands and feet, small as they are, are now and then seen turned or cut short, a
-hand flips, and a fast wrist stays behind or leaves the arm. Sizes are such that the realism table
-comes out; none was chosen for what a method makes of it.
+hand flips, and a fast wrist stays behind or leaves the arm. Sizes were found by the realism table
+(docs/simulator.md tells which rows do not come out); none was chosen for what a method makes of it.
 """
 
 from __future__ import annotations

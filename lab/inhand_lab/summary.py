@@ -58,8 +58,8 @@ def worth(trials: Sequence[Trial], terms: Terms, without: Terms) -> dict[str, An
 
 
 def terms_name(terms: Terms) -> str:
-    """As people write it: ``edges``, ``edges+depth``, or ``none``."""
-    return "+".join(terms) or "none"
+    """As people write it: ``own``, ``edges``, ``edges+depth``, or ``none``."""
+    return terms if terms == "own" else "+".join(terms) or "none"
 
 
 def _cell(trials: Sequence[Trial]) -> Figures:

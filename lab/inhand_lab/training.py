@@ -3,19 +3,28 @@
 from collections.abc import Callable, Collection, Sequence
 
 from inhand_schemas.errors import MessageError
+from inhand_tracker.appearance import learn_appearance
 from inhand_tracker.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.model_file import Model
+from inhand_tracker.prior_learning import learn_prior
 from inhand_tracker.viewpoints import find_viewpoints
 
+from inhand_lab.appearance_samples import appearance_samples
 from inhand_lab.dataset import Dataset, DatasetError, Entry, labelled_sequence
 from inhand_lab.training_checks import check_hands, check_sequence
 
-READING, VIEWPOINTS = "recordings", "viewpoints"
+READING, VIEWPOINTS, APPEARANCE, PRIOR = "recordings", "viewpoints", "appearance", "prior"
 
 
 def stages(recordings: int) -> dict[str, int]:
     """What training goes through, each with the number of its steps."""
-    return {READING: recordings, **dict.fromkeys(STAGES, recordings), VIEWPOINTS: 1}
+    return {
+        READING: recordings,
+        **dict.fromkeys(STAGES, recordings),
+        VIEWPOINTS: 1,
+        APPEARANCE: 1,
+        PRIOR: 1,
+    }
 
 
 def entries_for(
@@ -79,7 +88,11 @@ def train(
         raise DatasetError(f"{dataset.folder}: {error}") from None
     viewpoints = find_viewpoints(shape)
     on_step(VIEWPOINTS)
-    return Model(first.interaction, shape, mapping, viewpoints)
+    appearance = learn_appearance(shape, appearance_samples(dataset, entries))
+    on_step(APPEARANCE)
+    prior = learn_prior(sequences, shape)
+    on_step(PRIOR)
+    return Model(first.interaction, shape, mapping, viewpoints, appearance, prior)
 
 
 def checked_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:

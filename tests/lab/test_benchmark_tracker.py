@@ -5,7 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inhand_lab import benchmark_tracker
-from inhand_lab.benchmark_tracker import TrackerSpeed, measure_tracker, naive_edge_log_weights
+from inhand_lab.benchmark_tracker import (
+    FrameCost,
+    TrackerSpeed,
+    measure_tracker,
+    naive_edge_log_weights,
+)
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.image import Image
 from inhand_tracker.likelihood import Likelihood
@@ -41,6 +46,14 @@ def test_the_measurement_says_what_was_measured() -> None:
     assert speed.naive_ratio > 1.0
 
 
+def test_frames_are_measured_for_every_count_of_hypotheses_and_objects() -> None:
+    costs = {(c.objects, c.hypotheses): c for c in measure_tracker(seconds=0.05).frames}
+    assert set(costs) == {(o, h) for o in (1, 2, 4) for h in (100, 1_000, 10_000)}
+    assert costs[4, 10_000].ms > costs[1, 100].ms
+    assert costs[2, 1_000].naive_ms == pytest.approx(2.0 * costs[1, 1_000].naive_ms)
+    assert costs[1, 10_000].naive_ms > costs[1, 10_000].ms
+
+
 def test_the_measurement_gives_all_cores_back() -> None:
     before = benchmark_tracker.os.sched_getaffinity(0)
     measure_tracker(seconds=0.01)
@@ -50,13 +63,18 @@ def test_the_measurement_gives_all_cores_back() -> None:
 def test_the_verb_shows_the_figures_and_writes_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    speed = TrackerSpeed(1234567.0, 50, 1, 7654.0, 12.34)
+    frames = (FrameCost(1, 100, 2, 3.25, 11.0), FrameCost(4, 100, 2, 9.75, 44.0))
+    speed = TrackerSpeed(1234567.0, 50, 1, 7654.0, 12.34, frames)
     monkeypatch.setattr(bench, "measure_tracker", lambda: speed)
     assert main(["bench", "tracker", "--json", str(tmp_path / "speed.json")]) == 0
-    assert json.loads((tmp_path / "speed.json").read_text()) == asdict(speed)
+    assert json.loads((tmp_path / "speed.json").read_text()) == json.loads(
+        json.dumps(asdict(speed))
+    )
     shown = capsys.readouterr().out
     assert "1,234,567" in shown
     assert "7,654" in shown
+    assert "3.2 (11)" in shown
+    assert "4 objects" in shown
 
 
 def test_a_subject_that_there_is_not_is_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:

@@ -172,6 +172,17 @@ def test_depth_becomes_metres_in_the_camera_s_view() -> None:
     assert near[0] < 0.05
 
 
+def test_colours_are_decoded_when_asked_for_and_depth_beside_them() -> None:
+    image = image_of(FRAME, INFO, ("colour", "depth"))
+    assert image is not None
+    assert image.grey is None
+    assert image.colour is not None
+    assert image.colour.shape == (48, 64, 3)
+    np.testing.assert_allclose(image.colour, 90, atol=2)
+    assert image.depth is not None
+    assert image.camera.width == 64
+
+
 def test_luminance_keeps_the_size_of_the_colour_image() -> None:
     small = RgbdFrame(
         sequence=0, time_ns=0, colour=encode_colour(np.full((24, 32, 3), 90, np.uint8))

@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from inhand_tracker.appearance import Appearance
+from inhand_tracker.contours import find_contours
 from inhand_tracker.learning import learn
 from inhand_tracker.mapping import Mapping
 from inhand_tracker.model_file import Model, ModelError, load_model, save_model
@@ -48,6 +50,22 @@ def equal(first: Any, second: Any) -> bool:
 def test_a_model_comes_back_as_it_was(path: Path) -> None:
     assert equal(load_model(path), small_model())
     assert not equal(replace(small_model(), interaction="other"), small_model())
+
+
+def test_what_is_seen_of_an_object_and_how_it_looks_come_back_too(tmp_path: Path) -> None:
+    shape = small_model().shape
+    contours = find_contours(shape, np.eye(3))
+    colours = np.full((2, 4096), 1.0 / 4096.0, np.float32)
+    full = replace(
+        small_model(),
+        viewpoints=replace(small_model().viewpoints, contours=contours),
+        appearance=Appearance(*colours, 0.8, 0.1),
+    )
+    save_model(full, tmp_path / "full.model")
+    loaded = load_model(tmp_path / "full.model")
+    assert equal(loaded, full)
+    assert loaded.viewpoints.contours is not None
+    assert loaded.viewpoints.contours.points.dtype == np.float32
 
 
 def test_a_model_of_a_release_without_surfaces_still_loads(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ from inhand_tracker.methods import DEFAULT_METHOD, METHODS
 from inhand_tracker.model_file import save_model
 from inhand_tracker.service import TrackerService, TrackerSettings, load_trackers
 from inhand_tracker.tracking import Tracker
+from inhand_tracker.watching import GivenObjects
 from people import FRAME_NS, unseen_wave, wave_model
 from pydantic import ValidationError
 
@@ -107,7 +108,7 @@ def skeletons() -> list[tuple[AnyTopic, Message]]:
 
 
 def run(rig: Rig, trackers: dict[str, Tracker], **settings: object) -> None:
-    TrackerService(rig, TrackerSettings(**settings), trackers).run()
+    TrackerService(rig, TrackerSettings(**settings), lambda: GivenObjects(trackers)).run()
 
 
 def places(poses: Sequence[ObjectPose]) -> list[tuple[float, float, float]]:

@@ -24,14 +24,28 @@ def find_shape(name: str, root: Path, frames: Sequence[Path]) -> ObjectShape | N
     Only a ``-meta.mat`` tells the surface (``vertmap``, the object's coordinates pixel by pixel).
     None where there is neither. Raises DatasetError.
     """
+    shape = model_shape(name, root)
+    if shape is None:
+        points = seen_points(name, frames)
+        shape = None if points is None else shape_of_points(name, points)
+    return shape
+
+
+def model_shape(name: str, root: Path) -> ObjectShape | None:
+    """The shape of ``models/NAME/textured.obj``, where it is; raises DatasetError."""
     for file in MODEL_FILES:
         path = root / "models" / name / file
         if path.is_file():
             return shape_of_mesh(name, path)
+    return None
+
+
+def seen_points(name: str, frames: Sequence[Path]) -> NDArray[np.float64] | None:
+    """The surface (N, 3) that the first frame that tells it shows; raises DatasetError."""
     for frame in frames:
         points = _visible_surface(name, frame)
         if len(points) >= FEWEST_POINTS:
-            return shape_of_points(name, points)
+            return points
     return None
 
 

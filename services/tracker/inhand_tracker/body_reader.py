@@ -1,6 +1,7 @@
 """From a person's joints, of which some may be missing or wild, to what a tracker predicts from."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,6 @@ from inhand_tracker.body import (
     pelvis_basis,
     without_impossible,
 )
-from inhand_tracker.mapping import Mapping
 
 Array = NDArray[np.float64]
 
@@ -26,25 +26,35 @@ LEARNED_FRAMES = 1000
 
 @dataclass(frozen=True)
 class Body:
-    """One frame's body, right-handed: b (60,), the 19 part predictors, and the height."""
+    """One frame's body, right-handed: all joints (20, 3) in the camera frame, b (60,), the 19 part
+    predictors, and the height."""
 
+    joints: Array
     pose: Array
     parts: Bases
     height: float
+
+
+class Learned(Protocol):
+    """Anything that was learned from people, of whom it keeps body poses b (N, 60)."""
+
+    @property
+    def body_poses(self) -> Array:
+        """(N, 60)."""
 
 
 class BodyReader:
     """Reads the bodies of one person, frame by frame.
 
     A missing joint keeps its last place in the pelvis basis, and at first that of the people that
-    the mapping was learned from. Left-handed people are mirrored.
+    was learned from. Left-handed people are mirrored.
     """
 
-    def __init__(self, mapping: Mapping, *, left_handed: bool) -> None:
-        step = max(1, len(mapping.body_poses) // LEARNED_FRAMES)
-        learned = np.asarray(mapping.body_poses[::step], float).reshape(-1, 20, 3)
-        self._known_pose = learned.mean(axis=0)
-        self._height = RunningHeight(np.median(part_lengths(learned), axis=0))
+    def __init__(self, learned: Learned, *, left_handed: bool) -> None:
+        step = max(1, len(learned.body_poses) // LEARNED_FRAMES)
+        poses = np.asarray(learned.body_poses[::step], float).reshape(-1, 20, 3)
+        self._known_pose = poses.mean(axis=0)
+        self._height = RunningHeight(np.median(part_lengths(poses), axis=0))
         self._left_handed = left_handed
 
     def read(self, joints: Array) -> Body | None:
@@ -65,4 +75,4 @@ class BodyReader:
         self._known_pose = np.where(np.isfinite(seen), seen, self._known_pose)
         filled = pelvis.origins + height * rotations.rotate(pelvis.rotations, self._known_pose)
         complete = np.where(np.isfinite(joints), joints, filled)
-        return Body(self._known_pose.reshape(60), part_bases(complete, pelvis), height)
+        return Body(complete, self._known_pose.reshape(60), part_bases(complete, pelvis), height)

@@ -1,9 +1,10 @@
 """Messages to arrays and back."""
 
 from collections.abc import Collection
+from typing import Literal
 
 import numpy as np
-from inhand_runtime.pixels import decode_depth, decode_grey
+from inhand_runtime.pixels import decode_colour, decode_depth, decode_grey
 from inhand_schemas.messages import Box, CameraInfo, ObjectPose, Person, Pose, RgbdFrame
 from numpy.typing import NDArray
 
@@ -11,10 +12,12 @@ from inhand_tracker.body import without_impossible
 from inhand_tracker.camera import Intrinsics, intrinsics_of
 from inhand_tracker.estimate import Estimate
 from inhand_tracker.image import Image
-from inhand_tracker.likelihood import Term
 from inhand_tracker.poses import compose, pose_message
 
 Array = NDArray[np.float64]
+
+Need = Literal["edges", "depth", "colour"]
+"""What can be asked for of a frame: the terms of a likelihood, and the colours."""
 
 
 def joints_of(person: Person) -> Array:
@@ -24,20 +27,22 @@ def joints_of(person: Person) -> Array:
     return without_impossible(joints)
 
 
-def image_of(frame: RgbdFrame, info: CameraInfo, terms: Collection[Term]) -> Image | None:
-    """What terms of a likelihood need of a frame; None when it holds nothing of that.
+def image_of(frame: RgbdFrame, info: CameraInfo, needs: Collection[Need]) -> Image | None:
+    """What is needed of a frame; None when it holds nothing of that.
 
-    Raises MessageError for damaged pixels.
+    ``edges`` need its luminance. Raises MessageError for damaged pixels.
     """
-    colour = frame.colour if "edges" in terms else None
-    depth = frame.depth if "depth" in terms else None
-    size = colour or depth
+    grey = frame.colour if "edges" in needs else None
+    colour = frame.colour if "colour" in needs else None
+    depth = frame.depth if "depth" in needs else None
+    size = grey or colour or depth
     if size is None:
         return None
     return Image(
-        None if colour is None else decode_grey(colour),
+        None if grey is None else decode_grey(grey),
         intrinsics_of(info).scaled_to(size.width, size.height),
         None if depth is None else decode_depth(depth) * np.float32(info.depth_scale),
+        None if colour is None else decode_colour(colour),
     )
 
 
@@ -51,6 +56,7 @@ def object_pose_message(
     person: int | None,
     rig_from_camera: Pose | None,
     box: Box | None,
+    class_probabilities: dict[str, float] | None = None,
 ) -> ObjectPose:
     """An estimate as a message; ``sequence`` and ``time_ns`` are the source frame's."""
     pose = None
@@ -72,6 +78,7 @@ def object_pose_message(
         if estimate.covariance is None
         else tuple(estimate.covariance.ravel().tolist()),
         box=box,
+        class_probabilities=class_probabilities or {},
     )
 
 

@@ -15,12 +15,14 @@ from inhand_tracker.edges import chamfer_image
 class Image:
     """A luminance image (H, W), or None, and the camera that took it.
 
-    ``depth`` (h, w) is what was measured in the same view, in metres, 0 where nothing was.
+    ``depth`` (h, w) is what was measured in the same view, in metres, 0 where nothing was;
+    ``colour`` (H, W, 3) is RGB.
     """
 
     grey: NDArray[np.uint8] | None
     camera: Intrinsics
     depth: NDArray[np.float32] | None = None
+    colour: NDArray[np.uint8] | None = None
 
     @cached_property
     def chamfer(self) -> NDArray[np.float32] | None:

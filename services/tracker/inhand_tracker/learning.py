@@ -42,6 +42,7 @@ class LabelledSequence:
 
     ``joints`` (N, 20, 3), ``translations`` (N, 3), ``rotations`` (N, 4). Frames that are not
     usable (a missing joint or label) hold NaN and are left out, with the step into them.
+    ``frame_rate`` is in Hz.
     """
 
     participant: str
@@ -49,6 +50,7 @@ class LabelledSequence:
     joints: Array
     translations: Array
     rotations: Array
+    frame_rate: float = 30.0
 
 
 class UnusableSequenceError(ValueError):

@@ -6,11 +6,13 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from inhand_tracker.camera import Intrinsics
 from inhand_tracker.depths import depth_log_weights
-from inhand_tracker.edges import edge_log_weights
+from inhand_tracker.edges import weigh_by_edges
 from inhand_tracker.image import Image
 from inhand_tracker.model_file import Model
-from inhand_tracker.viewpoints import VisiblePoints, find_surfaces
+from inhand_tracker.view_grid import view_grid
+from inhand_tracker.viewpoints import Viewpoints, VisiblePoints, find_surfaces
 
 Array = NDArray[np.float64]
 
@@ -26,9 +28,10 @@ class Likelihood:
 
     def __init__(self, model: Model, terms: Collection[Term] = DEFAULT_TERMS) -> None:
         seen = model.viewpoints
-        self._boundary = self._surface = None
+        self._boundary: _Boundaries | None = None
+        self._surface: VisiblePoints | None = None
         if "edges" in terms:
-            self._boundary = VisiblePoints(seen.directions, seen.boundaries)
+            self._boundary = _Boundaries(seen)
         if "depth" in terms:
             surfaces = seen.surfaces
             if surfaces is None:
@@ -42,9 +45,39 @@ class Likelihood:
         """
         total = np.zeros(len(translations))
         if self._boundary is not None and image.chamfer is not None:
-            pixels = image.camera.project(self._boundary.place(translations, orientations))
-            total += edge_log_weights(image.chamfer, pixels)
+            total += self._boundary.log_weights(
+                translations, orientations, image.chamfer, image.camera
+            )
         if self._surface is not None and image.surfaces is not None:
             points = self._surface.place(translations, orientations)
             total += depth_log_weights(image.surfaces.distances(points))
         return total
+
+
+class _Boundaries:
+    """An object's boundaries, laid out for weighing."""
+
+    def __init__(self, seen: Viewpoints) -> None:
+        self._grid = view_grid(seen.directions)
+        self._directions = np.ascontiguousarray(seen.directions, float)
+        self._points = np.ascontiguousarray(np.swapaxes(seen.boundaries, 1, 2), float)
+
+    def log_weights(
+        self,
+        translations: Array,
+        orientations: Array,
+        chamfer: NDArray[np.float32],
+        camera: Intrinsics,
+    ) -> Array:
+        log_weights = np.empty(len(translations))
+        weigh_by_edges(
+            np.ascontiguousarray(translations, float),
+            np.ascontiguousarray(orientations, float),
+            self._grid,
+            self._directions,
+            self._points,
+            np.array([camera.fx, camera.fy, camera.cx, camera.cy]),
+            chamfer,
+            log_weights,
+        )
+        return log_weights

@@ -4,7 +4,7 @@ section 7 proposes for body poses that are like none of those learned."""
 from dataclasses import dataclass
 from typing import Literal
 
-MethodName = Literal[
+PublishedMethod = Literal[
     "g-hand", "gd-hand", "gd-random", "gd-stable", "gd-stable-proximate", "gd-fallback"
 ]
 PartRule = Literal["hand", "random", "stable", "proximate"]
@@ -17,7 +17,7 @@ class Method:
     ``falls_back``: where no training pose is near, from the hands and a wide range of poses.
     """
 
-    name: MethodName
+    name: PublishedMethod
     reinitialises: bool
     translation_part: PartRule
     rotation_part: PartRule
@@ -36,7 +36,7 @@ METHODS: dict[str, Method] = {
     )
 }
 
-TABLE_1: tuple[MethodName, ...] = (
+TABLE_1: tuple[PublishedMethod, ...] = (
     "g-hand",
     "gd-hand",
     "gd-random",
@@ -44,5 +44,3 @@ TABLE_1: tuple[MethodName, ...] = (
     "gd-stable-proximate",
 )
 """The columns of the published table."""
-
-DEFAULT_METHOD: MethodName = "gd-fallback"

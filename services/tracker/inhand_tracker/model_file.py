@@ -8,14 +8,19 @@ import json
 import zipfile
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from inhand_runtime.errors import InhandError
 
+from inhand_tracker.appearance import Appearance
+from inhand_tracker.contours import Contours
 from inhand_tracker.mapping import Mapping
+from inhand_tracker.prior import Prior, prior_arrays, prior_from_arrays
 from inhand_tracker.shape import ObjectShape, Symmetry
 from inhand_tracker.viewpoints import Viewpoints
+
+Part = TypeVar("Part", Contours, Appearance)
 
 FORMAT = "inhand-model"
 VERSION = 1
@@ -33,6 +38,8 @@ class Model:
     shape: ObjectShape
     mapping: Mapping
     viewpoints: Viewpoints
+    appearance: Appearance | None = None
+    prior: Prior | None = None
 
 
 def save_model(model: Model, path: Path) -> None:
@@ -57,6 +64,12 @@ def save_model(model: Model, path: Path) -> None:
     }
     if model.viewpoints.surfaces is not None:
         arrays["viewpoints.surfaces"] = model.viewpoints.surfaces
+    if model.viewpoints.contours is not None:
+        arrays |= _named("contours", model.viewpoints.contours)
+    if model.appearance is not None:
+        arrays |= _named("appearance", model.appearance)
+    if model.prior is not None:
+        arrays |= {f"prior.{name}": array for name, array in prior_arrays(model.prior).items()}
     temporary = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -118,8 +131,29 @@ def _assemble(description: dict[str, Any], arrays: dict[str, Any]) -> Model:
         arrays["viewpoints.directions"],
         arrays["viewpoints.boundaries"],
         arrays.get("viewpoints.surfaces"),
+        _found("contours", Contours, arrays),
     )
-    return Model(description["interaction"], shape, mapping, viewpoints)
+    appearance = _found("appearance", Appearance, arrays)
+    of_prior = {
+        name.removeprefix("prior."): array
+        for name, array in arrays.items()
+        if name.startswith("prior.")
+    }
+    prior = prior_from_arrays(of_prior) if of_prior else None
+    return Model(description["interaction"], shape, mapping, viewpoints, appearance, prior)
+
+
+def _named(name: str, part: Contours | Appearance) -> dict[str, Any]:
+    return {f"{name}.{field.name}": getattr(part, field.name) for field in fields(part)}
+
+
+def _found(name: str, kind: type[Part], arrays: dict[str, Any]) -> Part | None:
+    """A part that models of older releases do not have."""
+    names = [field.name for field in fields(kind)]
+    if any(f"{name}.{field}" not in arrays for field in names):
+        return None
+    values = {field: arrays[f"{name}.{field}"] for field in names}
+    return kind(**{f: value if value.ndim else value.item() for f, value in values.items()})
 
 
 def _mapping_arrays() -> tuple[str, ...]:

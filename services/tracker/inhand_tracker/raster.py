@@ -13,14 +13,30 @@ def nearest_depths(pixels: Array, depths: Array, faces: NDArray[np.int64], size:
     ``pixels`` (V, 2) and ``depths`` (V,) are the projected vertices, ``faces`` (F, 3). The edges
     of faces are drawn as lines, so that nothing is too thin to be seen.
     """
+    return nearest_faces(pixels, depths, faces, size)[0]
+
+
+def nearest_faces(
+    pixels: Array, depths: Array, faces: NDArray[np.int64], size: int
+) -> tuple[Array, NDArray[np.int64]]:
+    """As ``nearest_depths``, and which face (size, size) is seen there, -1 for none."""
     buffer = np.full((size, size), np.inf)
-    _fill(pixels, depths, faces, buffer)
-    return buffer
+    owners = np.full((size, size), -1)
+    _fill(pixels, depths, faces, buffer, owners)
+    return buffer, owners
 
 
 @njit(cache=True, nogil=True)
 def _draw_line(
-    ax: float, ay: float, a_depth: float, bx: float, by: float, b_depth: float, buffer: Array
+    ax: float,
+    ay: float,
+    a_depth: float,
+    bx: float,
+    by: float,
+    b_depth: float,
+    buffer: Array,
+    owners: NDArray[np.int64],
+    face: int,
 ) -> None:
     height, width = buffer.shape
     steps = max(1, int(np.ceil(max(abs(bx - ax), abs(by - ay)))))
@@ -29,20 +45,29 @@ def _draw_line(
         x = int(np.rint(ax + share * (bx - ax)))
         y = int(np.rint(ay + share * (by - ay)))
         if 0 <= x < width and 0 <= y < height:
-            buffer[y, x] = min(buffer[y, x], a_depth + share * (b_depth - a_depth))
+            depth = a_depth + share * (b_depth - a_depth)
+            if depth < buffer[y, x]:
+                buffer[y, x] = depth
+                owners[y, x] = face
 
 
 @njit(cache=True, nogil=True)
-def _fill(pixels: Array, depths: Array, faces: NDArray[np.int64], buffer: Array) -> None:
+def _fill(
+    pixels: Array,
+    depths: Array,
+    faces: NDArray[np.int64],
+    buffer: Array,
+    owners: NDArray[np.int64],
+) -> None:
     height, width = buffer.shape
     for face in range(faces.shape[0]):
         a, b, c = faces[face]
         ax, ay = pixels[a]
         bx, by = pixels[b]
         cx, cy = pixels[c]
-        _draw_line(ax, ay, depths[a], bx, by, depths[b], buffer)
-        _draw_line(bx, by, depths[b], cx, cy, depths[c], buffer)
-        _draw_line(cx, cy, depths[c], ax, ay, depths[a], buffer)
+        _draw_line(ax, ay, depths[a], bx, by, depths[b], buffer, owners, face)
+        _draw_line(bx, by, depths[b], cx, cy, depths[c], buffer, owners, face)
+        _draw_line(cx, cy, depths[c], ax, ay, depths[a], buffer, owners, face)
         area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
         if abs(area) < 1e-12:
             continue
@@ -59,3 +84,4 @@ def _fill(pixels: Array, depths: Array, faces: NDArray[np.int64], buffer: Array)
                     depth = u * depths[a] + v * depths[b] + w * depths[c]
                     if depth < buffer[y, x]:
                         buffer[y, x] = depth
+                        owners[y, x] = face

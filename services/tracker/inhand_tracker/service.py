@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from inhand_runtime.daemon import Daemon, running_daemon
@@ -15,21 +15,28 @@ from inhand_schemas.messages import CameraInfo, Name, ObjectPose, RgbdFrame, Ske
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
 from pydantic import Field, PositiveInt
 
-from inhand_tracker.camera import intrinsics_of
+from inhand_tracker.camera import Intrinsics, intrinsics_of
+from inhand_tracker.cascade import Cascade
 from inhand_tracker.conversion import (
     box_around,
     image_of,
-    joints_of,
     object_pose_message,
 )
-from inhand_tracker.estimate import LOST, Estimate
-from inhand_tracker.following import Follower
+from inhand_tracker.following import PeopleWatched, published
 from inhand_tracker.image import Image
-from inhand_tracker.likelihood import DEFAULT_TERMS, Term
-from inhand_tracker.methods import DEFAULT_METHOD, METHODS, MethodName
 from inhand_tracker.model_file import load_model
 from inhand_tracker.pairing import Pairing
-from inhand_tracker.tracking import PARTICLES, Tracker
+from inhand_tracker.recogniser_file import load_recogniser
+from inhand_tracker.trackers import (
+    DEFAULT_METHOD,
+    AnyTerm,
+    MethodName,
+    ObjectTracker,
+    needs_of,
+    new_tracker,
+    usual_terms,
+)
+from inhand_tracker.watching import GivenObjects, RecognisedObjects, Seen, Watcher
 
 log = logging.getLogger(__name__)
 
@@ -37,38 +44,44 @@ POLL_S = 0.01
 
 
 class TrackerSettings(Section):
-    """``[tracker.NAME]``: one object of one person or several, seen by one camera."""
+    """``[tracker.NAME]``: objects of one person or several, seen by one camera.
+
+    With a ``recogniser`` each person uses at most one of the models' objects, whichever is
+    recognised; without one every object is in use.
+    """
 
     model: Path | None = None
     models: tuple[Path, ...] = ()
     camera: Name = "camera"
     method: MethodName = DEFAULT_METHOD
     left_handed: bool = False
-    likelihood: tuple[Term, ...] = DEFAULT_TERMS
-    particles: PositiveInt = PARTICLES
+    likelihood: tuple[AnyTerm, ...] | None = None
+    particles: PositiveInt | None = None
+    recogniser: Path | None = None
+    people: PositiveInt = 1
     seed: int = Field(default=0, ge=0)
 
 
 class TrackerService:
-    """One frame after the other, from messages to messages; ``trackers`` go by object."""
+    """One frame after the other, from messages to messages; each person has a watcher."""
 
     def __init__(
-        self, daemon: Daemon, settings: TrackerSettings, trackers: Mapping[str, Tracker]
+        self, daemon: Daemon, settings: TrackerSettings, new_watcher: Callable[[], Watcher]
     ) -> None:
         self._daemon = daemon
         self._camera = settings.camera
-        self._terms = settings.likelihood
-        self._trackers = trackers
+        terms = usual_terms(settings.method) if settings.likelihood is None else settings.likelihood
+        self._needs = needs_of(settings.method, terms)
+        self._people = PeopleWatched(new_watcher, settings.people)
         self._publishers: dict[str, Publisher[ObjectPose]] = {
-            name: daemon.publisher(POSE, name) for name in trackers
+            name: daemon.publisher(POSE, name) for name in self._people.names
         }
         self._failures: dict[str, str] = {}
         self._pairing: Pairing[Skeletons, RgbdFrame] = Pairing()
         self._info: CameraInfo | None = None
-        self._follower = Follower()
         daemon.subscribe(INFO, settings.camera)
         daemon.subscribe(SKELETONS, settings.camera)
-        if self._terms:
+        if self._needs:
             daemon.subscribe(RGBD, settings.camera)
         self._keys = {topic: topic.key(daemon.site, settings.camera) for topic in (INFO, RGBD)}
 
@@ -93,37 +106,28 @@ class TrackerService:
             self._pairing.add_skeleton(skeletons.sequence, skeletons, now)
 
     def _track(self, skeletons: Skeletons, frame: RgbdFrame | None) -> None:
-        before = self._follower.person_id
-        person = self._follower.choose(skeletons.people, skeletons.time_ns)
-        if self._follower.person_id != before:
-            for tracker in self._trackers.values():
-                tracker.restart()
-        joints = None if person is None else joints_of(person)
-        image = self._image(frame)
-        for name, tracker in self._trackers.items():
-            try:
-                self._publish(name, tracker.step(joints, skeletons.time_ns, image), skeletons)
-            except Exception as error:  # noqa: BLE001 - one object must not stop the others
-                self._note_failure(name, error)
-                tracker.restart()
-                self._publish(name, LOST, skeletons)
+        camera = None if self._info is None else intrinsics_of(self._info)
+        seen = self._people.see(
+            skeletons.people, skeletons.time_ns, self._image(frame), camera, self._note_failure
+        )
+        for person, thing in published(seen):
+            self._publish(person, thing, skeletons, camera)
         self._daemon.health.latency(skeletons.time_ns)
 
-    def _publish(self, name: str, estimate: Estimate, skeletons: Skeletons) -> None:
-        box = None
-        if self._info is not None:
-            camera = intrinsics_of(self._info)
-            box = box_around(self._trackers[name].outline(estimate, camera), camera)
-        self._publishers[name].put(
+    def _publish(
+        self, person: int | None, seen: Seen, skeletons: Skeletons, camera: Intrinsics | None
+    ) -> None:
+        self._publishers[seen.name].put(
             object_pose_message(
-                estimate,
+                seen.estimate,
                 sequence=skeletons.sequence,
                 time_ns=skeletons.time_ns,
-                name=name,
+                name=seen.name,
                 camera=self._camera,
-                person=self._follower.person_id,
+                person=person,
                 rig_from_camera=None if self._info is None else self._info.rig_from_camera,
-                box=box,
+                box=None if camera is None else box_around(seen.outline, camera),
+                class_probabilities=seen.class_probabilities,
             )
         )
 
@@ -138,7 +142,7 @@ class TrackerService:
         if frame is None or self._info is None:
             return None
         try:
-            return image_of(frame, self._info, self._terms)
+            return image_of(frame, self._info, self._needs)
         except MessageError as error:
             self._daemon.health.malformed(self._keys[RGBD], error)
             return None
@@ -147,13 +151,44 @@ class TrackerService:
 def run(settings: Settings[TrackerSettings]) -> None:
     """Run until a signal; raises SettingsError or ModelError before anything starts."""
     chosen = settings.service
-    trackers = load_trackers(settings.instance, chosen)
+    first = load_watcher(settings.instance, chosen)
     with running_daemon("tracker", settings) as daemon:
-        log.info("tracking %s with %s", ", ".join(trackers), chosen.method)
-        TrackerService(daemon, chosen, trackers).run()
+        log.info("tracking %s with %s", ", ".join(first.names), chosen.method)
+        waiting = [first]
+
+        def new_watcher() -> Watcher:
+            return waiting.pop() if waiting else load_watcher(settings.instance, chosen)
+
+        TrackerService(daemon, chosen, new_watcher).run()
 
 
-def load_trackers(instance: str, settings: TrackerSettings) -> dict[str, Tracker]:
+def load_watcher(instance: str, settings: TrackerSettings) -> Watcher:
+    """A watcher for one person; raises SettingsError or ModelError."""
+    trackers = load_trackers(instance, settings)
+    if settings.recogniser is None:
+        return GivenObjects(trackers)
+    recogniser = load_recogniser(settings.recogniser)
+    by_action = {load_model(file).interaction: name for file, name in _files(settings, trackers)}
+    if missing := [action for action in recogniser.actions if action not in by_action]:
+        raise SettingsError(
+            f"[tracker.{instance}] recognises {missing[0]!r} and has no model of it: add it to "
+            "models, or train the recogniser without it"
+        )
+    objects = [by_action[action] for action in recogniser.actions]
+    cascade = Cascade(
+        recogniser, [trackers[name] for name in objects], left_handed=settings.left_handed
+    )
+    return RecognisedObjects(cascade, objects)
+
+
+def _files(
+    settings: TrackerSettings, trackers: Mapping[str, ObjectTracker]
+) -> list[tuple[Path, str]]:
+    files = settings.models if settings.model is None else (settings.model,)
+    return list(zip(files, trackers, strict=True))
+
+
+def load_trackers(instance: str, settings: TrackerSettings) -> dict[str, ObjectTracker]:
     """A tracker for each model, by object; raises SettingsError or ModelError."""
     where = f"[tracker.{instance}]"
     if settings.model is not None and settings.models:
@@ -163,15 +198,15 @@ def load_trackers(instance: str, settings: TrackerSettings) -> dict[str, Tracker
         raise SettingsError(
             f'{where} names no model: write model = "FILE"; `inhand train` makes one'
         )
-    trackers: dict[str, Tracker] = {}
+    trackers: dict[str, ObjectTracker] = {}
     for file in files:
         model = load_model(file)
         name = model.shape.name
         if name in trackers:
             raise SettingsError(f"{where} has two models of {name!r}: an object has one pose key")
-        trackers[name] = Tracker(
+        trackers[name] = new_tracker(
             model,
-            METHODS[settings.method],
+            settings.method,
             left_handed=settings.left_handed,
             terms=settings.likelihood,
             particles=settings.particles,

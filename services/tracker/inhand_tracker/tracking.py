@@ -1,7 +1,6 @@
 """The tracker: predict, re-initialise, weigh, estimate (Darby et al. 2014, TE1 to TE5)."""
 
 from collections.abc import Collection
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +8,7 @@ from numpy.typing import NDArray
 from inhand_tracker.body import mirror_pose
 from inhand_tracker.body_reader import Body, BodyReader
 from inhand_tracker.camera import Intrinsics
+from inhand_tracker.coasting import coasted
 from inhand_tracker.estimate import LOST, Estimate, normalised_weights, weighted_estimate
 from inhand_tracker.image import Image
 from inhand_tracker.likelihood import DEFAULT_TERMS, Likelihood, Term
@@ -31,9 +31,6 @@ Array = NDArray[np.float64]
 
 PARTICLES = 100
 GAP_NS = 500_000_000
-COASTING_NS = 1_000_000_000
-COASTING_SPEED = 0.5
-COASTING_TURN_RATE = 2.0
 
 
 class Tracker:
@@ -151,15 +148,7 @@ class Tracker:
         return normalised_weights(self._likelihood.log_weights(translations, orientations, image))
 
     def _coast(self, time_ns: int) -> Estimate:
-        unseen_ns = time_ns - self._time_ns
-        covariance = self._estimate.covariance
-        if covariance is None or not 0 <= unseen_ns <= COASTING_NS:
+        predicted = coasted(self._estimate, time_ns - self._time_ns)
+        if predicted.state == "lost":
             self._estimate = LOST
-            return LOST
-        spread = np.repeat(np.square([COASTING_SPEED, COASTING_TURN_RATE]), 3)
-        return replace(
-            self._estimate,
-            state="predicted",
-            confidence=self._estimate.confidence * (1.0 - unseen_ns / COASTING_NS),
-            covariance=covariance + np.diag(spread) * (unseen_ns / 1e9) ** 2,
-        )
+        return predicted

@@ -11,11 +11,12 @@ import cv2
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from inhand_tracker import rotations
+from inhand_tracker.contours import Contours, find_contours, view_axes
 from inhand_tracker.raster import nearest_depths
 from inhand_tracker.shape import ObjectShape
+from inhand_tracker.view_grid import nearest_views, view_grid
 
 Array = NDArray[np.float64]
 
@@ -32,12 +33,13 @@ class Viewpoints:
 
     ``boundaries`` (V, B, 3): equally spaced points of the visible boundary in the object's frame.
     ``surfaces`` (V, S, 3): evenly spaced points of the surface that is seen (what faces away or is
-    hidden is left out); None in models of older releases.
+    hidden is left out); ``contours`` are for ``sight``. Both are None in models of older releases.
     """
 
     directions: Array
     boundaries: Array
     surfaces: Array | None = None
+    contours: Contours | None = None
 
 
 def find_viewpoints(shape: ObjectShape) -> Viewpoints:
@@ -49,6 +51,7 @@ def find_viewpoints(shape: ObjectShape) -> Viewpoints:
         directions,
         np.array([_boundary(view) for view in views]),
         np.array([_surface(view) for view in views]),
+        find_contours(shape, directions),
     )
 
 
@@ -65,13 +68,13 @@ class VisiblePoints:
 
     def __init__(self, directions: Array, points: Array) -> None:
         self._points = points
-        self._tree = KDTree(directions)
+        self._directions = np.ascontiguousarray(directions)
+        self._grid = view_grid(directions)
 
     def place(self, translations: Array, orientations: Array) -> Array:
         """Points (P, B, 3) in the camera frame of object poses (P, 3) and (P, 4)."""
         towards_viewer = rotations.rotate(rotations.conjugate(orientations), -translations)
-        length = np.linalg.norm(towards_viewer, axis=1, keepdims=True)
-        _, views = self._tree.query(towards_viewer / np.maximum(length, 1e-9))
+        views = nearest_views(self._grid, self._directions, towards_viewer)
         turns = np.swapaxes(rotations.to_matrix(orientations), -1, -2)
         return self._points[views] @ turns + translations[:, None, :]
 
@@ -79,30 +82,35 @@ class VisiblePoints:
 @dataclass(frozen=True)
 class _View:
     """A shape seen along one direction from far away, as a raster of ``depths`` (infinite where
-    nothing is seen); ``axes`` are rows right, down and forwards."""
+    nothing is seen), and ``surfaces``, with those of the pixels just beside it; ``axes`` are rows
+    right, down and forwards."""
 
     axes: Array
     low: Array
     scale: float
     depths: Array
+    surfaces: Array
     centre: Array
 
     def points(self, pixels: Array) -> Array:
         """The seen points (B, 3) at pixels (B, 2), in the object's frame."""
         column, row = np.rint(pixels).astype(int).T
         across = (pixels - MARGIN) / self.scale + self.low
-        placed: Array = np.column_stack((across, self.depths[row, column])) @ self.axes
+        placed: Array = np.column_stack((across, self.surfaces[row, column])) @ self.axes
         return placed
 
 
 def _view(shape: ObjectShape, direction: Array) -> _View:
-    axes = _view_axes(direction)
+    axes = view_axes(direction)
     seen = shape.vertices @ axes.T
     low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
     scale = (RASTER - 1 - 2 * MARGIN) / max((high - low).max(), 1e-9)
     pixels = (seen[:, :2] - low) * scale + MARGIN
     depths = nearest_depths(pixels, seen[:, 2], shape.faces, RASTER)
-    return _View(axes, low, scale, depths, shape.vertices.mean(axis=0))
+    # A point between two pixels of the boundary may round to one beside it.
+    beside = np.asarray(cv2.erode(depths, np.ones((3, 3))), np.float64)
+    surfaces = np.where(np.isfinite(depths), depths, beside)
+    return _View(axes, low, scale, depths, surfaces, shape.vertices.mean(axis=0))
 
 
 def _boundary(view: _View) -> Array:
@@ -148,11 +156,3 @@ def _equally_spaced(contours: list[Array]) -> Array:
             np.column_stack([np.interp(along, knots, closed[:, axis]) for axis in range(2)])
         )
     return np.concatenate(chosen)
-
-
-def _view_axes(view: Array) -> Array:
-    """Rows: right, down and forwards of a viewer who looks at the object from ``view``."""
-    helper = np.eye(3)[np.argmin(np.abs(view))]
-    right = np.cross(helper, -view)
-    right /= np.linalg.norm(right)
-    return np.array([right, np.cross(-view, right), -view])

@@ -1,0 +1,161 @@
+"""``inhand recognise``: how well objects are tracked that are not given, by people left out."""
+
+import argparse
+import time
+from pathlib import Path
+from typing import Any
+
+from inhand_lab.adaptive_comparison import Environments
+from inhand_lab.confusion_picture import draw_confusions
+from inhand_lab.dataset import Dataset, load_dataset
+from inhand_lab.false_objects import count_false_objects
+from inhand_lab.recognition_alone import RecognitionAlone, recognise_alone
+from inhand_lab.recognition_evaluation import (
+    CASCADES,
+    TRACKING,
+    RecognitionProtocol,
+    evaluate_recognition,
+    labelled_entries,
+)
+from inhand_lab.recognition_tables import (
+    false_object_grid,
+    recognition_grids,
+    summarise_recognition,
+)
+from inhand_lab.report import prepare_folder
+from inhand_lab.tables import Grid
+from inhand_lab.workers import usable_cores
+from inhand_runtime.errors import SettingsError
+from rich.console import Console
+
+from inhand.progress import progress_bar
+from inhand.results import write_json
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The verb's arguments."""
+    parser.add_argument("dataset", type=Path, metavar="DATASET")
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument(
+        "--alone",
+        action="store_true",
+        help="recognition alone, without objects or images: every participant left out once",
+    )
+    what.add_argument(
+        "--false-objects",
+        action="store_true",
+        help="people who use nothing, and actions that were left out of training",
+    )
+    parser.add_argument(
+        "--others",
+        type=Path,
+        metavar="DATASET",
+        help="with --false-objects: people whose actions were never trained",
+    )
+    parser.add_argument(
+        "--methods", default=",".join(CASCADES), metavar="a,b", help="(default: both cascades)"
+    )
+    parser.add_argument(
+        "--tracking",
+        default=TRACKING,
+        metavar="M",
+        help=f"under cascade (default: {TRACKING})",
+    )
+    parser.add_argument(
+        "--unseen", metavar="P,P", help="left out one after the other (default: the first two)"
+    )
+    parser.add_argument(
+        "--adaptive",
+        action="store_true",
+        help="compare with OpenCV's adaptive trackers, started at the true first box",
+    )
+    parser.add_argument(
+        "--contrib",
+        type=Path,
+        metavar="PYTHON",
+        help="a Python with OpenCV's contrib build, for CSRT and TLD: `make contrib`",
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
+    parser.add_argument("--report", type=Path, metavar="DIR", help="write tables and pictures")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Measure and show; raises SettingsError, DatasetError, InhandError or RecordingError."""
+    began = time.monotonic()
+    if arguments.report is not None:
+        prepare_folder(arguments.report)
+    dataset = load_dataset(arguments.dataset)
+    if arguments.alone:
+        result, grids = _alone(dataset, arguments.report)
+    elif arguments.false_objects:
+        result, grids = _false_objects(dataset, arguments)
+    else:
+        result, grids = _cascades(dataset, arguments)
+    result["seconds"] = time.monotonic() - began
+    console = Console()
+    for grid in grids:
+        console.print(grid.for_terminal(), "")
+    if arguments.json is not None:
+        write_json(arguments.json, result)
+    if arguments.report is not None:
+        text = "\n".join(grid.for_markdown() for grid in grids)
+        (arguments.report / "recognition.md").write_text(text, encoding="utf-8")
+        console.print(f"the report is {arguments.report / 'recognition.md'}")
+    return 0
+
+
+def _cascades(dataset: Dataset, arguments: argparse.Namespace) -> tuple[dict[str, Any], list[Grid]]:
+    methods = tuple(dict.fromkeys(arguments.methods.split(",")))
+    if unknown := [name for name in methods if name not in CASCADES]:
+        raise SettingsError(f"no method {unknown[0]!r}; there are: {', '.join(CASCADES)}")
+    pythons = Environments(arguments.contrib).of() if arguments.adaptive else {}
+    protocol = RecognitionProtocol(
+        dataset, _unseen(dataset, arguments.unseen), methods, arguments.tracking, pythons
+    )
+    with progress_bar("participants", len(protocol.unseen)) as advance:
+        trials = evaluate_recognition(protocol, usable_cores(), advance)
+    result = summarise_recognition(trials)
+    return result, recognition_grids(result)
+
+
+def _alone(dataset: Dataset, report: Path | None) -> tuple[dict[str, Any], list[Grid]]:
+    participants = {entry.participant for entry in dataset.entries}
+    with progress_bar("participants", len(participants)) as advance:
+        alone = recognise_alone(dataset, usable_cores(), advance)
+    summary = alone.summary()
+    if report is not None:
+        draw_confusions(_confusions(alone), alone.actions, report / "confusion.png")
+    rows = tuple((key.replace("_", " "), f"{value:.1f}") for key, value in summary.items())
+    grid = Grid("recognised right, people left out", ("of", "%"), rows)
+    matrices = {title: matrix.tolist() for title, matrix in _confusions(alone).items()}
+    return {**summary, "actions": alone.actions, "confusion": matrices}, [grid]
+
+
+def _confusions(alone: RecognitionAlone) -> dict[str, Any]:
+    return {
+        "sequences": alone.confusion(sequences=True),
+        "frames": alone.confusion(sequences=False),
+    }
+
+
+def _false_objects(
+    dataset: Dataset, arguments: argparse.Namespace
+) -> tuple[dict[str, Any], list[Grid]]:
+    others = None if arguments.others is None else load_dataset(arguments.others)
+    unseen = _unseen(dataset, arguments.unseen)
+    with progress_bar("actions", 1 + len(dataset.interactions())) as advance:
+        found = count_false_objects(dataset, others, unseen, usable_cores(), advance)
+    result = {
+        "nothing_in_use": found.idle,
+        "others": found.others,
+        "never_trained": found.never_trained,
+    }
+    return dict(result), [false_object_grid(found)]
+
+
+def _unseen(dataset: Dataset, chosen: str | None) -> tuple[str, ...]:
+    participants = sorted({entry.participant for entry in labelled_entries(dataset)})
+    unseen = participants[:2] if chosen is None else chosen.split(",")
+    if unknown := [name for name in unseen if name not in participants]:
+        raise SettingsError(f"no participant {unknown[0]!r}; there are: {', '.join(participants)}")
+    return tuple(unseen)

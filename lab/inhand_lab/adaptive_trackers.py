@@ -1,0 +1,68 @@
+"""Follows boxes through frames with OpenCV's adaptive trackers: a program by itself.
+
+It needs OpenCV and nothing else of this project, so that it can run in another environment: CSRT
+and TLD are in OpenCV's contrib build only, which cannot stand beside the headless one.
+
+    python adaptive_trackers.py JOB.json RESULT.json
+
+The job: ``frames`` a file of JPEG images one after the other, ``ends`` where each ends, ``box`` the
+true first one (left, top, width, height), ``trackers`` names. The result: for every tracker that
+this OpenCV has, the box in each frame; a tracker that lost its box keeps the last one.
+"""
+
+import json
+import sys
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+
+FACTORIES = {
+    "MIL": ("TrackerMIL_create",),
+    "CSRT": ("TrackerCSRT_create",),
+    "TLD": ("legacy", "TrackerTLD_create"),
+}
+
+
+def available() -> list[str]:
+    """The trackers that this OpenCV has."""
+    return [name for name in FACTORIES if _factory(name) is not None]
+
+
+def _factory(name: str) -> Any:
+    found: Any = cv2
+    for part in FACTORIES[name]:
+        found = getattr(found, part, None)
+    return found
+
+
+def follow(images: list[Any], box: list[int], name: str) -> list[list[float]]:
+    """The boxes of one tracker in all images; ``box`` is that in the first."""
+    cv2.setRNGSeed(0)
+    tracker = _factory(name)()
+    tracker.init(images[0], tuple(box))
+    boxes = [[float(value) for value in box]]
+    for image in images[1:]:
+        found, now = tracker.update(image)
+        boxes.append([float(value) for value in now] if found else boxes[-1])
+    return boxes
+
+
+def main(job_file: str, result_file: str) -> None:
+    """Do a job."""
+    cv2.setNumThreads(1)
+    job = json.loads(Path(job_file).read_text(encoding="utf-8"))
+    data = Path(job["frames"]).read_bytes()
+    images = [
+        cv2.imdecode(np.frombuffer(data[start:end], np.uint8), cv2.IMREAD_COLOR)
+        for start, end in pairwise([0, *job["ends"]])
+    ]
+    wanted = [name for name in job["trackers"] if name in available()]
+    result = {name: follow(images, job["box"], name) for name in wanted}
+    Path(result_file).write_text(json.dumps(result), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

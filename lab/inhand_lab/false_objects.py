@@ -1,0 +1,76 @@
+"""How often an object is seen where none is in use, or one that nobody taught."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from inhand_tracker.recogniser import Recogniser
+
+from inhand_lab.dataset import Dataset, DatasetError
+from inhand_lab.idle_people import Idleness, watch_idle
+from inhand_lab.recogniser_training import recogniser_of
+from inhand_lab.recognition_alone import participants_of, recognise
+from inhand_lab.watched_people import Watched, watch
+from inhand_lab.workers import in_processes
+
+IDLE_KINDS: tuple[Idleness, ...] = ("stand", "walkOnSpot", "walkAbout", "gesture")
+IDLE_PEOPLE, IDLE_SEED = 10, 900
+
+
+@dataclass(frozen=True)
+class FalseObjects:
+    """The share of frames in which an object is known falsely, of people of each kind: idle ones,
+    those of other datasets, and those whose action was left out of training."""
+
+    idle: dict[str, float]
+    others: dict[str, float]
+    never_trained: dict[str, float]
+
+
+def count_false_objects(
+    dataset: Dataset,
+    others: Dataset | None,
+    unseen: Sequence[str],
+    processes: int,
+    on_progress: Callable[[], None] = lambda: None,
+) -> FalseObjects:
+    """Learn from a dataset, and look at who does nothing of it.
+
+    Each action of the dataset is left out once, and looked at in the ``unseen`` participants, who
+    are left out too. ``on_progress`` is called once an action, and once before. Raises DatasetError
+    or RecordingError.
+    """
+    people = [watch(dataset, entry) for entry in dataset.entries]
+    actions = list(dict.fromkeys(one.action for one in people))
+    unknown = set(unseen) - set(participants_of(people))
+    if unknown:
+        raise DatasetError(f"{dataset.folder} has no participant {min(unknown)!r}")
+    recogniser = recogniser_of(people, str(dataset.folder))
+    idle: dict[str, float] = {
+        kind: _mean_share(
+            recogniser, [watch_idle(kind, number, IDLE_SEED) for number in range(IDLE_PEOPLE)]
+        )
+        for kind in IDLE_KINDS
+    }
+    strangers: dict[str, list[Watched]] = {}
+    for entry in () if others is None else others.entries:
+        if others is not None:
+            strangers.setdefault(entry.interaction, []).append(watch(others, entry))
+    elsewhere = {name: _mean_share(recogniser, some) for name, some in strangers.items()}
+    on_progress()
+    tasks = [(tuple(people), action, tuple(unseen)) for action in actions]
+    shares = in_processes(_leave_action_out, tasks, processes, lambda _: on_progress())
+    return FalseObjects(idle, elsewhere, dict(zip(actions, shares, strict=True)))
+
+
+def _leave_action_out(task: tuple[tuple[Watched, ...], str, tuple[str, ...]]) -> float:
+    people, action, unseen = task
+    taught = [one for one in people if one.action != action and one.participant not in unseen]
+    recogniser = recogniser_of(taught)
+    return _mean_share(
+        recogniser, [one for one in people if one.action == action and one.participant in unseen]
+    )
+
+
+def _mean_share(recogniser: Recogniser, people: Sequence[Watched]) -> float:
+    return float(np.mean([recognise(recogniser, one).false_share for one in people]))

@@ -1,0 +1,101 @@
+"""Training a recogniser of actions from a dataset."""
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+
+import numpy as np
+from inhand_tracker.recogniser import Recogniser
+from numpy.typing import NDArray
+
+from inhand_lab.dataset import Dataset, DatasetError, Entry
+from inhand_lab.idle_people import Idleness, watch_idle
+from inhand_lab.movement_training import MovementSequence, train_movements
+from inhand_lab.svm_training import train_svm
+from inhand_lab.watched_people import Watched, poses_and_movements, usual_poses, watch
+
+Array = NDArray[np.float64]
+
+STEP = 4
+"""Every so many-th body is learned from: successive ones are much the same."""
+KEPT_POSES = 1000
+IDLE_PEOPLE, IDLE_SEED, IDLE_STEP = 16, 7, 6
+IDLE_KINDS: tuple[Idleness, ...] = ("fidget", "stand", "walkOnSpot", "walkAbout")
+"""Simulated people who use nothing, of whom every recogniser learns."""
+READING, LEARNING = "recordings", "actions"
+
+
+def stages(recordings: int) -> dict[str, int]:
+    """What training goes through, each with the number of its steps."""
+    return {READING: recordings, LEARNING: 1}
+
+
+def train_recogniser(
+    dataset: Dataset,
+    entries: Sequence[Entry],
+    on_step: Callable[[str], None] = lambda stage: None,
+) -> Recogniser:
+    """Learn the actions of recordings, labelled or not; raises DatasetError or RecordingError.
+
+    ``on_step`` is called at every step of ``stages``.
+    """
+    people = []
+    for entry in entries:
+        people.append(_watched(dataset, entry))
+        on_step(READING)
+    recogniser = recogniser_of(people, str(dataset.folder))
+    on_step(LEARNING)
+    return recogniser
+
+
+def recogniser_of(people: Sequence[Watched], named: str = "the recordings") -> Recogniser:
+    """Learn the actions of people; ``named`` is where they are from, for the error.
+
+    Raises DatasetError.
+    """
+    actions = tuple(dict.fromkeys(one.action for one in people))
+    participants = {one.participant for one in people}
+    if len(actions) < 2 or len(participants) < 2:
+        raise DatasetError(
+            f"{named}: {len(actions)} actions by {len(participants)} participants: recognition "
+            "compares two actions at the least, by two participants at the least"
+        )
+    usual = usual_poses(people)
+    poses, labels, sequences = [], [], list(_background(len(actions)))
+    for one in people:
+        theirs, features, frames = poses_and_movements(one, usual, STEP)
+        if not len(frames):
+            continue
+        number = actions.index(one.action)
+        poses.append(theirs)
+        labels.append(np.full(len(theirs), number))
+        sequences.append(MovementSequence(number, one.participant, features, one.times_ns[frames]))
+    missing = set(range(len(actions))) - {one.action for one in sequences}
+    if missing:
+        raise DatasetError(f"{named}: no body is seen doing {actions[min(missing)]!r}")
+    all_poses, all_labels = np.concatenate(poses), np.concatenate(labels)
+    movements, temper = train_movements(sequences, len(actions))
+    kept = all_poses[:: max(1, len(all_poses) // KEPT_POSES)]
+    return Recogniser(actions, kept, train_svm(all_poses, all_labels), movements, temper)
+
+
+@lru_cache(maxsize=4)
+def _background(number: int) -> list[MovementSequence]:
+    """People who use nothing, as the class of that number."""
+    people = [
+        watch_idle(idleness, participant, IDLE_SEED)
+        for participant in range(IDLE_PEOPLE)
+        for idleness in IDLE_KINDS
+    ]
+    usual = usual_poses(people)
+    sequences = []
+    for one in people:
+        _, features, frames = poses_and_movements(one, usual, IDLE_STEP)
+        named = f"idle {one.participant}"
+        sequences.append(MovementSequence(number, named, features, one.times_ns[frames]))
+    return sequences
+
+
+# Folds share recordings.
+@lru_cache(maxsize=512)
+def _watched(dataset: Dataset, entry: Entry) -> Watched:
+    return watch(dataset, entry)

@@ -1,0 +1,128 @@
+"""Recognition without objects or images: which action is it, of people that were left out?"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from inhand_tracker.recogniser import MovementRecogniser, Recogniser
+from numpy.typing import NDArray
+
+from inhand_lab.dataset import Dataset, DatasetError
+from inhand_lab.recogniser_training import recogniser_of
+from inhand_lab.watched_people import UsualPoses, Watched, read_bodies, watch
+from inhand_lab.workers import in_processes
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Recognised:
+    """One recording: the true action and, of N frames, what each way of recognition says (N,).
+
+    ``probabilities`` (N, K + 1) are those over time, of the actions and, last, of none.
+    """
+
+    action: int
+    participant: str
+    by_pose: Indices
+    probabilities: Array
+
+    @property
+    def by_movement(self) -> Indices:
+        """(N,): the likeliest action up to each frame, none being no answer here."""
+        return np.argmax(self.probabilities[:, :-1], axis=1)
+
+    @property
+    def sequence(self) -> int:
+        """The action of the whole recording: the likeliest on average."""
+        return int(np.argmax(self.probabilities[:, :-1].mean(axis=0)))
+
+    @property
+    def false_share(self) -> float:
+        """The share of frames in which an action is known."""
+        return float((self.probabilities[:, :-1].max(axis=1) >= 0.5).mean())
+
+
+@dataclass(frozen=True)
+class RecognitionAlone:
+    """All recordings, each recognised by what the other participants teach."""
+
+    actions: tuple[str, ...]
+    recordings: tuple[Recognised, ...]
+
+    def confusion(self, *, sequences: bool) -> Array:
+        """(K, K): of each true action (row) the shares that are taken for each, 0 to 1."""
+        counts = np.zeros((len(self.actions), len(self.actions)))
+        for one in self.recordings:
+            answers = np.array([one.sequence]) if sequences else one.by_movement
+            counts[one.action] += np.bincount(answers, minlength=len(self.actions))
+        return counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
+
+    def summary(self) -> dict[str, float]:
+        """Accuracies in percent: of frames by pose, of frames over time, of sequences."""
+        poses = np.concatenate([one.by_pose == one.action for one in self.recordings])
+        movements = np.concatenate([one.by_movement == one.action for one in self.recordings])
+        whole = [one.sequence == one.action for one in self.recordings]
+        return {
+            "frames_by_pose_percent": 100.0 * float(poses.mean()),
+            "frames_percent": 100.0 * float(movements.mean()),
+            "sequences_percent": 100.0 * float(np.mean(whole)),
+        }
+
+
+def recognise_alone(
+    dataset: Dataset, processes: int, on_progress: Callable[[], None] = lambda: None
+) -> RecognitionAlone:
+    """Leave one participant out; ``on_progress`` is called once a participant.
+
+    Raises DatasetError or RecordingError.
+    """
+    people = tuple(watch(dataset, entry) for entry in dataset.entries)
+    actions = tuple(dict.fromkeys(one.action for one in people))
+    participants = participants_of(people)
+    if len(participants) < 3:
+        raise DatasetError(
+            f"{dataset.folder} has {len(participants)} participants, and three are the least: two "
+            "teach what the third is judged by"
+        )
+    tasks = [(people, participant) for participant in participants]
+    done = in_processes(_leave_out, tasks, processes, lambda _: on_progress())
+    recordings = [replace(one, action=actions.index(name)) for found in done for name, one in found]
+    return RecognitionAlone(actions, tuple(recordings))
+
+
+def participants_of(people: Sequence[Watched]) -> list[str]:
+    """Their names, in order."""
+    return sorted({one.participant for one in people})
+
+
+def recognise(recogniser: Recogniser, one: Watched, action: int = -1) -> Recognised:
+    """What a recogniser says of a recording, frame by frame; frames without a body are left out."""
+    running = MovementRecogniser(recogniser)
+    probabilities, poses = [], []
+    bodies = read_bodies(one, UsualPoses(recogniser.body_poses))
+    for time_ns, body in zip(one.times_ns, bodies, strict=True):
+        if body is not None:
+            probabilities.append(running.step(int(time_ns), body))
+            poses.append(body.pose)
+    if not poses:
+        raise DatasetError(f"a recording of {one.participant} ({one.action}) shows no body")
+    by_pose = np.argmax(recogniser.svm.probabilities(np.array(poses)), axis=1)
+    return Recognised(action, one.participant, by_pose, np.array(probabilities))
+
+
+def _leave_out(task: tuple[tuple[Watched, ...], str]) -> list[tuple[str, Recognised]]:
+    people, participant = task
+    # In the order of all actions, whoever is left out.
+    order = list(dict.fromkeys(one.action for one in people))
+    others = sorted(
+        (one for one in people if one.participant != participant),
+        key=lambda one: order.index(one.action),
+    )
+    recogniser = recogniser_of(others)
+    if recogniser.actions != tuple(order):
+        raise DatasetError(f"only {participant} does some of {', '.join(order)}")
+    return [
+        (one.action, recognise(recogniser, one)) for one in people if one.participant == participant
+    ]

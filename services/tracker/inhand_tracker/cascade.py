@@ -1,0 +1,118 @@
+"""Our own cascade: recognition over time says which objects to follow, and each likely one has a
+tracker of the default method.
+
+Nothing is known while nobody uses anything, or does what nobody taught.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inhand_tracker.body_reader import BodyReader
+from inhand_tracker.camera import Intrinsics
+from inhand_tracker.estimate import LOST, Estimate
+from inhand_tracker.image import Image
+from inhand_tracker.recogniser import MovementRecogniser, Recogniser
+from inhand_tracker.recognition import Recognition, boxes_around, known_action
+from inhand_tracker.trackers import ObjectTracker
+
+Array = NDArray[np.float64]
+
+FOLLOWED = 2
+"""So many actions' objects are tracked at a time at most, the likeliest."""
+WORTH_FOLLOWING = 0.2
+"""Of the probability of all actions, the share from which a second action's object is tracked."""
+
+
+class Cascade:
+    """Follows whatever one person uses: ``trackers`` in the order of the recogniser's actions, each
+    of one object."""
+
+    def __init__(
+        self,
+        recogniser: Recogniser,
+        trackers: Sequence[ObjectTracker],
+        *,
+        left_handed: bool = False,
+    ) -> None:
+        self._learned = recogniser
+        self._left_handed = left_handed
+        self._recogniser = MovementRecogniser(recogniser)
+        self._trackers = trackers
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget the person and the object: somebody else comes into view."""
+        self._reader = BodyReader(self._learned, left_handed=self._left_handed)
+        self._recogniser.restart()
+        for tracker in self._trackers:
+            tracker.restart()
+        self._last = Recognition(np.zeros(len(self._trackers)))
+
+    def step(
+        self,
+        joints: Array | None,
+        time_ns: int,
+        image: Image | None = None,
+        camera: Intrinsics | None = None,
+    ) -> Recognition:
+        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
+
+        ``camera`` is for the box where there is no image. While the body is not seen, the object
+        that was known coasts as its tracker does.
+        """
+        if image is not None:
+            camera = image.camera
+        body = None if joints is None else self._reader.read(joints)
+        if body is None:
+            return self._coast(time_ns)
+        probabilities = self._recogniser.step(time_ns, body)[:-1]
+        followed = worth_following(probabilities)
+        estimates = {
+            action: self._trackers[action].step(joints, time_ns, image) for action in followed
+        }
+        known = known_action(probabilities)
+        boxes = {a: self._box(a, e, camera) for a, e in estimates.items()}
+        self._last = Recognition(
+            probabilities,
+            known,
+            LOST if known is None else estimates[known],
+            _expected_box(boxes, probabilities),
+        )
+        return self._last
+
+    def outline(self, recognition: Recognition, camera: Intrinsics) -> Array | None:
+        """Pixels (B, 2) of the boundary of the object that is known; None where none is."""
+        if recognition.known is None:
+            return None
+        return self._trackers[recognition.known].outline(recognition.estimate, camera)
+
+    def _coast(self, time_ns: int) -> Recognition:
+        known = self._last.known
+        if known is None:
+            return Recognition(self._last.probabilities, None, LOST, self._last.box)
+        estimate = self._trackers[known].step(None, time_ns)
+        if estimate.translation is None:
+            known = None
+        return Recognition(self._last.probabilities, known, estimate, self._last.box)
+
+    def _box(self, action: int, estimate: Estimate, camera: Intrinsics | None) -> Array | None:
+        outline = None if camera is None else self._trackers[action].outline(estimate, camera)
+        return None if outline is None else boxes_around(outline[None])[0]
+
+
+def worth_following(probabilities: Array) -> list[int]:
+    """The likeliest action, of probabilities (K,), and the next ones that are likely enough."""
+    order = np.argsort(-probabilities)[:FOLLOWED]
+    least = WORTH_FOLLOWING * probabilities.sum()
+    return [int(a) for rank, a in enumerate(order) if rank == 0 or probabilities[a] >= least]
+
+
+def _expected_box(boxes: dict[int, Array | None], probabilities: Array) -> Array | None:
+    """The mean box (4,) by the probabilities of the actions whose boxes are known."""
+    known = {action: box for action, box in boxes.items() if box is not None}
+    weights = np.array([probabilities[action] for action in known])
+    if not known or not weights.sum() > 0.0:
+        return None
+    return np.asarray(weights @ np.stack(list(known.values())) / weights.sum())

@@ -1,0 +1,207 @@
+"""Where an object is, from the body alone: many predictions, fused by how well each does here.
+
+A kernel regression predicts the object in each anchor of the body (``anchors``), from each view of
+the body's last moments (``body_window``). Where predictions were wrong, and how their errors went
+together, is known from people who were held out in training. So those of like body poses give the
+weights of the best linear unbiased combination, and the covariance of what comes out.
+"""
+
+from dataclasses import dataclass
+from itertools import count
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inhand_tracker import rotations
+from inhand_tracker.anchors import ANCHORS, Anchors
+from inhand_tracker.kernel_ridge import KernelRidge
+
+Array = NDArray[np.float64]
+Singles = NDArray[np.float32]
+
+TARGETS = 12
+"""Of each anchor: the object's centre, in body heights, then its rotation matrix, row by row."""
+DISTRUST = 0.1
+"""Of each prediction's own variance, added to it: no weight lives on small differences."""
+BASE = 0.1
+"""Share of the covariance over all body poses in that of any."""
+
+
+@dataclass(frozen=True)
+class Prior:
+    """What was learned of one object's poses, as of right-handed people; L landmarks.
+
+    ``centre`` (3,) and ``spread`` (3, 3) are mean and covariance of the marked vertices.
+    ``regressions`` (V of them) predict (A * 12). ``translation_products`` and
+    ``rotation_products`` (L, V A, V A) are the inner products of the predictions' held-out errors
+    at each landmark; ``errors`` (L, 6) those of the fused estimate, translation of the centre in
+    body heights and rotation vector on the left, in the trunk's axes. ``calibration`` scales the
+    covariance so that nine in ten held-out errors lie within its 90 % region. ``persistence_s``
+    is how long an error lasts.
+    """
+
+    centre: Array
+    spread: Array
+    regressions: tuple[KernelRidge, ...]
+    translation_products: Singles
+    rotation_products: Singles
+    errors: Array
+    calibration: float
+    persistence_s: float
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """The expected pose of the object's centre, in the camera frame of right-handed people.
+
+    ``centre`` (3,), ``rotation`` (3, 3), and ``covariance`` (6, 6) of (translation of the centre,
+    rotation vector on the left).
+    """
+
+    centre: Array
+    rotation: Array
+    covariance: Array
+
+
+def predict(
+    prior: Prior, descriptions: list[Singles], anchors: Anchors, height: float
+) -> Prediction:
+    """The object's pose for one body: descriptions (1, D) of each view, its anchors and height."""
+    kernels = [
+        regression.kernel(description)
+        for regression, description in zip(prior.regressions, descriptions, strict=True)
+    ]
+    predicted = np.concatenate(
+        [
+            (kernel @ regression.coefficients + regression.offset).reshape(-1, TARGETS)
+            for kernel, regression in zip(kernels, prior.regressions, strict=True)
+        ]
+    )
+    local, nearness = locality(kernels[0])
+    centre, rotation = fuse(
+        predicted[None],
+        repeated(anchors, len(prior.regressions)),
+        height,
+        weights_at(local, prior.translation_products),
+        weights_at(local, prior.rotation_products),
+        prior.spread,
+    )
+    covariance = prior.calibration * covariance_at(local, nearness, prior.errors)[0]
+    turn = np.kron(np.eye(2), anchors.axes[0])
+    scale = np.repeat([height, 1.0], 3)
+    return Prediction(centre[0], rotation[0], turn @ (covariance * scale[:, None] * scale) @ turn.T)
+
+
+def locality(kernel: Array) -> tuple[Array, Array]:
+    """How much each landmark says of a body pose, (T, L), rows that sum to 1; and how near the
+    nearest is, (T,), from 0 to 1; of the first view's kernel (T, L)."""
+    nearest = np.maximum(kernel.max(axis=1), 1e-300)
+    local = np.square(kernel / nearest[:, None])
+    return local / local.sum(axis=1, keepdims=True), np.square(nearest)
+
+
+def weights_at(local: Array, products: Singles) -> Array:
+    """The weights (T, E) of E predictions that keep the fused error least, none below 0.
+
+    Of their errors' inner products (L, E, E) at landmarks that say so much, ``local`` (T, L).
+    """
+    predictions = products.shape[-1]
+    expected = (local @ products.reshape(len(products), -1)).reshape(-1, predictions, predictions)
+    own = np.einsum("tee->te", expected)
+    expected = expected + np.einsum("te,ef->tef", DISTRUST * own + 1e-12, np.eye(predictions))
+    weights = np.linalg.solve(expected, np.ones((len(local), predictions, 1)))[..., 0]
+    weights = np.maximum(weights, 0.0)
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+
+
+def fuse(
+    predicted: Array,
+    anchors: Anchors,
+    height: Array | float,
+    translation_weights: Array,
+    rotation_weights: Array,
+    spread: Array,
+) -> tuple[Array, Array]:
+    """Centres (T, 3) and rotations (T, 3, 3) from predictions (T, E, 12) in anchors (T, E)."""
+    places = predicted[..., :3] * np.reshape(height, (-1, 1, 1))
+    centres = anchors.origins + np.einsum("teij,tej->tei", anchors.axes, places)
+    turns = anchors.axes @ predicted[..., 3:].reshape(*predicted.shape[:-1], 3, 3)
+    mean_turn = np.einsum("te,teij->tij", rotation_weights, turns)
+    return np.einsum("te,tei->ti", translation_weights, centres), nearest_rotation(
+        mean_turn @ spread
+    )
+
+
+def covariance_at(local: Array, nearness: Array, errors: Array) -> Array:
+    """The errors' second moments (T, 6, 6) at body poses to which landmarks say so much.
+
+    Far from all landmarks the moments over all of them are added.
+    """
+    products = np.einsum("li,lj->lij", errors, errors)
+    everywhere = products.mean(axis=0)
+    here = (local @ products.reshape(len(errors), -1)).reshape(-1, 6, 6)
+    return here + (BASE + 1.0 - nearness)[:, None, None] * everywhere
+
+
+def nearest_rotation(matrices: Array) -> Array:
+    """The rotation (..., 3, 3) nearest to each matrix: the orthogonal Procrustes problem."""
+    left, _, right = np.linalg.svd(matrices)
+    signs = np.ones((*matrices.shape[:-2], 3))
+    signs[..., 2] = np.sign(np.linalg.det(left @ right))
+    return np.asarray((left * signs[..., None, :]) @ right)
+
+
+def repeated(anchors: Anchors, times: int) -> Anchors:
+    """Anchors (T, times · A) of (A,) or (T, A): one after the other for each view."""
+    origins = anchors.origins.reshape(-1, len(ANCHORS), 3)
+    axes = anchors.axes.reshape(-1, len(ANCHORS), 3, 3)
+    return Anchors(np.tile(origins, (1, times, 1)), np.tile(axes, (1, times, 1, 1)))
+
+
+def prior_arrays(prior: Prior) -> dict[str, NDArray[Any]]:
+    """All of a prior as arrays by name, for a file."""
+    arrays: dict[str, NDArray[Any]] = {
+        "centre": prior.centre,
+        "spread": prior.spread,
+        "translation_products": prior.translation_products,
+        "rotation_products": prior.rotation_products,
+        "errors": prior.errors,
+        "calibration": np.array(prior.calibration),
+        "persistence_s": np.array(prior.persistence_s),
+    }
+    for view, regression in enumerate(prior.regressions):
+        for name in ("landmarks", "width", "coefficients", "offset"):
+            arrays[f"regression{view}.{name}"] = np.asarray(getattr(regression, name))
+    return arrays
+
+
+def prior_from_arrays(arrays: dict[str, NDArray[Any]]) -> Prior:
+    """The prior that ``prior_arrays`` took apart."""
+    regressions = []
+    for view in count():
+        if f"regression{view}.width" not in arrays:
+            break
+        regressions.append(
+            KernelRidge(
+                arrays[f"regression{view}.landmarks"].astype(np.float32),
+                float(arrays[f"regression{view}.width"]),
+                arrays[f"regression{view}.coefficients"],
+                arrays[f"regression{view}.offset"],
+            )
+        )
+    return Prior(
+        arrays["centre"],
+        arrays["spread"],
+        tuple(regressions),
+        arrays["translation_products"].astype(np.float32),
+        arrays["rotation_products"].astype(np.float32),
+        arrays["errors"],
+        float(arrays["calibration"]),
+        float(arrays["persistence_s"]),
+    )
+
+
+def rotation_error(estimated: Array, true: Array) -> Array:
+    """Rotation vectors (..., 3) on the left that take true rotations (..., 3, 3) to estimated."""
+    return rotations.to_vector(rotations.from_matrix(estimated @ np.swapaxes(true, -1, -2)))

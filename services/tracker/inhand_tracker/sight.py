@@ -1,0 +1,324 @@
+"""Looking for one object in prepared frames: weighing poses, and refining them.
+
+The terms: ``edges`` that run as the outline does; ``region``, colours of the object just within
+the outline and others just beside it; ``interior``, colours of the object all over it; ``depth``,
+where it was measured at the surface, or nearer by something in front, which says nothing, or
+farther away, which speaks against (a mixture as of Wüthrich et al. 2013).
+"""
+
+from collections.abc import Collection
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import Any, Literal, get_args
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from inhand_tracker import rotations
+from inhand_tracker.appearance import (
+    BEHIND,
+    RETURNED,
+    pixels_within,
+    region_around,
+    silhouette_depths,
+)
+from inhand_tracker.colours import (
+    Colours,
+    blend,
+    histogram,
+    log_odds_by_colour,
+    look_up,
+)
+from inhand_tracker.contours import Contours, find_contours
+from inhand_tracker.image import Image
+from inhand_tracker.limbs import limb_mask
+from inhand_tracker.model_file import Model
+from inhand_tracker.refine import (
+    DAMPING,
+    REACH_M,
+    REACH_RAD,
+    REACHES,
+    TRUST,
+    Prior,
+    Refined,
+    gather,
+)
+from inhand_tracker.sight_frame import SightFrame, prepare
+from inhand_tracker.sight_kernels import depth_scores, weigh
+from inhand_tracker.view_grid import view_grid
+
+Array = NDArray[np.float64]
+Floats = NDArray[np.float32]
+
+SightTerm = Literal["edges", "region", "interior", "depth"]
+
+SIGHT_TERMS: tuple[SightTerm, ...] = get_args(SightTerm)
+
+TERM_WEIGHTS = np.array([4.5, 13.0, 6.0, 5.0])
+"""How many independent points each term's are worth."""
+POINT_WEIGHTS = np.array([0.2, 1.0])
+"""The same for a point of the outline and of the surface in refinement."""
+LIMB_WEIGHT = 0.5
+_REFINED_TERMS = [0, 1, 3]
+
+CERTAIN = 0.8
+"""How sure a pixel's colour can make one of where it belongs."""
+LIMB_SHARE = 0.25
+"""How much of what speaks against the object is believed where a hand may cover it."""
+FEWEST_IN_THREAD = 500
+"""Poses for which another thread is worth while."""
+LEAST_RETURNED = 0.5
+"""Depth that is measured of less of an object's surface is rather that of the hand around it."""
+
+
+@dataclass(frozen=True)
+class SightView:
+    """A frame with one object's eyes: ``colour_scores`` (H, W, 2), what each pixel's colour says
+    to its being within and beside the object, and ``limbs`` (H, W)."""
+
+    frame: SightFrame
+    colour_scores: Floats
+    limbs: NDArray[np.uint8]
+
+
+class Sight:
+    """Weighs and refines poses of one object; many poses are weighed in so many threads."""
+
+    def __init__(
+        self, model: Model, terms: Collection[SightTerm] = SIGHT_TERMS, *, threads: int = 1
+    ) -> None:
+        self._shape = model.shape
+        self._threads = threads
+        self._pool = ThreadPoolExecutor(threads)
+        contours = model.viewpoints.contours
+        if contours is None:
+            contours = find_contours(model.shape, model.viewpoints.directions)
+        self._contours: Contours = contours
+        self._grid = view_grid(contours.directions)
+        self._model = (
+            self._grid,
+            contours.directions,
+            _points_last(contours.points),
+            _points_last(contours.normals),
+            contours.inside,
+            contours.outside,
+            _points_last(contours.surface_points),
+            np.sqrt(contours.areas),
+        )
+        self._wanted = np.array([term in terms for term in SIGHT_TERMS])
+        self._appearance = model.appearance
+        returned, behind = RETURNED, BEHIND
+        if model.appearance is not None:
+            returned, behind = model.appearance.returned, model.appearance.behind
+        self._returned = returned if returned >= LEAST_RETURNED else 0.0
+        self._depth_scores = depth_scores(self._returned, behind)
+
+    def start(self) -> Colours:
+        """What is known of the object's colours and its surroundings' from training."""
+        if self._appearance is None:
+            return Colours()
+        return Colours(self._appearance.of_object, self._appearance.around)
+
+    def look_around(
+        self,
+        colours: Colours,
+        frame: SightFrame,
+        translation: Array,
+        rotation: Array,
+        rate: float = 0.5,
+    ) -> Colours:
+        """The surroundings' colours learned from around a predicted pose (3,), (4,)."""
+        region = region_around(self._shape, translation, rotation, frame.camera)
+        if frame.bins is None or region is None:
+            return colours
+        part = prepare(Image(None, frame.camera, frame.depth, frame.colour), region)
+        within = np.isfinite(silhouette_depths(self._shape, translation, rotation, part.camera))
+        wide = cv2.dilate(within.astype(np.uint8), np.ones((5, 5)))
+        if part.bins is None:
+            return colours
+        around = histogram(part.bins, (1 - wide).astype(np.float32))
+        return replace(colours, around=blend(colours.around, around, rate))
+
+    def learn(
+        self,
+        colours: Colours,
+        frame: SightFrame,
+        translation: Array,
+        rotation: Array,
+        rate: float = 0.1,
+    ) -> Colours:
+        """The object's colours learned from a pose (3,), (4,) that is trusted."""
+        region = region_around(self._shape, translation, rotation, frame.camera)
+        if frame.bins is None or region is None:
+            return colours
+        part = prepare(Image(None, frame.camera, frame.depth, frame.colour), region)
+        depths = silhouette_depths(self._shape, translation, rotation, part.camera)
+        if part.bins is None:
+            return colours
+        seen = histogram(part.bins, pixels_within(part, depths).astype(np.float32))
+        return replace(colours, of_object=blend(colours.of_object, seen, rate))
+
+    def view(self, frame: SightFrame, colours: Colours, joints: Array | None = None) -> SightView:
+        """A frame as one with these colours sees it, and a person with joints (20, 3) in it."""
+        limbs = limb_mask(joints, frame.camera, frame.depth)
+        scores = np.zeros((*limbs.shape, 2), np.float32)
+        if frame.bins is not None:
+            within = 1.0 / (1.0 + np.exp(-log_odds_by_colour(colours)))
+            sure = CERTAIN * within + (1.0 - CERTAIN) * (1.0 - within)
+            table = np.log(2.0 * np.column_stack((sure, 1.0 - sure)))
+            look_up(frame.bins, limbs, table.astype(np.float32), LIMB_SHARE, scores)
+        return SightView(frame, scores, limbs)
+
+    def log_likelihood(self, translations: Array, orientations: Array, view: SightView) -> Array:
+        """Of poses (P, 3) and (P, 4), (P,): how many times likelier (log) the frame is with the
+        object there than with none; 0 where the frame says nothing."""
+        return self._scores(translations, orientations, view) @ TERM_WEIGHTS
+
+    def log_likelihoods_by_term(
+        self, translations: Array, orientations: Array, view: SightView
+    ) -> dict[str, Array]:
+        """The parts of ``log_likelihood``, each (P,)."""
+        scores = self._scores(translations, orientations, view) * TERM_WEIGHTS
+        return dict(zip(SIGHT_TERMS, scores.T, strict=True))
+
+    def refine(
+        self,
+        translations: Array,
+        orientations: Array,
+        view: SightView,
+        prior: Prior | None = None,
+        trust: float = 1.0,
+    ) -> Refined:
+        """Poses (K, 3) and (K, 4) moved to where the frame and the prior agree best nearby; one
+        that does not become likelier stays where it is.
+
+        The frame counts by ``trust``: less than 1 where the frames before have said the same.
+        """
+        moved, turned, information = self._steps(translations, orientations, view, prior, trust)
+        worse = self._posterior(moved, turned, view, prior, trust) < self._posterior(
+            translations, orientations, view, prior, trust
+        )
+        return Refined(
+            np.where(worse[:, None], translations, moved),
+            np.where(worse[:, None], orientations, turned),
+            np.where(worse[:, None, None], 0.0, TRUST * information),
+        )
+
+    def _posterior(
+        self,
+        translations: Array,
+        orientations: Array,
+        view: SightView,
+        prior: Prior | None,
+        trust: float,
+    ) -> Array:
+        likelihood = trust * self.log_likelihood(translations, orientations, view)
+        if prior is None:
+            return likelihood
+        return likelihood + prior.log_density(translations, orientations)
+
+    def _steps(
+        self,
+        translations: Array,
+        orientations: Array,
+        view: SightView,
+        prior: Prior | None,
+        trust: float,
+    ) -> tuple[Array, Array, Array]:
+        """Poses (K, 3) and (K, 4) after all Gauss-Newton steps, and the image's (K, 6, 6)."""
+        frame = view.frame
+        coloured, deep = frame.bins is not None, frame.depth is not None
+        wanted = self._wanted[_REFINED_TERMS] & [coloured, coloured, deep]
+        lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
+        contours = self._contours
+        information = np.zeros((len(translations), 6, 6))
+        reach_m, reach_rad = (REACH_M, REACH_RAD) if prior is None else prior.reach()
+        for share in REACHES:
+            information = np.zeros((len(translations), 6, 6))
+            gradients = np.zeros((len(translations), 6))
+            for index in range(len(translations)):
+                gather(
+                    translations[index],
+                    orientations[index],
+                    self._grid,
+                    contours.directions,
+                    contours.points,
+                    contours.normals,
+                    contours.inside,
+                    contours.outside,
+                    contours.surface_points,
+                    contours.surface_normals,
+                    lens,
+                    edges,
+                    edge_scores,
+                    colour_scores,
+                    limbs,
+                    depth,
+                    self._returned,
+                    wanted,
+                    share * reach_m,
+                    share * reach_rad,
+                    trust * POINT_WEIGHTS,
+                    information[index],
+                    gradients[index],
+                )
+            total, pull = information + np.diag(DAMPING), gradients
+            if prior is not None:
+                total, pull = prior.added_to(total, pull, translations, orientations)
+            steps = np.linalg.solve(total, pull[..., None])[..., 0]
+            translations = translations + steps[:, :3]
+            turns = rotations.from_vector(np.asarray(steps[:, 3:], np.float64))
+            orientations = rotations.normalise(rotations.multiply(turns, orientations))
+        return translations, orientations, information
+
+    def _scores(self, translations: Array, orientations: Array, view: SightView) -> Array:
+        frame = view.frame
+        coloured, deep = frame.bins is not None, frame.depth is not None
+        wanted = self._wanted & [coloured, coloured, coloured, deep]
+        lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
+        scores = np.zeros((len(translations), len(SIGHT_TERMS)), np.float32)
+
+        def weigh_some(part: slice) -> None:
+            weigh(
+                np.ascontiguousarray(translations[part], np.float32),
+                np.ascontiguousarray(orientations[part], np.float32),
+                *self._model,
+                lens,
+                edges,
+                edge_scores,
+                colour_scores,
+                limbs,
+                np.float32(LIMB_WEIGHT),
+                depth,
+                self._depth_scores,
+                wanted,
+                scores[part],
+            )
+
+        share = max(FEWEST_IN_THREAD, -(-len(scores) // self._threads))
+        parts = [slice(start, start + share) for start in range(0, len(scores), share)]
+        if len(parts) > 1:
+            list(self._pool.map(weigh_some, parts))
+        elif parts:
+            weigh_some(parts[0])
+        return scores.astype(float)
+
+    def _arrays(self, view: SightView) -> tuple[NDArray[Any], ...]:
+        """The frame for the kernels; what it does not hold is not read, or says nothing."""
+        frame, camera = view.frame, view.frame.camera
+        size = (camera.height, camera.width)
+        edges, scores, depth = frame.edges, frame.edge_scores, frame.depth
+        return (
+            np.array([camera.fx, camera.fy, camera.cx, camera.cy], np.float32),
+            np.zeros((4, 1, 1), np.uint8) if edges is None else edges,
+            np.zeros((4, 8), np.float32) if scores is None else scores,
+            view.colour_scores,
+            view.limbs,
+            np.zeros(size, np.float32) if depth is None else depth,
+        )
+
+
+def _points_last(points: Floats) -> Floats:
+    """(V, B, 3) as (V, 3, B), so that points are weighed several at once."""
+    return np.ascontiguousarray(np.swapaxes(points, 1, 2))
