@@ -166,7 +166,7 @@ def test_without_images_no_boundary_is_looked_for(
     monkeypatch.setattr("inhand_lab.evaluation.find_viewpoints", pytest.fail)
     dataset = write_dataset(tmp_path, frames=10)
     (fold, *_) = leave_one_out(dataset)
-    assert fold_model(dataset, fold, images=False).interaction == "wave"
+    assert fold_model(dataset, fold, images=False, fused=False).interaction == "wave"
 
 
 def test_the_folds_of_an_interaction_share_the_objects_boundaries(
@@ -180,6 +180,8 @@ def test_the_folds_of_an_interaction_share_the_objects_boundaries(
 
     monkeypatch.setattr("inhand_lab.evaluation.find_viewpoints", found)
     dataset = write_dataset(tmp_path, frames=10)
-    models = [fold_model(dataset, fold, images=True) for fold in leave_one_out(dataset)]
+    models = [
+        fold_model(dataset, fold, images=True, fused=False) for fold in leave_one_out(dataset)
+    ]
     assert len(models) == 3
     assert calls == ["found"]
