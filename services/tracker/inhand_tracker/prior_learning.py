@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtri, stdtrit
 
 from inhand_tracker import rotations
 from inhand_tracker.anchors import ANCHORS, Anchors, find_anchors
@@ -111,7 +112,7 @@ def learn_prior(sequences: Sequence[LabelledSequence], shape: ObjectShape) -> Pr
         translation_products,
         rotation_products,
         errors,
-        _calibration(covariance_at(local, nearness, errors), errors),
+        _calibration(covariance_at(local, nearness, errors), errors, groups),
         _persistence(errors, samples.sequences[landmarks], samples.times[landmarks]),
     )
 
@@ -196,10 +197,16 @@ def _products(
     )
 
 
-def _calibration(covariances: Array, errors: Array) -> float:
-    """By what covariances (L, 6, 6) are multiplied to hold nine in ten errors (L, 6)."""
+def _calibration(covariances: Array, errors: Array, groups: Indices) -> float:
+    """By what covariances (L, 6, 6) are multiplied to hold nine in ten errors (L, 6).
+
+    What a few people tell of the next one is less than it seems, as Student's t says: one person's
+    errors go together.
+    """
     solved = np.linalg.solve(covariances, errors[..., None])[..., 0]
-    return float(np.quantile(np.einsum("li,li->l", errors, solved), 0.9) / CHI_SQUARE_90)
+    of_these = np.quantile(np.einsum("li,li->l", errors, solved), 0.9) / CHI_SQUARE_90
+    people = len(np.unique(groups))
+    return float(of_these * np.square(stdtrit(people, 0.95) / ndtri(0.95)))
 
 
 def _persistence(errors: Array, sequences: Indices, times: Array) -> float:

@@ -82,19 +82,21 @@ class VisiblePoints:
 @dataclass(frozen=True)
 class _View:
     """A shape seen along one direction from far away, as a raster of ``depths`` (infinite where
-    nothing is seen); ``axes`` are rows right, down and forwards."""
+    nothing is seen), and ``surfaces``, with those of the pixels just beside it; ``axes`` are rows
+    right, down and forwards."""
 
     axes: Array
     low: Array
     scale: float
     depths: Array
+    surfaces: Array
     centre: Array
 
     def points(self, pixels: Array) -> Array:
         """The seen points (B, 3) at pixels (B, 2), in the object's frame."""
         column, row = np.rint(pixels).astype(int).T
         across = (pixels - MARGIN) / self.scale + self.low
-        placed: Array = np.column_stack((across, self.depths[row, column])) @ self.axes
+        placed: Array = np.column_stack((across, self.surfaces[row, column])) @ self.axes
         return placed
 
 
@@ -105,7 +107,10 @@ def _view(shape: ObjectShape, direction: Array) -> _View:
     scale = (RASTER - 1 - 2 * MARGIN) / max((high - low).max(), 1e-9)
     pixels = (seen[:, :2] - low) * scale + MARGIN
     depths = nearest_depths(pixels, seen[:, 2], shape.faces, RASTER)
-    return _View(axes, low, scale, depths, shape.vertices.mean(axis=0))
+    # A point between two pixels of the boundary may round to one beside it.
+    beside = np.asarray(cv2.erode(depths, np.ones((3, 3))), np.float64)
+    surfaces = np.where(np.isfinite(depths), depths, beside)
+    return _View(axes, low, scale, depths, surfaces, shape.vertices.mean(axis=0))
 
 
 def _boundary(view: _View) -> Array:

@@ -1,0 +1,107 @@
+"""How nearly a body pose comes back, in the same person and in others.
+
+``python -m inhand_lab.repeatability DATASET`` shows the median distance, in body heights over all
+joints, from a body pose to the nearest one when the person does the same again, and to the nearest
+one of five other people: how exact a skeleton tracker is, and how alike people move.
+"""
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from inhand_tracker.body import (
+    body_pose,
+    mirror_joints,
+    part_lengths,
+    pelvis_basis,
+    standing_height,
+)
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.table import Table
+from scipy.spatial.distance import cdist
+
+from inhand_lab.dataset import Dataset, Entry, labelled_sequence, load_dataset, load_frames
+from inhand_lab.tracks import true_joints
+
+Array = NDArray[np.float64]
+
+AGAIN_S = 1.5
+"""Within one recording a pose is done again when so much time has passed."""
+OTHERS = 5
+
+
+@dataclass(frozen=True)
+class Poses:
+    """The body poses b (T, 60) of a recording's frames whose joints are all known, and their times
+    (T,) in seconds."""
+
+    participant: str
+    seconds: Array
+    bodies: Array
+
+
+def poses_of(entry: Entry, joints: Array) -> Poses:
+    """The body poses of joints (T, 20, 3); left-handed people are mirrored."""
+    known = np.isfinite(joints).all(axis=(1, 2))
+    seen = joints[known]
+    if entry.handedness == "left":
+        seen = mirror_joints(seen)
+    bodies = body_pose(seen, pelvis_basis(seen), standing_height(part_lengths(seen)))
+    return Poses(entry.participant, np.flatnonzero(known) / entry.frame_rate, bodies)
+
+
+def again(recordings: Sequence[Poses]) -> float:
+    """The median distance to the same person's nearest pose, mean over recordings: in other
+    recordings, or later or earlier in this one where there is no other."""
+    medians = []
+    for one in recordings:
+        rest = [r for r in recordings if r.participant == one.participant and r is not one]
+        if rest:
+            distances = cdist(one.bodies, np.concatenate([r.bodies for r in rest]))
+        else:
+            distances = cdist(one.bodies, one.bodies)
+            apart = np.abs(one.seconds[:, None] - one.seconds)
+            distances[apart < AGAIN_S] = np.inf
+        medians.append(np.median(distances.min(axis=1)))
+    return float(np.mean(medians))
+
+
+def by_others(recordings: Sequence[Poses]) -> float:
+    """The median distance to the nearest pose of five others' first recordings, mean over
+    recordings."""
+    firsts = {r.participant: r for r in reversed(recordings)}
+    medians = []
+    for one in recordings:
+        others = [firsts[name].bodies for name in sorted(firsts) if name != one.participant]
+        distances = cdist(one.bodies, np.concatenate(others[:OTHERS]))
+        medians.append(np.median(distances.min(axis=1)))
+    return float(np.mean(medians))
+
+
+def main() -> None:
+    """Show how nearly poses come back, by interaction."""
+    parser = argparse.ArgumentParser(prog="python -m inhand_lab.repeatability", description=__doc__)
+    parser.add_argument("dataset", type=Path, metavar="DATASET")
+    dataset = load_dataset(parser.parse_args().dataset)
+    table = Table("interaction", "joints", "done again", "five others")
+    for name in dict.fromkeys(entry.interaction for entry in dataset.entries):
+        entries = [entry for entry in dataset.entries if entry.interaction == name]
+        measured = [labelled_sequence(dataset, entry).joints for entry in entries]
+        true = [_true_joints(dataset, entry) for entry in entries]
+        for kind, joints in (("measured", measured), ("true", true)):
+            if all(np.isfinite(one).all(axis=(1, 2)).any() for one in joints):
+                recordings = [poses_of(*one) for one in zip(entries, joints, strict=True)]
+                figures = again(recordings), by_others(recordings)
+                table.add_row(name, kind, *(f"{figure:.3f}" for figure in figures))
+    Console().print(table)
+
+
+def _true_joints(dataset: Dataset, entry: Entry) -> Array:
+    return true_joints(load_frames(dataset.path(entry), entry.object))
+
+
+if __name__ == "__main__":
+    main()
