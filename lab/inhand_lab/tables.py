@@ -36,16 +36,16 @@ class Grid:
     summary: tuple[tuple[str, ...], ...] = ()
 
     def for_terminal(self) -> Table:
-        """At most 80 columns wide with five methods; headers break after hyphens."""
-        table = Table(title=self.title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False)
+        """At most 80 columns wide with six methods; headers break after hyphens."""
+        table = Table(title=self.title, box=box.SIMPLE_HEAD, padding=0, show_edge=False)
         for index, name in enumerate(self.header):
             table.add_column(_broken(name), justify="right" if index else "left", no_wrap=True)
         for row in self.rows:
-            table.add_row(*row)
+            table.add_row(*map(_narrow, row))
         if self.summary:
             table.add_section()
         for row in self.summary:
-            table.add_row(*row)
+            table.add_row(*map(_narrow, row))
         return table
 
     def for_markdown(self) -> str:
@@ -141,6 +141,10 @@ def _number(value: float | None, digits: int = 1) -> str:
 
 def _signed(value: float | None) -> str:
     return NOTHING if value is None else f"{value:+.1f}"
+
+
+def _narrow(cell: str) -> str:
+    return cell.replace(" ± ", "±")
 
 
 def _broken(name: str) -> str:

@@ -14,9 +14,8 @@ from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import ObjectPose
 from inhand_schemas.topics import POSE, RGBD, SKELETONS
-from inhand_tracker.methods import DEFAULT_METHOD, METHODS
 from inhand_tracker.model_file import Model, load_model, save_model
-from inhand_tracker.tracking import Tracker
+from inhand_tracker.trackers import DEFAULT_METHOD, needs_of, new_tracker, usual_terms
 from running_rig import RunningRig, eventually
 
 from inhand.__main__ import main
@@ -29,10 +28,11 @@ needs_data = pytest.mark.skipif(
 )
 
 
-def simulated(folder: Path, *interactions: str) -> Dataset:
+def simulated(folder: Path, *interactions: str, images: bool = False, frames: int = 90) -> Dataset:
     chosen = interactions or ("drinkFromMug",)
-    arguments = ["--interactions", *chosen, "--participants", "4", "--frames", "90", "--seed", "1"]
-    assert main(["simulate", str(folder), "--no-images", *arguments]) == 0
+    arguments = ["--interactions", *chosen, "--participants", "4", "--seed", "1"]
+    arguments += ["--frames", str(frames), *([] if images else ["--no-images"])]
+    assert main(["simulate", str(folder), *arguments]) == 0
     return load_dataset(folder)
 
 
@@ -81,8 +81,9 @@ def assert_live_equals_offline(
     live = recorded_poses(tracked_live(rig, dataset.path(tested), *paths, left_handed=left_handed))
     frames = load_frames(dataset.path(tested), tested.object)
     for name, model in models.items():
-        tracker = Tracker(model, METHODS[DEFAULT_METHOD], left_handed=left_handed, seed=SEED)
-        offline = list(track_recording(tracker, dataset.path(tested), frames))
+        tracker = new_tracker(model, DEFAULT_METHOD, left_handed=left_handed, seed=SEED)
+        needs = needs_of(DEFAULT_METHOD, usual_terms(DEFAULT_METHOD))
+        offline = list(track_recording(tracker, dataset.path(tested), frames, needs))
         poses = [pose for pose in live if pose.object == name]
         assert [pose.time_ns for pose in poses] == [frame.time_ns for frame in frames]
         for pose, estimate in zip(poses, offline, strict=True):
@@ -99,6 +100,15 @@ def test_live_poses_equal_the_offline_evaluations(
 ) -> None:
     dataset = simulated(tmp_path / "people")
     tested = next(entry for entry in dataset.entries if entry.handedness == handedness)
+    assert_live_equals_offline(rig, dataset, tested, ["mug"])
+
+
+@pytest.mark.long
+def test_live_poses_with_images_equal_the_offline_evaluations(
+    rig: RunningRig, tmp_path: Path
+) -> None:
+    dataset = simulated(tmp_path / "people", images=True, frames=45)
+    tested = next(entry for entry in dataset.entries if entry.handedness == "right")
     assert_live_equals_offline(rig, dataset, tested, ["mug"])
 
 

@@ -18,13 +18,14 @@ def test_the_command_writes_what_the_contract_says(
     assert main(["evaluate", str(tmp_path / "set"), *arguments]) == 0
     result = json.loads(file.read_text())
     assert list(result["methods"]) == [
+        "fusion",
         "g-hand",
         "gd-hand",
         "gd-random",
         "gd-stable",
         "gd-stable-proximate",
     ]
-    assert result["frames"] == 5 * 2 * 3 * 20
+    assert result["frames"] == 6 * 2 * 3 * 20
     assert result["seconds"] > 0.0
     for method in result["methods"].values():
         assert {"vertex_error_cm", "sd"} <= set(method)
@@ -52,9 +53,12 @@ def test_testing_on_another_set_learns_from_the_first(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["--methods", "juggle"], "no method 'juggle'; there are: g-hand, gd-hand"),
-        (["--terms", "edges,smell"], "no term 'smell'; there are: none, edges, depth"),
-        (["--terms", "edges,"], "no term ''; there are: none, edges"),
+        (["--methods", "juggle"], "no method 'juggle'; there are: fusion, g-hand, gd-hand"),
+        (
+            ["--terms", "edges,smell"],
+            "no term 'smell'; there are: own, none, edges, region, interior, depth",
+        ),
+        (["--terms", "edges,"], "no term ''; there are: own, none, edges"),
         (["--seeds", "0"], "--seeds is 1 or more"),
     ],
 )

@@ -13,6 +13,7 @@ from inhand_lab.scoring import Judge
 from inhand_lab.summary import summarise
 from inhand_lab.tracks import empty_track, true_track
 from inhand_schemas.messages import ObjectPose
+from inhand_tracker.fusion import FusionTracker
 from inhand_tracker.tracking import Tracker
 from waving import box, entry_of, messages, waving, write_dataset
 
@@ -70,26 +71,32 @@ def test_a_single_fold_is_shared_out_among_processes(tmp_path: Path) -> None:
     )
 
 
-def test_the_tested_labels_never_reach_a_tracker(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("method", "kind"), [("gd-stable-proximate", Tracker), ("fusion", FusionTracker)]
+)
+def test_the_tested_labels_never_reach_a_tracker(
+    tmp_path: Path, method: str, kind: type[Tracker] | type[FusionTracker]
+) -> None:
     """Wrong labels of the tested person change the errors, and no pose."""
     dataset = write_dataset(tmp_path / "true", frames=20)
     wrong = write_with_labels_moved(tmp_path / "wrong", frames=20, shift_m=0.5)
     folds = train_on_one_test_on_other(dataset, dataset)
     poses: list[list[np.ndarray]] = []
-    original = Tracker.step
+    original = kind.step_body
 
-    def noting(self: Tracker, *arguments: object) -> object:
+    def noting(self: object, *arguments: object) -> object:
         estimate = original(self, *arguments)
         poses[-1].append(estimate.translation)
         return estimate
 
     errors = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Tracker, "step", noting)
+        patch.setattr(kind, "step_body", noting)
         for tested in (dataset, wrong):
             poses.append([])
-            plan = protocol(dataset, tested=tested, folds=tuple(folds))
-            errors.append(summarise(evaluate(plan, 1))["gd-stable-proximate"]["vertex_error_cm"])
+            plan = protocol(dataset, tested=tested, folds=tuple(folds), methods=(method,))
+            errors.append(summarise(evaluate(plan, 1))[method]["vertex_error_cm"])
+    assert len(poses[0]) == 3 * 20
     np.testing.assert_array_equal(poses[0], poses[1])
     assert errors[1] - errors[0] > 40.0
 
@@ -166,7 +173,11 @@ def test_without_images_no_boundary_is_looked_for(
     monkeypatch.setattr("inhand_lab.evaluation.find_viewpoints", pytest.fail)
     dataset = write_dataset(tmp_path, frames=10)
     (fold, *_) = leave_one_out(dataset)
-    assert fold_model(dataset, fold, images=False, fused=False).interaction == "wave"
+    for fused in (False, True):
+        model = fold_model(dataset, fold, images=False, fused=fused)
+        assert model.interaction == "wave"
+        assert (model.prior is not None) == fused
+        assert model.appearance is None
 
 
 def test_the_folds_of_an_interaction_share_the_objects_boundaries(

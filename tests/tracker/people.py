@@ -7,6 +7,7 @@ import trimesh
 from inhand_schemas.messages import Person
 from inhand_tracker.learning import LabelledSequence, learn
 from inhand_tracker.model_file import Model
+from inhand_tracker.prior_learning import learn_prior
 from inhand_tracker.shape import ObjectShape, Symmetry
 from inhand_tracker.viewpoints import find_viewpoints
 from scipy.spatial.transform import Rotation
@@ -135,7 +136,13 @@ def wave_model() -> Model:
     """A model of the wedge, learned from three participants."""
     sequences = [sequence(f"p{seed}", seed=seed) for seed in range(3)]
     shape = wedge()
-    return Model("wave", shape, learn(sequences, shape.mirror_normal), find_viewpoints(shape))
+    return Model(
+        "wave",
+        shape,
+        learn(sequences, shape.mirror_normal),
+        find_viewpoints(shape),
+        prior=learn_prior(sequences, shape),
+    )
 
 
 def person(

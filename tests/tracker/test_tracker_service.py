@@ -3,6 +3,7 @@
 import logging
 import threading
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +15,8 @@ from inhand_schemas.keys import Site
 from inhand_schemas.messages import CameraInfo, Message, ObjectPose, Person, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS, AnyTopic
 from inhand_tracker import body
-from inhand_tracker.methods import DEFAULT_METHOD, METHODS
-from inhand_tracker.model_file import save_model
+from inhand_tracker.methods import METHODS
+from inhand_tracker.model_file import ModelError, save_model
 from inhand_tracker.service import TrackerService, TrackerSettings, load_trackers
 from inhand_tracker.tracking import Tracker
 from inhand_tracker.watching import GivenObjects
@@ -23,6 +24,7 @@ from people import FRAME_NS, unseen_wave, wave_model
 from pydantic import ValidationError
 
 SITE = Site()
+PUBLISHED = "gd-fallback"
 FRAMES = 5
 INFO_MESSAGE = CameraInfo(
     sequence=0, time_ns=0, width=64, height=48, fx=52.0, fy=52.0, cx=31.5, cy=23.5
@@ -88,7 +90,7 @@ class Broken(Tracker):
 
 
 def tracker(kind: type[Tracker] = Tracker) -> Tracker:
-    return kind(wave_model(), METHODS[DEFAULT_METHOD])
+    return kind(wave_model(), METHODS[PUBLISHED])
 
 
 def somebody(joints: np.ndarray) -> Person:
@@ -154,8 +156,8 @@ def frames(**pixels: object) -> list[tuple[AnyTopic, Message]]:
     ]
 
 
-def seen(monkeypatch: pytest.MonkeyPatch, **settings: object) -> list[tuple[bool, bool]]:
-    """Whether the trackers got luminance and depth, per frame; pixels come before skeletons."""
+def seen(monkeypatch: pytest.MonkeyPatch, **settings: object) -> list[tuple[bool, bool, bool]]:
+    """Whether the trackers got luminance, depth and colour, per frame; pixels come first."""
     colour = encode_colour(np.full((48, 64, 3), 90, np.uint8))
     depth = encode_depth(np.full((48, 64), 2500, np.uint16))
     bodies, pixels = skeletons(), frames(colour=colour, depth=depth)
@@ -172,24 +174,32 @@ def seen(monkeypatch: pytest.MonkeyPatch, **settings: object) -> list[tuple[bool
         (
             image is not None and image.grey is not None,
             image is not None and image.depth is not None,
+            image is not None and image.colour is not None,
         )
         for image in images[::2]
     ]
 
 
 @pytest.mark.parametrize(
-    ("likelihood", "expected"),
+    ("method", "likelihood", "expected"),
     [
-        (("edges",), (True, False)),
-        (("depth",), (False, True)),
-        (("edges", "depth"), (True, True)),
-        ((), (False, False)),
+        (PUBLISHED, None, (True, False, False)),
+        (PUBLISHED, ("edges",), (True, False, False)),
+        (PUBLISHED, ("depth",), (False, True, False)),
+        (PUBLISHED, ("edges", "depth"), (True, True, False)),
+        (PUBLISHED, (), (False, False, False)),
+        ("fusion", None, (False, True, True)),
+        ("fusion", ("region",), (False, True, True)),
+        ("fusion", (), (False, False, False)),
     ],
 )
 def test_pixels_are_decoded_once_a_frame_and_only_those_that_weigh(
-    monkeypatch: pytest.MonkeyPatch, likelihood: tuple[str, ...], expected: tuple[bool, bool]
+    monkeypatch: pytest.MonkeyPatch,
+    method: str,
+    likelihood: tuple[str, ...] | None,
+    expected: tuple[bool, bool, bool],
 ) -> None:
-    assert seen(monkeypatch, likelihood=likelihood) == [expected] * FRAMES
+    assert seen(monkeypatch, method=method, likelihood=likelihood) == [expected] * FRAMES
 
 
 def test_pixels_are_not_asked_for_when_none_weigh() -> None:
@@ -232,8 +242,23 @@ def test_models_that_cannot_be_meant_are_refused(
 
 
 def test_only_terms_that_there_are_can_weigh() -> None:
-    with pytest.raises(ValidationError, match="'edges' or 'depth'"):
+    with pytest.raises(ValidationError, match="'edges', 'region', 'interior' or 'depth'"):
         TrackerSettings(likelihood=("colour",))
+
+
+def test_a_term_that_the_method_does_not_know_is_refused(model: Path) -> None:
+    settings = TrackerSettings(model=model, method=PUBLISHED, likelihood=("depth", "region"))
+    with pytest.raises(SettingsError, match="gd-fallback does not weigh 'region'; it knows: edges"):
+        load_trackers("mug", settings)
+
+
+def test_a_model_that_learned_no_prior_is_refused_for_the_default_method(tmp_path: Path) -> None:
+    old = replace(wave_model(), prior=None)
+    save_model(old, tmp_path / "old.model")
+    with pytest.raises(ModelError, match=r"wedge is of an older release .* train it again"):
+        load_trackers("mug", TrackerSettings(model=tmp_path / "old.model"))
+    settings = TrackerSettings(model=tmp_path / "old.model", method=PUBLISHED)
+    assert list(load_trackers("mug", settings)) == ["wedge"]
 
 
 def test_a_left_handed_person_is_a_setting(model: Path) -> None:

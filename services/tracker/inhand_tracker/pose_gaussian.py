@@ -69,7 +69,8 @@ class PoseMixture:
     def log_densities(self, centres: Array, orientations: Array) -> Array:
         """(K, P): each part's, with its weight."""
         logs = [part.log_density(centres, orientations) for part in self.parts]
-        return np.array(logs) + np.log(self.weights)[:, None]
+        with np.errstate(divide="ignore"):
+            return np.array(logs) + np.log(self.weights)[:, None]
 
     def moments(self) -> PoseGaussian:
         """The normal distribution of the same mean and covariance."""
