@@ -62,7 +62,9 @@ def test_an_unseen_person_s_object_is_recognised_and_placed(
     for number, action in enumerate(ACTIONS):
         cascade.restart()
         used = follow(cascade, people, action)[80:]
-        assert np.mean([answer.known == number for answer in used]) > 0.8
+        known = [answer.known for answer in used if answer.known is not None]
+        assert len(known) > 0.5 * len(used)
+        assert np.mean([one == number for one in known]) > 0.9
         for answer in used:
             assert (answer.known is None) == (answer.estimate.translation is None)
             assert answer.probabilities.sum() <= 1.0 + 1e-9
@@ -105,7 +107,8 @@ def test_a_file_that_is_no_recogniser_is_refused_in_one_line(
 ) -> None:
     path = tmp_path / "r"
     if damage == "foreign":
-        np.savez(path.open("wb"), other=np.zeros(3))
+        with path.open("wb") as file:
+            np.savez(file, other=np.zeros(3))
     elif damage == "cut":
         save_recogniser(learned[0], path)
         path.write_bytes(path.read_bytes()[:5000])
