@@ -38,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Measure and show the table; raises InhandError."""
     if (arguments.subject in MEASURED_ON) != (arguments.source is not None):
         raise SettingsError(
-            f"{' and '.join(MEASURED_ON)}, and nothing else, are measured on a SOURCE: name a folder"
+            f"{' and '.join(MEASURED_ON)}, and nothing else, are measured on a SOURCE: name it"
         )
     table, result = SUBJECTS[arguments.subject](arguments.source)
     Console().print(table)
