@@ -66,7 +66,7 @@ def test_the_sign_of_a_quaternion_says_nothing() -> None:
 def test_square_distance_is_mahalanobis_to_the_other_s_mean() -> None:
     one = PoseGaussian(CENTRE, quaternion_of(TURN), np.diag([0.01, 1, 1, 0.04, 1, 1.0]))
     moved = Rotation.from_rotvec([0.4, 0.0, 0.0]) * TURN
-    other = PoseGaussian(CENTRE + [0.3, 0.0, 0.0], quaternion_of(moved), np.eye(6))
+    other = PoseGaussian(CENTRE + np.array([0.3, 0.0, 0.0]), quaternion_of(moved), np.eye(6))
     assert one.square_distance(other) == pytest.approx(0.09 / 0.01 + 0.16 / 0.04)
 
 
