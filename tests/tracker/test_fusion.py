@@ -104,7 +104,7 @@ def test_images_show_where_it_is_held_otherwise_than_usual() -> None:
     """A stranger who holds it 4 cm lower than everybody: seen at once, unknown unseen."""
     joints = unseen_wave(FRAMES)
     places, turns = held(joints, seed=7)
-    places = places + [0.0, 0.04, 0.0]
+    places = places + np.array([0.0, 0.04, 0.0])
     shown = [draw(*pose) for pose in zip(places, turns, strict=True)]
     unseen, seen = (follow(tracker(), joints, given) for given in (None, shown))
     assert errors(unseen, places)[5:].mean() > 0.03
