@@ -24,6 +24,7 @@ TARGETS = 12
 """Of each anchor: the object's centre, in body heights, then its rotation matrix, row by row."""
 DISTRUST = 0.1
 """Of each prediction's own variance, added to it: no weight lives on small differences."""
+TINY = 1e-300
 BASE = 0.1
 """Share of the covariance over all body poses in that of any."""
 
@@ -95,9 +96,12 @@ def predict(
 
 def locality(kernel: Array) -> tuple[Array, Array]:
     """How much each landmark says of a body pose, (T, L), rows that sum to 1; and how near the
-    nearest is, (T,), from 0 to 1; of the first view's kernel (T, L)."""
-    nearest = np.maximum(kernel.max(axis=1), 1e-300)
-    local = np.square(kernel / nearest[:, None])
+    nearest is, (T,), from 0 to 1; of the first view's kernel (T, L).
+
+    Where all landmarks are too far away to tell which is nearer, they say the same.
+    """
+    nearest = kernel.max(axis=1)
+    local = np.square((kernel + TINY) / (nearest + TINY)[:, None])
     return local / local.sum(axis=1, keepdims=True), np.square(nearest)
 
 
