@@ -7,6 +7,7 @@ from inhand_tracker.appearance import learn_appearance
 from inhand_tracker.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.model_file import Model
 from inhand_tracker.prior_learning import learn_prior
+from inhand_tracker.trackers import DEFAULT_METHOD, new_tracker
 from inhand_tracker.viewpoints import find_viewpoints
 
 from inhand_lab.appearance_samples import appearance_samples
@@ -92,7 +93,10 @@ def train(
     on_step(APPEARANCE)
     prior = learn_prior(sequences, shape)
     on_step(PRIOR)
-    return Model(first.interaction, shape, mapping, viewpoints, appearance, prior)
+    model = Model(first.interaction, shape, mapping, viewpoints, appearance, prior)
+    # Compiles, once an installation, what the start of a rig would otherwise wait for.
+    new_tracker(model, DEFAULT_METHOD)
+    return model
 
 
 def checked_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:

@@ -103,6 +103,8 @@ class FusionTracker:
         self._left_handed = left_handed
         self._terms = frozenset(terms)
         self._sight = Sight(model, terms) if terms else None
+        if self._sight is not None:
+            self._sight.compile()
         centre, normal = self._prior.centre, self._mirror_normal
         self._centre = centre - 2.0 * (centre @ normal) * normal if left_handed else centre
         self._radius = float(

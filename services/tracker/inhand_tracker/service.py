@@ -89,11 +89,13 @@ class TrackerService:
         """Track until the daemon stops."""
         self._daemon.health.state = "running"
         while not self._daemon.stop.is_set():
-            sample = self._daemon.inbox.get(POLL_S)
-            if sample is not None:
-                self._take(sample)
-            while (pair := self._pairing.pop(time.monotonic())) is not None:
+            pair = self._pairing.pop(time.monotonic())
+            if pair is not None:
                 self._track(*pair)
+            wait = POLL_S if pair is None else 0.0
+            while (sample := self._daemon.inbox.get(wait)) is not None:
+                self._take(sample)
+                wait = 0.0
 
     def _take(self, sample: Received) -> None:
         now = time.monotonic()
@@ -103,7 +105,9 @@ class TrackerService:
             if (frame := self._daemon.decode(RGBD, sample)) is not None:
                 self._pairing.add_frame(frame.sequence, frame, now)
         elif (skeletons := self._daemon.decode(SKELETONS, sample)) is not None:
-            self._pairing.add_skeleton(skeletons.sequence, skeletons, now)
+            late = self._pairing.add_skeleton(skeletons.sequence, skeletons, now)
+            if late:
+                self._daemon.health.dropped(sample.key)
 
     def _track(self, skeletons: Skeletons, frame: RgbdFrame | None) -> None:
         camera = None if self._info is None else intrinsics_of(self._info)

@@ -23,6 +23,7 @@ from inhand_tracker.appearance import (
     region_around,
     silhouette_depths,
 )
+from inhand_tracker.camera import Intrinsics
 from inhand_tracker.colours import (
     Colours,
     blend,
@@ -113,6 +114,18 @@ class Sight:
             returned, behind = model.appearance.returned, model.appearance.behind
         self._returned = returned if returned >= LEAST_RETURNED else 0.0
         self._depth_scores = depth_scores(self._returned, behind)
+
+    def compile(self) -> None:
+        """Let all that a first frame would wait for be compiled: seconds, once an installation."""
+        camera = Intrinsics(50.0, 50.0, 15.5, 15.5, 32, 32)
+        image = Image(None, camera, np.ones((32, 32), np.float32), np.zeros((32, 32, 3), np.uint8))
+        frame = prepare(image)
+        ahead, upright = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0, 0.0])
+        colours = self.look_around(Colours(), frame, ahead, upright)
+        colours = self.learn(colours, frame, ahead, upright)
+        view = self.view(frame, colours, np.tile(ahead, (20, 1)))
+        self.log_likelihood(ahead[None], upright[None], view)
+        self.refine(ahead[None], upright[None], view)
 
     def start(self) -> Colours:
         """What is known of the object's colours and its surroundings' from training."""
