@@ -2,13 +2,16 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: help setup demo test test-fast lint format clean
+CONTRIB := .venv-contrib
+
+.PHONY: help setup contrib demo test test-fast lint format clean
 
 help:
 	@echo "make demo       from nothing to tracked, recorded object poses on this machine"
 	@echo "make test       every test, as CI runs them"
 	@echo "make test-fast  the tests without the long ones"
 	@echo "make lint       ruff, mypy and the import rules"
+	@echo "make contrib    OpenCV's contrib build in $(CONTRIB), for inhand recognise --contrib"
 	@echo "make setup      all that development needs, in $(VENV)"
 
 demo: $(VENV)/run.stamp
@@ -43,5 +46,13 @@ $(VENV)/dev.stamp: $(VENV)/run.stamp
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
 	@touch $@
 
+# The contrib build and the headless one are the same module cv2: they cannot share an environment.
+contrib: $(CONTRIB)/run.stamp
+
+$(CONTRIB)/run.stamp:
+	$(PYTHON) -m venv $(CONTRIB)
+	$(CONTRIB)/bin/pip install --quiet --disable-pip-version-check 'opencv-contrib-python-headless>=4.10'
+	@touch $@
+
 clean:
-	rm -rf $(VENV) demo recordings
+	rm -rf $(VENV) $(CONTRIB) demo recordings

@@ -1,20 +1,23 @@
 """``inhand bench``: what things cost here, in time and memory, as ratios to a named reference."""
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from inhand_lab.ablation import Worth, ablate
 from inhand_lab.benchmark_tracker import TrackerSpeed, measure_tracker
 from inhand_lab.benchmark_training import SIZES, TrainingCost, benchmark_training, steps
+from inhand_lab.dataset import load_dataset
+from inhand_lab.folds import leave_one_out
 from inhand_lab.likelihood_check import ObjectCheck, check_likelihood
 from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
 
-from inhand.progress import progress_bars
+from inhand.progress import progress_bar, progress_bars
 from inhand.results import write_json
 
 
@@ -26,15 +29,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         type=Path,
         metavar="SOURCE",
-        help="for likelihood: a folder of YCB-Video, or of an excerpt",
+        help="for likelihood: a folder of YCB-Video, or of an excerpt; for ablation: a dataset",
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Measure and show the table; raises InhandError."""
-    if (arguments.subject == "likelihood") != (arguments.source is not None):
-        raise SettingsError("likelihood, and nothing else, is measured on a SOURCE: name a folder")
+    if (arguments.subject in MEASURED_ON) != (arguments.source is not None):
+        raise SettingsError(
+            f"{' and '.join(MEASURED_ON)}, and nothing else, are measured on a SOURCE: name it"
+        )
     table, result = SUBJECTS[arguments.subject](arguments.source)
     Console().print(table)
     if arguments.json is not None:
@@ -124,6 +129,33 @@ def _likelihood(source: Path) -> tuple[RenderableType, dict[str, Any]]:
     return likelihood_table(checks), {"objects": [asdict(check) for check in checks]}
 
 
+def ablation_table(worths: Sequence[Worth]) -> Table:
+    """Each variant's error, and how many times the whole method's."""
+    table = Table("of", "without", "vertex error, cm", "ratio", title="fusion, a part taken out")
+    whole = worths[0].vertex_error_cm
+    for worth in worths:
+        error = worth.vertex_error_cm
+        table.add_row(
+            worth.variant.part, worth.variant.without, f"{error:.2f}", f"{error / whole:.2f}"
+        )
+    return table
+
+
+def _ablation(source: Path) -> tuple[RenderableType, dict[str, Any]]:
+    dataset = load_dataset(source)
+    with progress_bar("evaluating", len(leave_one_out(dataset))) as advance:
+        worths = ablate(dataset, usable_cores(), advance)
+    rows = [
+        {
+            "part": worth.variant.part,
+            "without": worth.variant.without,
+            "vertex_error_cm": worth.vertex_error_cm,
+        }
+        for worth in worths
+    ]
+    return ablation_table(worths), {"variants": rows}
+
+
 def _training(_: Path | None) -> tuple[RenderableType, dict[str, Any]]:
     with progress_bars(steps(SIZES)) as advance:
         costs = list(benchmark_training(SIZES, usable_cores(), advance))
@@ -146,7 +178,10 @@ _TRAINING_ROWS: dict[str, Callable[[TrainingCost], float]] = {
     "linear search, ms, p50": lambda cost: cost.asking.linear_ms,
 }
 
+MEASURED_ON = ("likelihood", "ablation")
+
 SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
+    "ablation": _ablation,
     "likelihood": _likelihood,
     "tracker": _tracker,
     "training": _training,

@@ -3,10 +3,14 @@
 import argparse
 from pathlib import Path
 
-from inhand_lab.dataset import load_dataset
+from inhand_lab.dataset import Dataset, load_dataset
 from inhand_lab.learned import learned_by
+from inhand_lab.recogniser_training import stages as recogniser_stages
+from inhand_lab.recogniser_training import train_recogniser
 from inhand_lab.training import entries_for, stages, train
+from inhand_runtime.errors import SettingsError
 from inhand_tracker.model_file import Model, save_model
+from inhand_tracker.recogniser_file import save_recogniser
 from rich.console import Console
 from rich.table import Table
 
@@ -25,11 +29,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="PARTICIPANT",
         help="leave a participant out; may be given again",
     )
+    parser.add_argument(
+        "--recogniser",
+        action="store_true",
+        help="learn to tell all the dataset's interactions apart, for objects that are not given",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Train and save; raises DatasetError or InhandError."""
     dataset = load_dataset(arguments.dataset)
+    if arguments.recogniser:
+        return _train_recogniser(dataset, arguments)
     entries = entries_for(dataset, arguments.object, arguments.without)
     with progress_bars({**stages(len(entries)), "saving": 1}) as advance:
         model = train(dataset, entries, advance)
@@ -37,6 +48,25 @@ def run(arguments: argparse.Namespace) -> int:
         advance("saving")
     console = Console()
     console.print(_summary(model))
+    console.print(f"saved {arguments.output}: {arguments.output.stat().st_size / 1e6:.1f} MB")
+    return 0
+
+
+def _train_recogniser(dataset: Dataset, arguments: argparse.Namespace) -> int:
+    if arguments.object is not None:
+        raise SettingsError("--recogniser learns all interactions: leave --object out")
+    participants = {entry.participant for entry in dataset.entries}
+    if unknown := sorted(set(arguments.without) - participants):
+        raise SettingsError(
+            f"no participant {unknown[0]!r}; there are: {', '.join(sorted(participants))}"
+        )
+    entries = [entry for entry in dataset.entries if entry.participant not in arguments.without]
+    with progress_bars({**recogniser_stages(len(entries)), "saving": 1}) as advance:
+        recogniser = train_recogniser(dataset, entries, advance)
+        save_recogniser(recogniser, arguments.output)
+        advance("saving")
+    console = Console()
+    console.print(f"learned to recognise {', '.join(recogniser.actions)}")
     console.print(f"saved {arguments.output}: {arguments.output.stat().st_size / 1e6:.1f} MB")
     return 0
 

@@ -16,7 +16,8 @@ DARK = 0.5
 def draw_confusions(matrices: dict[str, Array], names: Sequence[str], path: Path) -> None:
     """Matrices (K, K) of shares, by their titles, side by side: true actions down, said across."""
     size = 1.8 + 0.62 * len(names)
-    figure = Figure(figsize=(size * len(matrices), size), layout="constrained")
+    figure = Figure(figsize=(size * len(matrices), size))
+    figure.set_layout_engine("constrained", h_pad=0.12, w_pad=0.12)
     every = figure.subplots(1, len(matrices), squeeze=False)[0]
     for axes, (title, shares) in zip(every, matrices.items(), strict=True):
         axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.0)

@@ -4,13 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from inhand_tracker.recogniser import Recogniser
+from inhand_tracker.recognition import KNOWN
 
 from inhand_lab.dataset import Dataset, DatasetError
 from inhand_lab.idle_people import Idleness, watch_idle
-from inhand_lab.recogniser_training import recogniser_of
-from inhand_lab.recognition_alone import participants_of, recognise
-from inhand_lab.watched_people import Watched, watch
+from inhand_lab.recogniser_training import LearnedMovements, learn_movements
+from inhand_lab.recognition_alone import participants_of, probabilities_over_time
+from inhand_lab.watched_people import UsualPoses, Watched, watch
 from inhand_lab.workers import in_processes
 
 IDLE_KINDS: tuple[Idleness, ...] = ("stand", "walkOnSpot", "walkAbout", "gesture")
@@ -45,10 +45,10 @@ def count_false_objects(
     unknown = set(unseen) - set(participants_of(people))
     if unknown:
         raise DatasetError(f"{dataset.folder} has no participant {min(unknown)!r}")
-    recogniser = recogniser_of(people, str(dataset.folder))
+    learned = learn_movements(people, str(dataset.folder))
     idle: dict[str, float] = {
         kind: _mean_share(
-            recogniser, [watch_idle(kind, number, IDLE_SEED) for number in range(IDLE_PEOPLE)]
+            learned, [watch_idle(kind, number, IDLE_SEED) for number in range(IDLE_PEOPLE)]
         )
         for kind in IDLE_KINDS
     }
@@ -56,7 +56,7 @@ def count_false_objects(
     for entry in () if others is None else others.entries:
         if others is not None:
             strangers.setdefault(entry.interaction, []).append(watch(others, entry))
-    elsewhere = {name: _mean_share(recogniser, some) for name, some in strangers.items()}
+    elsewhere = {name: _mean_share(learned, some) for name, some in strangers.items()}
     on_progress()
     tasks = [(tuple(people), action, tuple(unseen)) for action in actions]
     shares = in_processes(_leave_action_out, tasks, processes, lambda _: on_progress())
@@ -66,11 +66,17 @@ def count_false_objects(
 def _leave_action_out(task: tuple[tuple[Watched, ...], str, tuple[str, ...]]) -> float:
     people, action, unseen = task
     taught = [one for one in people if one.action != action and one.participant not in unseen]
-    recogniser = recogniser_of(taught)
+    learned = learn_movements(taught)
     return _mean_share(
-        recogniser, [one for one in people if one.action == action and one.participant in unseen]
+        learned, [one for one in people if one.action == action and one.participant in unseen]
     )
 
 
-def _mean_share(recogniser: Recogniser, people: Sequence[Watched]) -> float:
-    return float(np.mean([recognise(recogniser, one).false_share for one in people]))
+def _mean_share(learned: LearnedMovements, people: Sequence[Watched]) -> float:
+    """The mean share of frames in which an action is known."""
+    usual = UsualPoses(learned.poses)
+    shares = []
+    for one in people:
+        told, _ = probabilities_over_time(learned.movements, learned.temper, usual, one)
+        shares.append((told[:, :-1].max(axis=1) >= KNOWN).mean())
+    return float(np.mean(shares))

@@ -14,6 +14,7 @@ import numpy as np
 import trimesh
 from inhand_tracker import rotations
 from inhand_tracker.estimate import vertex_error
+from inhand_tracker.prior_learning import CHI_SQUARE_90
 from inhand_tracker.shape import ObjectShape, Symmetry
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
@@ -97,6 +98,25 @@ class ErrorGauge:
                 away, _ = self._nearest.query(placed)
             distances[some] = away.mean(axis=-1)
         return distances
+
+
+def region_share(estimated: Track, true: Track, covariances: Array | None) -> float | None:
+    """The share of T poses whose 90 % region, by ``covariances`` (T, 6, 6), holds the true pose.
+
+    None where no pose has a covariance that can be inverted.
+    """
+    if covariances is None:
+        return None
+    turns = rotations.multiply(estimated.rotations, rotations.conjugate(true.rotations))
+    off = np.concatenate(
+        (estimated.translations - true.translations, rotations.to_vector(turns)), axis=1
+    )
+    known = np.flatnonzero(np.isfinite(off).all(axis=1) & np.isfinite(covariances).all(axis=(1, 2)))
+    known = known[np.linalg.eigvalsh(covariances[known])[:, 0] > 0.0]
+    if len(known) == 0:
+        return None
+    solved = np.linalg.solve(covariances[known], off[known][..., None])[..., 0]
+    return float((np.einsum("ti,ti->t", off[known], solved) <= CHI_SQUARE_90).mean())
 
 
 def least_angle(between: Array, symmetries: tuple[Symmetry, ...]) -> Array:

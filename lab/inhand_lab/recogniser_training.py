@@ -1,9 +1,11 @@
 """Training a recogniser of actions from a dataset."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from inhand_tracker.movement_classes import MovementClasses
 from inhand_tracker.recogniser import Recogniser
 from numpy.typing import NDArray
 
@@ -52,6 +54,25 @@ def recogniser_of(people: Sequence[Watched], named: str = "the recordings") -> R
 
     Raises DatasetError.
     """
+    learned = learn_movements(people, named)
+    kept = learned.poses[:: max(1, len(learned.poses) // KEPT_POSES)]
+    svm = train_svm(learned.poses, learned.labels)
+    return Recogniser(learned.actions, kept, svm, learned.movements, learned.temper)
+
+
+@dataclass(frozen=True)
+class LearnedMovements:
+    """``movements``, their ``temper``, and the body poses (N, 60) and actions (N,) learned from."""
+
+    actions: tuple[str, ...]
+    movements: MovementClasses
+    temper: float
+    poses: Array
+    labels: NDArray[np.int64]
+
+
+def learn_movements(people: Sequence[Watched], named: str = "the recordings") -> LearnedMovements:
+    """What ``recogniser_of`` learns, without the support vector machine; raises DatasetError."""
     actions = tuple(dict.fromkeys(one.action for one in people))
     participants = {one.participant for one in people}
     if len(actions) < 2 or len(participants) < 2:
@@ -72,10 +93,10 @@ def recogniser_of(people: Sequence[Watched], named: str = "the recordings") -> R
     missing = set(range(len(actions))) - {one.action for one in sequences}
     if missing:
         raise DatasetError(f"{named}: no body is seen doing {actions[min(missing)]!r}")
-    all_poses, all_labels = np.concatenate(poses), np.concatenate(labels)
     movements, temper = train_movements(sequences, len(actions))
-    kept = all_poses[:: max(1, len(all_poses) // KEPT_POSES)]
-    return Recogniser(actions, kept, train_svm(all_poses, all_labels), movements, temper)
+    return LearnedMovements(
+        actions, movements, temper, np.concatenate(poses), np.concatenate(labels)
+    )
 
 
 @lru_cache(maxsize=4)

@@ -1,9 +1,10 @@
 """Recognition without objects or images: which action is it, of people that were left out?"""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+from inhand_tracker.movement_classes import MovementClasses
 from inhand_tracker.recogniser import MovementRecogniser, Recogniser
 from numpy.typing import NDArray
 
@@ -37,11 +38,6 @@ class Recognised:
     def sequence(self) -> int:
         """The action of the whole recording: the likeliest on average."""
         return int(np.argmax(self.probabilities[:, :-1].mean(axis=0)))
-
-    @property
-    def false_share(self) -> float:
-        """The share of frames in which an action is known."""
-        return float((self.probabilities[:, :-1].max(axis=1) >= 0.5).mean())
 
 
 @dataclass(frozen=True)
@@ -88,8 +84,7 @@ def recognise_alone(
         )
     tasks = [(people, participant) for participant in participants]
     done = in_processes(_leave_out, tasks, processes, lambda _: on_progress())
-    recordings = [replace(one, action=actions.index(name)) for found in done for name, one in found]
-    return RecognitionAlone(actions, tuple(recordings))
+    return RecognitionAlone(actions, tuple(one for found in done for one in found))
 
 
 def participants_of(people: Sequence[Watched]) -> list[str]:
@@ -97,22 +92,35 @@ def participants_of(people: Sequence[Watched]) -> list[str]:
     return sorted({one.participant for one in people})
 
 
-def recognise(recogniser: Recogniser, one: Watched, action: int = -1) -> Recognised:
-    """What a recogniser says of a recording, frame by frame; frames without a body are left out."""
-    running = MovementRecogniser(recogniser)
+def probabilities_over_time(
+    movements: MovementClasses, temper: float, usual: UsualPoses, one: Watched
+) -> tuple[Array, Array]:
+    """Probabilities (N, K + 1) of a recording's frames with a body, and its body poses (N, 60).
+
+    Raises DatasetError where no body is seen.
+    """
+    running = MovementRecogniser(movements, temper)
     probabilities, poses = [], []
-    bodies = read_bodies(one, UsualPoses(recogniser.body_poses))
-    for time_ns, body in zip(one.times_ns, bodies, strict=True):
+    for time_ns, body in zip(one.times_ns, read_bodies(one, usual), strict=True):
         if body is not None:
             probabilities.append(running.step(int(time_ns), body))
             poses.append(body.pose)
     if not poses:
         raise DatasetError(f"a recording of {one.participant} ({one.action}) shows no body")
-    by_pose = np.argmax(recogniser.svm.probabilities(np.array(poses)), axis=1)
-    return Recognised(action, one.participant, by_pose, np.array(probabilities))
+    return np.array(probabilities), np.array(poses)
 
 
-def _leave_out(task: tuple[tuple[Watched, ...], str]) -> list[tuple[str, Recognised]]:
+def _recognise(recogniser: Recogniser, one: Watched) -> Recognised:
+    usual = UsualPoses(recogniser.body_poses)
+    probabilities, poses = probabilities_over_time(
+        recogniser.movements, recogniser.temper, usual, one
+    )
+    by_pose = np.argmax(recogniser.svm.probabilities(poses), axis=1)
+    action = recogniser.actions.index(one.action)
+    return Recognised(action, one.participant, by_pose, probabilities)
+
+
+def _leave_out(task: tuple[tuple[Watched, ...], str]) -> list[Recognised]:
     people, participant = task
     # In the order of all actions, whoever is left out.
     order = list(dict.fromkeys(one.action for one in people))
@@ -123,6 +131,4 @@ def _leave_out(task: tuple[tuple[Watched, ...], str]) -> list[tuple[str, Recogni
     recogniser = recogniser_of(others)
     if recogniser.actions != tuple(order):
         raise DatasetError(f"only {participant} does some of {', '.join(order)}")
-    return [
-        (one.action, recognise(recogniser, one)) for one in people if one.participant == participant
-    ]
+    return [_recognise(recogniser, one) for one in people if one.participant == participant]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from inhand_tracker.camera import Intrinsics
 from inhand_tracker.cascade import Cascade
 from inhand_tracker.cascade_2012 import Cascade2012
 from inhand_tracker.likelihood import DEFAULT_TERMS
@@ -133,7 +134,7 @@ def _try_recording(
     def trial(name: str, score: RecognitionScore) -> RecognitionTrial:
         return RecognitionTrial(name, entry.interaction, entry.participant, tall, score)
 
-    answers = answers_together(trackers, observe(path, frames, DEFAULT_TERMS), len(frames))
+    answers = answers_together(trackers, observe(path, frames, DEFAULT_TERMS), len(frames), camera)
     trials = [
         trial(name, score_answers(answer, action, frames, truth, gauge))
         for name, answer in zip(protocol.methods, answers, strict=True)
@@ -143,7 +144,10 @@ def _try_recording(
 
 
 def answers_together(
-    trackers: Sequence[AnyCascade], observations: Iterable[Observation], frames: int
+    trackers: Sequence[AnyCascade],
+    observations: Iterable[Observation],
+    frames: int,
+    camera: Intrinsics,
 ) -> list[Answers]:
     """What several methods answer to the same frames."""
     answers = [Answers.empty(frames) for _ in trackers]
@@ -151,7 +155,7 @@ def answers_together(
         for tracker, answer in zip(trackers, answers, strict=True):
             if seen.somebody_else:
                 tracker.restart()
-            answer.put(index, tracker.step(seen.joints, seen.time_ns, seen.image))
+            answer.put(index, tracker.step(seen.joints, seen.time_ns, seen.image, camera))
     return answers
 
 

@@ -92,6 +92,9 @@ def _row(trial: Trial) -> dict[str, str | int | float]:
         "translation_cm": 100.0 * score.translation_m,
         "rotation_deg": math.degrees(score.rotation_rad),
         "within_5cm_5deg_percent": 100.0 * score.close_share,
+        "within_90_percent_region_percent": math.nan
+        if score.region_share is None
+        else 100.0 * score.region_share,
         "add_area_percent": 100.0 * score.area_under_curve,
         "lost_percent": 100.0 * score.lost_share,
         "losses": score.recoveries.losses,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from inhand_lab.dataset import Frame
 from inhand_lab.losses import Recoveries, lost_bodies, lost_frames, recoveries, recoveries_after
-from inhand_lab.pose_errors import ErrorGauge
+from inhand_lab.pose_errors import ErrorGauge, region_share
 from inhand_lab.tracks import Track, true_joints, true_track
 
 Array = NDArray[np.float64]
@@ -20,7 +20,8 @@ class Score:
 
     The errors are means over the frames in which a pose was given, or had been given before: it
     counts until the next. Shares are of all labelled frames; a frame before the first pose is
-    neither within 5 cm and 5° nor under the curve, and lost.
+    neither within 5 cm and 5° nor under the curve, and lost. ``region_share`` is the share of
+    poses whose own 90 % region, by their covariance, holds the true one; None where none has one.
     """
 
     frames: int
@@ -32,6 +33,7 @@ class Score:
     lost_share: float
     recoveries: Recoveries
     body_recoveries: Recoveries
+    region_share: float | None = None
 
 
 class Judge:
@@ -65,4 +67,9 @@ class Judge:
             float(lost.mean()),
             recoveries(lost, self._times),
             recoveries_after(self._body_lost, lost, self._times),
+            region_share(
+                track.of(self._labelled),
+                self._true,
+                None if track.covariances is None else track.covariances[self._labelled],
+            ),
         )

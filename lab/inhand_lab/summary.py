@@ -98,11 +98,19 @@ _FIGURES: dict[str, Callable[[Sequence[Trial]], float | None]] = {
     "rotation_deg": _mean_of(lambda score: float(np.degrees(score.rotation_rad))),
     "translation_cm": _mean_of(lambda score: 100.0 * score.translation_m),
     "within_5cm_5deg_percent": _mean_of(lambda score: 100.0 * score.close_share),
+    "within_90_percent_region_percent": lambda trials: _mean_share(
+        [trial.score.region_share for trial in trials]
+    ),
     "add_area_percent": _mean_of(lambda score: 100.0 * score.area_under_curve),
     "lost_percent": _mean_of(lambda score: 100.0 * score.lost_share),
     "recovery_s": _mean_recovery(lambda score: score.recoveries),
     "body_recovery_s": _mean_recovery(lambda score: score.body_recoveries),
 }
+
+
+def _mean_share(shares: Sequence[float | None]) -> float | None:
+    mean = _mean_known(shares)
+    return None if mean is None else 100.0 * mean
 
 
 def _mean_known(values: Iterable[float | None]) -> float | None:

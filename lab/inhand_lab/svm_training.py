@@ -13,7 +13,7 @@ from sklearn.svm import SVC
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-MOST_POSES = 8000
+MOST_POSES = 5000
 """Beyond so many, evenly spaced ones are taken: time grows with their square."""
 COST = 1.0
 FOLDS = 5

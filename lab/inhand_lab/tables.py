@@ -18,6 +18,7 @@ MEASURES = {
     "rotation_deg": "rotation, °",
     "translation_cm": "translation, cm",
     "within_5cm_5deg_percent": "within 5 cm 5°, %",
+    "within_90_percent_region_percent": "within its 90 % region, %",
     "add_area_percent": "ADD(-S) area, %",
     "lost_percent": "lost, %",
     "recovery_s": "recovery, s",

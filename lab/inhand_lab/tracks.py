@@ -15,16 +15,23 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Track:
-    """Poses camera_from_object of T frames: (T, 3) and (T, 4), NaN where there is none."""
+    """Poses camera_from_object of T frames: (T, 3) and (T, 4), NaN where there is none.
+
+    ``covariances`` (T, 6, 6) are what a tracker says of its errors, NaN where it says nothing; None
+    of what is no tracker's.
+    """
 
     translations: Array
     rotations: Array
+    covariances: Array | None = None
 
     def put(self, frame: int, estimate: Estimate) -> None:
         """Take a tracker's estimate for one frame."""
         if estimate.translation is not None and estimate.rotation is not None:
             self.translations[frame] = estimate.translation
             self.rotations[frame] = estimate.rotation
+        if self.covariances is not None and estimate.covariance is not None:
+            self.covariances[frame] = estimate.covariance
 
     @property
     def given(self) -> Flags:
@@ -43,7 +50,11 @@ class Track:
 
 def empty_track(frames: int) -> Track:
     """A track without any pose yet."""
-    return Track(np.full((frames, 3), np.nan), np.full((frames, 4), np.nan))
+    return Track(
+        np.full((frames, 3), np.nan),
+        np.full((frames, 4), np.nan),
+        np.full((frames, 6, 6), np.nan),
+    )
 
 
 def true_track(frames: Sequence[Frame]) -> Track:

@@ -38,7 +38,7 @@ class Cascade:
     ) -> None:
         self._learned = recogniser
         self._left_handed = left_handed
-        self._recogniser = MovementRecogniser(recogniser)
+        self._recogniser = MovementRecogniser(recogniser.movements, recogniser.temper)
         self._trackers = trackers
         self.restart()
 

@@ -20,6 +20,7 @@ from inhand_tracker.action_particles import (
 )
 from inhand_tracker.body import Bases, mirror_pose
 from inhand_tracker.body_reader import Body, BodyReader
+from inhand_tracker.camera import Intrinsics
 from inhand_tracker.edges import edge_log_weights
 from inhand_tracker.estimate import LOST, Estimate, normalised_weights, weighted_estimate
 from inhand_tracker.image import Image
@@ -69,14 +70,25 @@ class Cascade2012:
         self._last = Recognition(np.zeros(len(self._models)))
         self._time_ns = 0
 
-    def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Recognition:
-        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image."""
+    def step(
+        self,
+        joints: Array | None,
+        time_ns: int,
+        image: Image | None = None,
+        camera: Intrinsics | None = None,
+    ) -> Recognition:
+        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
+
+        ``camera`` is for the box where there is no image.
+        """
+        if image is not None:
+            camera = image.camera
         body = None if joints is None else self._reader.read(joints)
         if body is None:
             return Recognition(self._last.probabilities, None, LOST, self._last.box)
         particles = self._propose(body, time_ns)
         translations, orientations = self._place(particles, body)
-        logs, boxes = self._see(particles, translations, orientations, image)
+        logs, boxes = self._see(particles, translations, orientations, image, camera)
         with np.errstate(divide="ignore"):
             weights = normalised_weights(np.log(particles.weights) + logs)
         self._particles = joined([particles], weights)
@@ -126,17 +138,18 @@ class Cascade2012:
         translations: Array,
         orientations: Array,
         image: Image | None,
+        camera: Intrinsics | None,
     ) -> tuple[Array, Array]:
         """The particles' log-likelihoods (P,) and boxes in the image (P, 4)."""
         logs, boxes = np.zeros(self._count), np.full((self._count, 4), np.nan)
-        if image is None:
+        if camera is None:
             return logs, boxes
         for action in np.unique(particles.actions):
             ours = particles.actions == action
             placed = self._outlines[action].place(translations[ours], orientations[ours])
-            pixels = image.camera.project(placed)
+            pixels = camera.project(placed)
             boxes[ours] = boxes_around(pixels)
-            if image.chamfer is not None:
+            if image is not None and image.chamfer is not None:
                 logs[ours] = edge_log_weights(image.chamfer, pixels)
         return logs, boxes
 

@@ -8,7 +8,7 @@ hypotheses; the image weighs them (``sight``), and the likeliest are refined.
 """
 
 from collections.abc import Collection
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,8 +37,8 @@ from inhand_tracker.viewpoints import VisiblePoints
 
 Array = NDArray[np.float64]
 
-HYPOTHESES = 400
-REFINED = 5
+REFINED = 4
+"""So many of the likeliest hypotheses."""
 SEEDS, CLOSER = 20, 0.35
 """Around so many of the likeliest hypotheses as many again, so much nearer, are tried."""
 TEMPER = 0.4
@@ -62,6 +62,21 @@ LEARNING_LOG_LIKELIHOOD = 3.0
 """An estimate that the image supports so much teaches the object's colours."""
 
 
+@dataclass(frozen=True)
+class Search:
+    """How poses are looked for: so many hypotheses in each of the rounds.
+
+    The rest is taken out to see what it is worth (``inhand bench ablation``): what was seen before
+    is carried over, an object may have been left somewhere, and the likeliest are refined.
+    """
+
+    hypotheses: int = 400
+    rounds: int = 2
+    carries: bool = True
+    leaves: bool = True
+    refines: bool = True
+
+
 class FusionTracker:
     """Follows one object of one person through the frames of one camera.
 
@@ -74,7 +89,7 @@ class FusionTracker:
         *,
         left_handed: bool = False,
         terms: Collection[SightTerm] = SIGHT_TERMS,
-        hypotheses: int = HYPOTHESES,
+        search: Search = Search(),
         seed: int = 0,
     ) -> None:
         if model.prior is None:
@@ -93,7 +108,7 @@ class FusionTracker:
         self._radius = float(
             np.linalg.norm(model.shape.vertices - self._prior.centre, axis=1).max()
         )
-        self._count = hypotheses
+        self._search = search
         self._seed = seed
         self._outline = VisiblePoints(model.viewpoints.directions, model.viewpoints.boundaries)
         self.restart()
@@ -169,7 +184,12 @@ class FusionTracker:
         """What is expected now, after what was believed before."""
         before, believed = self._expected, self._believed
         elapsed_ns = time_ns - self._time_ns
-        if before is None or believed is None or not 0 < elapsed_ns <= GAP_NS:
+        if (
+            before is None
+            or believed is None
+            or not 0 < elapsed_ns <= GAP_NS
+            or not self._search.carries
+        ):
             return PoseMixture((expected,), np.ones(1))
         kept = float(np.exp(-elapsed_ns / 1e9 / self._prior.persistence_s))
         inverse = rotations.conjugate(before.rotation)
@@ -187,34 +207,33 @@ class FusionTracker:
         left = replace(
             believed, covariance=believed.covariance + np.diag(np.square(LEFT_DEVIATIONS))
         )
-        parts = (carried, expected, left)
+        parts = (carried, expected, left) if self._search.leaves else (carried, expected)
         off = np.array([expected.square_distance(part) for part in parts])
-        return mixture(parts, np.log([CARRIED, AFRESH, LEFT]) - 0.5 * off / DOUBT)
+        return mixture(parts, np.log([CARRIED, AFRESH, LEFT])[: len(parts)] - 0.5 * off / DOUBT)
 
     def _look(self, belief: PoseMixture, image: Image, body: Body) -> PoseGaussian:
         """What is believed after a look at the image."""
-        centres, orientations = belief.sample(self._count, self._random)
+        count = self._search.hypotheses
+        centres, orientations = belief.sample(count, self._random)
         joints = mirror_joints(body.joints) if self._left_handed else body.joints
         view = self._view(centres, belief.parts[0], image, joints)
         if view is None:
             return belief.parts[0]
-        sight = self._sight
-        assert sight is not None
         scores = self._scores(belief, centres, orientations, view)
-        best = np.resize(np.argsort(scores)[::-1][:SEEDS], self._count)
         root = np.linalg.cholesky(belief.moments().covariance)
-        shifts = CLOSER * self._random.normal(size=(self._count, 6)) @ root.T
-        nearer = centres[best] + shifts[:, :3]
-        turned = rotations.multiply(rotations.from_vector(shifts[:, 3:]), orientations[best])
-        centres = np.concatenate((centres, nearer))
-        orientations = np.concatenate((orientations, turned))
-        scores = np.concatenate((scores, self._scores(belief, nearer, turned, view)))
+        for round_ in range(1, self._search.rounds):
+            best = np.resize(np.argsort(scores)[::-1][:SEEDS], count)
+            shifts = CLOSER**round_ * self._random.normal(size=(count, 6)) @ root.T
+            nearer = centres[best] + shifts[:, :3]
+            turned = rotations.multiply(rotations.from_vector(shifts[:, 3:]), orientations[best])
+            centres = np.concatenate((centres, nearer))
+            orientations = np.concatenate((orientations, turned))
+            scores = np.concatenate((scores, self._scores(belief, nearer, turned, view)))
         likeliest = np.argsort(scores)[::-1][:REFINED]
         starts = [(part.centre, part.rotation) for part in belief.parts]
         starts += [(centres[index], orientations[index]) for index in likeliest]
-        modes = self._refine(belief, starts, view)
-        found = self._weigh_modes(belief, modes, view)
-        return found.moments()
+        modes = self._modes(belief, starts, view)
+        return self._weigh_modes(belief, modes, view).moments()
 
     def _scores(
         self, belief: PoseMixture, centres: Array, orientations: Array, view: SightView
@@ -255,7 +274,7 @@ class FusionTracker:
             return None
         return left, top, right, bottom
 
-    def _refine(
+    def _modes(
         self, belief: PoseMixture, starts: list[tuple[Array, Array]], view: SightView
     ) -> list[PoseGaussian]:
         """Where image and belief agree best near each start; each place once."""
@@ -268,6 +287,12 @@ class FusionTracker:
         for index, part in enumerate(belief.parts):
             chosen = nearest == index
             if not chosen.any():
+                continue
+            if not self._search.refines:
+                modes += [
+                    PoseGaussian(*pose, part.covariance)
+                    for pose in zip(centres[chosen], orientations[chosen], strict=True)
+                ]
                 continue
             information = np.asarray(np.linalg.inv(part.covariance), np.float64)
             refined = sight.refine(

@@ -38,6 +38,11 @@ class MovementClasses:
     says: Array
     limits: Array
 
+    @property
+    def actions(self) -> int:
+        """K."""
+        return self.says.shape[1] - 1
+
     def evidence(self, features: Array) -> Array:
         """Log evidence (N, K + 1) of features (N, D), for each action and, last, for none.
 

@@ -32,9 +32,9 @@ class Recogniser:
 class MovementRecogniser:
     """Follows one person's action by the last seconds of movement."""
 
-    def __init__(self, recogniser: Recogniser) -> None:
-        self._classes = recogniser.movements
-        self._filter = ClassFilter(len(recogniser.actions), recogniser.temper)
+    def __init__(self, classes: MovementClasses, temper: float) -> None:
+        self._classes = classes
+        self._filter = ClassFilter(classes.actions, temper)
         self.restart()
 
     def restart(self) -> None:

@@ -35,5 +35,9 @@ def known_action(probabilities: Array) -> int | None:
 
 
 def boxes_around(outlines: Array) -> Array:
-    """Boxes (P, 4), left, top, right and bottom, of pixels (P, B, 2); NaN behind the camera."""
-    return np.concatenate((outlines.min(axis=1), outlines.max(axis=1)), axis=1)
+    """Boxes (P, 4), left, top, right and bottom, of the finite ones of pixels (P, B, 2).
+
+    NaN where none is: behind the camera.
+    """
+    known = np.where(np.isfinite(outlines), outlines, np.nan)
+    return np.concatenate((np.fmin.reduce(known, axis=1), np.fmax.reduce(known, axis=1)), axis=1)

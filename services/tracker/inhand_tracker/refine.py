@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
 Bytes = NDArray[np.uint8]
 
-REACHES = tuple(np.geomspace(1.0, 0.12, 14).tolist())
+REACHES = tuple(np.geomspace(1.0, 0.12, 8).tolist())
 REACH_M, REACH_RAD = 0.05, 0.2
 """How far off a pose may be at first without a prior, and what is left of that step by step."""
 SAMPLES = 12

@@ -11,7 +11,7 @@ from inhand_tracker.body_reader import Body, BodyReader
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.conversion import Need
 from inhand_tracker.estimate import Estimate
-from inhand_tracker.fusion import HYPOTHESES, FusionTracker
+from inhand_tracker.fusion import FusionTracker, Search
 from inhand_tracker.image import Image
 from inhand_tracker.likelihood import DEFAULT_TERMS, TERMS
 from inhand_tracker.methods import METHODS, PublishedMethod
@@ -91,7 +91,7 @@ def new_tracker(
             model,
             left_handed=left_handed,
             terms=terms,
-            hypotheses=particles or HYPOTHESES,
+            search=Search() if particles is None else Search(hypotheses=particles),
             seed=seed,
         )
     return Tracker(
