@@ -10,6 +10,8 @@ STRANGERS = (7, 8, 9)
 UNSEEN = 45
 """Frames: 3 s."""
 BACK_WITHIN = 3
+SECOND = 15
+BEGINNINGS = (45, 60, 75, 90)
 
 pytestmark = pytest.mark.long
 
@@ -38,7 +40,7 @@ def test_images_halve_the_error_and_more(participant: int) -> None:
 
 
 @pytest.mark.parametrize("participant", STRANGERS)
-@pytest.mark.parametrize("begin", [45, 60, 75, 90])
+@pytest.mark.parametrize("begin", BEGINNINGS)
 def test_unseen_for_three_seconds_it_is_hardly_worse_than_the_prior_and_back_at_once(
     participant: int, begin: int
 ) -> None:
@@ -47,8 +49,20 @@ def test_unseen_for_three_seconds_it_is_hardly_worse_than_the_prior_and_back_at_
     never = seeing(participant)
     unseen = track.errors[begin:end].mean()
     assert unseen < 1.2 * blind(participant).errors[begin:end].mean()
-    assert track.errors[end + BACK_WITHIN - 1] < never.errors[end + BACK_WITHIN - 1] + 0.01
+    since = slice(end + BACK_WITHIN - 1, end + BACK_WITHIN - 1 + SECOND)
+    assert track.errors[since].mean() < never.errors[since].mean() + 0.005
     assert {one.state for one in track.estimates} == {"tracked"}
+
+
+def test_in_the_third_frame_that_is_seen_again_it_errs_as_if_it_had_never_been_unseen() -> None:
+    """On the mean of all interruptions; a single frame errs by a centimetre more or less."""
+    after, never = [], []
+    for participant in STRANGERS:
+        for begin in BEGINNINGS:
+            third = begin + UNSEEN + BACK_WITHIN - 1
+            after.append(interrupted(participant, begin).errors[third])
+            never.append(seeing(participant).errors[third])
+    assert np.mean(after) < 1.1 * np.mean(never)
 
 
 def test_until_images_fail_their_coming_failure_changes_nothing() -> None:
