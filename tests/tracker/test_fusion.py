@@ -9,7 +9,7 @@ import pytest
 from inhand_tracker import body
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.estimate import LOST, Estimate
-from inhand_tracker.fusion import FusionTracker
+from inhand_tracker.fusion import FusionTracker, Search
 from inhand_tracker.image import Image
 from inhand_tracker.model_file import Model, ModelError
 from people import (
@@ -423,7 +423,7 @@ def test_each_term_can_weigh_by_itself(terms: tuple[str, ...]) -> None:
 
 
 def test_one_hypothesis_is_enough_to_go_on() -> None:
-    for estimate in follow(tracker(hypotheses=1), unseen_wave(4), images()[:4]):
+    for estimate in follow(tracker(search=Search(hypotheses=1)), unseen_wave(4), images()[:4]):
         assert_sound(estimate)
 
 
