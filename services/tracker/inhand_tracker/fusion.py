@@ -37,7 +37,7 @@ from inhand_tracker.viewpoints import VisiblePoints
 
 Array = NDArray[np.float64]
 
-REFINED = 4
+REFINED = 3
 """So many of the likeliest hypotheses."""
 SEEDS, CLOSER = 20, 0.35
 """Around so many of the likeliest hypotheses as many again, so much nearer, are tried."""
@@ -70,7 +70,7 @@ class Search:
     is carried over, an object may have been left somewhere, and the likeliest are refined.
     """
 
-    hypotheses: int = 400
+    hypotheses: int = 250
     rounds: int = 2
     carries: bool = True
     leaves: bool = True
