@@ -1,7 +1,9 @@
 """Our own cascade: recognition over time says which objects to follow, and each likely one has a
 tracker of the default method.
 
-Nothing is known while nobody uses anything, or does what nobody taught.
+Nothing is known while nobody uses anything, or does what nobody taught. Most often the object that
+was used last has been put down then: it is followed on, so that it is found again where it is, and
+its tracker forgets nothing of it while recognition wavers.
 """
 
 from collections.abc import Sequence
@@ -20,7 +22,8 @@ from inhand_tracker.trackers import ObjectTracker
 Array = NDArray[np.float64]
 
 FOLLOWED = 2
-"""So many actions' objects are tracked at a time at most, the likeliest."""
+"""So many actions' objects are tracked at a time at most, the likeliest, beside the one that was
+used last."""
 WORTH_FOLLOWING = 0.2
 """Of the probability of all actions, the share from which a second action's object is tracked."""
 
@@ -49,6 +52,7 @@ class Cascade:
         for tracker in self._trackers:
             tracker.restart()
         self._last = Recognition(np.zeros(len(self._trackers)))
+        self._used: int | None = None
 
     def step(
         self,
@@ -68,17 +72,19 @@ class Cascade:
         if body is None:
             return self._coast(time_ns)
         probabilities = self._recogniser.step(time_ns, body)[:-1]
-        followed = worth_following(probabilities)
-        estimates = {
-            action: self._trackers[action].step(joints, time_ns, image) for action in followed
-        }
         known = known_action(probabilities)
+        if known is not None:
+            self._used = known
+        estimates = {
+            action: self._trackers[action].step(joints, time_ns, image)
+            for action in self._followed(probabilities)
+        }
         boxes = {a: self._box(a, e, camera) for a, e in estimates.items()}
         self._last = Recognition(
             probabilities,
             known,
             LOST if known is None else estimates[known],
-            _expected_box(boxes, probabilities),
+            _expected_box(boxes, self._whose_box(probabilities)),
         )
         return self._last
 
@@ -87,6 +93,19 @@ class Cascade:
         if recognition.known is None:
             return None
         return self._trackers[recognition.known].outline(recognition.estimate, camera)
+
+    def _followed(self, probabilities: Array) -> list[int]:
+        """The actions whose objects are tracked: the likely ones, and the last that was known."""
+        likely = worth_following(probabilities)
+        return likely if self._used in (None, *likely) else [*likely, self._used]
+
+    def _whose_box(self, probabilities: Array) -> Array:
+        """How probably each action's object (K,) is the one to be seen: where none is in use, that
+        which was used last."""
+        shown = probabilities.copy()
+        if self._used is not None:
+            shown[self._used] += 1.0 - probabilities.sum()
+        return shown
 
     def _coast(self, time_ns: int) -> Recognition:
         known = self._last.known
