@@ -149,7 +149,8 @@ def _try_recording(
     def trial(name: str, score: RecognitionScore) -> RecognitionTrial:
         return RecognitionTrial(name, entry.interaction, entry.participant, tall, score)
 
-    answers = answers_together(trackers, observe(path, frames, protocol.needs()), len(frames), camera)
+    observations = observe(path, frames, protocol.needs())
+    answers = answers_together(trackers, observations, len(frames), camera)
     trials = [
         trial(name, score_answers(answer, action, frames, truth, gauge))
         for name, answer in zip(protocol.methods, answers, strict=True)

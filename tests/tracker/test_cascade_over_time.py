@@ -61,9 +61,7 @@ def new_cascade() -> tuple[Cascade, list[AtPixel]]:
 
 
 def run(cascade: Cascade, frames: int) -> list:
-    return [
-        cascade.step(STANDING, (frame + 1) * FRAME_NS, None, CAMERA) for frame in range(frames)
-    ]
+    return [cascade.step(STANDING, (frame + 1) * FRAME_NS, None, CAMERA) for frame in range(frames)]
 
 
 def test_before_anything_was_known_the_box_is_that_of_the_likely_ones(script) -> None:

@@ -97,7 +97,9 @@ class Cascade:
     def _followed(self, probabilities: Array) -> list[int]:
         """The actions whose objects are tracked: the likely ones, and the last that was known."""
         likely = worth_following(probabilities)
-        return likely if self._used in (None, *likely) else [*likely, self._used]
+        if self._used is None or self._used in likely:
+            return likely
+        return [*likely, self._used]
 
     def _whose_box(self, probabilities: Array) -> Array:
         """How probably each action's object (K,) is the one to be seen: where none is in use, that
