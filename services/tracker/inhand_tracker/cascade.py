@@ -79,12 +79,11 @@ class Cascade:
             action: self._trackers[action].step(joints, time_ns, image)
             for action in self._followed(probabilities)
         }
-        boxes = {a: self._box(a, e, camera) for a, e in estimates.items()}
         self._last = Recognition(
             probabilities,
             known,
             LOST if known is None else estimates[known],
-            _expected_box(boxes, self._whose_box(probabilities)),
+            None if camera is None else self._box(estimates, probabilities, camera),
         )
         return self._last
 
@@ -101,14 +100,6 @@ class Cascade:
             return likely
         return [*likely, self._used]
 
-    def _whose_box(self, probabilities: Array) -> Array:
-        """How probably each action's object (K,) is the one to be seen: where none is in use, that
-        which was used last."""
-        shown = probabilities.copy()
-        if self._used is not None:
-            shown[self._used] += 1.0 - probabilities.sum()
-        return shown
-
     def _coast(self, time_ns: int) -> Recognition:
         known = self._last.known
         if known is None:
@@ -118,9 +109,23 @@ class Cascade:
             known = None
         return Recognition(self._last.probabilities, known, estimate, self._last.box)
 
-    def _box(self, action: int, estimate: Estimate, camera: Intrinsics | None) -> Array | None:
-        outline = None if camera is None else self._trackers[action].outline(estimate, camera)
-        return None if outline is None else boxes_around(outline[None])[0]
+    def _box(
+        self, estimates: dict[int, Estimate], probabilities: Array, camera: Intrinsics
+    ) -> Array | None:
+        """The box (4,) of the object that is most probably there: by its action, of which the last
+        that was known has what none has, and by what its tracker says of its pose.
+
+        No mean of boxes: between two there is neither object.
+        """
+        there = probabilities.copy()
+        if self._used is not None:
+            there[self._used] += 1.0 - probabilities.sum()
+        outlines = {a: self._trackers[a].outline(e, camera) for a, e in estimates.items()}
+        placed = {action: outline for action, outline in outlines.items() if outline is not None}
+        if not placed:
+            return None
+        surest = max(placed, key=lambda action: there[action] * estimates[action].confidence)
+        return boxes_around(placed[surest][None])[0]
 
 
 def worth_following(probabilities: Array) -> list[int]:
@@ -128,12 +133,3 @@ def worth_following(probabilities: Array) -> list[int]:
     order = np.argsort(-probabilities)[:FOLLOWED]
     least = WORTH_FOLLOWING * probabilities.sum()
     return [int(a) for rank, a in enumerate(order) if rank == 0 or probabilities[a] >= least]
-
-
-def _expected_box(boxes: dict[int, Array | None], probabilities: Array) -> Array | None:
-    """The mean box (4,) by the probabilities of the actions whose boxes are known."""
-    known = {action: box for action, box in boxes.items() if box is not None}
-    weights = np.array([probabilities[action] for action in known])
-    if not known or not weights.sum() > 0.0:
-        return None
-    return np.asarray(weights @ np.stack(list(known.values())) / weights.sum())
