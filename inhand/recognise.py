@@ -26,6 +26,7 @@ from inhand_lab.report import prepare_folder
 from inhand_lab.tables import Grid
 from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
+from inhand_tracker.trackers import ALL_METHODS
 from rich.console import Console
 
 from inhand.progress import progress_bar
@@ -59,6 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--tracking",
         default=TRACKING,
         metavar="M",
+        choices=ALL_METHODS,
         help=f"under cascade (default: {TRACKING})",
     )
     parser.add_argument(

@@ -195,12 +195,12 @@ def _shape(dataset: Dataset, fold: Fold) -> ObjectShape:
     return dataset.shape(name)
 
 
-# Folds of one interaction share recordings and the object, whose boundaries take seconds to find.
+# Folds share recordings, and the objects, whose boundaries take seconds to find.
 @lru_cache(maxsize=16)
 def _sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
     return checked_sequence(dataset, entry)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=32)
 def _viewpoints(dataset: Dataset, name: str) -> Viewpoints:
     return find_viewpoints(dataset.shape(name))

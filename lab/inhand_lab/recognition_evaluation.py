@@ -6,18 +6,22 @@ get bodies and images; the labels meet their answers only in ``recognition_score
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.cascade import Cascade
 from inhand_tracker.cascade_2012 import Cascade2012
+from inhand_tracker.conversion import Need
 from inhand_tracker.likelihood import DEFAULT_TERMS
-from inhand_tracker.methods import METHODS
 from inhand_tracker.model_file import Model
 from inhand_tracker.recogniser import Recogniser
-from inhand_tracker.tracking import Tracker
-from inhand_tracker.viewpoints import Viewpoints, find_viewpoints
+from inhand_tracker.trackers import (
+    DEFAULT_METHOD,
+    MethodName,
+    needs_of,
+    new_tracker,
+    usual_terms,
+)
 from numpy.typing import NDArray
 
 from inhand_lab.adaptive_comparison import follow_adaptively
@@ -35,7 +39,7 @@ Array = NDArray[np.float64]
 AnyCascade = Cascade2012 | Cascade
 
 CASCADES = ("cascade-2012", "cascade")
-TRACKING = "gd-stable-proximate"
+TRACKING = DEFAULT_METHOD
 """The method of the trackers under `cascade`."""
 
 
@@ -46,9 +50,18 @@ class RecognitionProtocol:
     dataset: Dataset
     unseen: tuple[str, ...]
     methods: tuple[str, ...]
-    tracking: str
+    tracking: MethodName
     pythons: dict[str, str]
     seed: int = 0
+
+    def needs(self) -> set[Need]:
+        """What of a frame must be decoded for all methods."""
+        needs: set[Need] = set()
+        if "cascade-2012" in self.methods:
+            needs.update(DEFAULT_TERMS)
+        if "cascade" in self.methods:
+            needs.update(needs_of(self.tracking, usual_terms(self.tracking)))
+        return needs
 
 
 @dataclass(frozen=True)
@@ -88,15 +101,17 @@ def labelled_entries(dataset: Dataset) -> list[Entry]:
 def learn_from(
     dataset: Dataset, entries: Sequence[Entry], *, images: bool = True
 ) -> tuple[Recogniser, list[Model]]:
-    """A recogniser, and a model for each of its actions, in their order; raises DatasetError."""
+    """A recogniser, and a model for each of its actions, in their order.
+
+    Without ``images`` no boundaries and no colours are learned. Raises DatasetError or
+    RecordingError.
+    """
     recogniser = train_recogniser(dataset, entries)
-    models = []
-    for action in recogniser.actions:
-        theirs = tuple(entry for entry in entries if entry.interaction == action)
-        model = fold_model(dataset, Fold(action, (), theirs), images=False, fused=True)
-        seen = _viewpoints(dataset, model.shape.name) if images else model.viewpoints
-        models.append(Model(action, model.shape, model.mapping, seen))
-    return recogniser, models
+    folds = [
+        Fold(action, (), tuple(entry for entry in entries if entry.interaction == action))
+        for action in recogniser.actions
+    ]
+    return recogniser, [fold_model(dataset, fold, images=images, fused=True) for fold in folds]
 
 
 def _try_person(task: tuple[RecognitionProtocol, str]) -> list[RecognitionTrial]:
@@ -134,7 +149,8 @@ def _try_recording(
     def trial(name: str, score: RecognitionScore) -> RecognitionTrial:
         return RecognitionTrial(name, entry.interaction, entry.participant, tall, score)
 
-    answers = answers_together(trackers, observe(path, frames, DEFAULT_TERMS), len(frames), camera)
+    observations = observe(path, frames, protocol.needs())
+    answers = answers_together(trackers, observations, len(frames), camera)
     trials = [
         trial(name, score_answers(answer, action, frames, truth, gauge))
         for name, answer in zip(protocol.methods, answers, strict=True)
@@ -169,14 +185,8 @@ def _tracker(
     left_handed = entry.handedness == "left"
     if name == "cascade-2012":
         return Cascade2012(recogniser, models, left_handed=left_handed, seed=protocol.seed)
-    method = METHODS[protocol.tracking]
     trackers = [
-        Tracker(model, method, left_handed=left_handed, seed=protocol.seed) for model in models
+        new_tracker(model, protocol.tracking, left_handed=left_handed, seed=protocol.seed)
+        for model in models
     ]
     return Cascade(recogniser, trackers, left_handed=left_handed)
-
-
-# Folds share the objects, whose boundaries take seconds to find.
-@lru_cache(maxsize=64)
-def _viewpoints(dataset: Dataset, name: str) -> Viewpoints:
-    return find_viewpoints(dataset.shape(name))

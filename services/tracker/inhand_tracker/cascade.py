@@ -1,7 +1,9 @@
 """Our own cascade: recognition over time says which objects to follow, and each likely one has a
 tracker of the default method.
 
-Nothing is known while nobody uses anything, or does what nobody taught.
+Nothing is known while nobody uses anything, or does what nobody taught. Most often the object that
+was used last has been put down then: it is followed on, so that it is found again where it is, and
+its tracker forgets nothing of it while recognition wavers.
 """
 
 from collections.abc import Sequence
@@ -20,7 +22,8 @@ from inhand_tracker.trackers import ObjectTracker
 Array = NDArray[np.float64]
 
 FOLLOWED = 2
-"""So many actions' objects are tracked at a time at most, the likeliest."""
+"""So many actions' objects are tracked at a time at most, the likeliest, beside the one that was
+used last."""
 WORTH_FOLLOWING = 0.2
 """Of the probability of all actions, the share from which a second action's object is tracked."""
 
@@ -49,6 +52,7 @@ class Cascade:
         for tracker in self._trackers:
             tracker.restart()
         self._last = Recognition(np.zeros(len(self._trackers)))
+        self._used: int | None = None
 
     def step(
         self,
@@ -68,17 +72,18 @@ class Cascade:
         if body is None:
             return self._coast(time_ns)
         probabilities = self._recogniser.step(time_ns, body)[:-1]
-        followed = worth_following(probabilities)
-        estimates = {
-            action: self._trackers[action].step(joints, time_ns, image) for action in followed
-        }
         known = known_action(probabilities)
-        boxes = {a: self._box(a, e, camera) for a, e in estimates.items()}
+        if known is not None:
+            self._used = known
+        estimates = {
+            action: self._trackers[action].step(joints, time_ns, image)
+            for action in self._followed(probabilities)
+        }
         self._last = Recognition(
             probabilities,
             known,
             LOST if known is None else estimates[known],
-            _expected_box(boxes, probabilities),
+            None if camera is None else self._box(estimates, probabilities, camera),
         )
         return self._last
 
@@ -87,6 +92,13 @@ class Cascade:
         if recognition.known is None:
             return None
         return self._trackers[recognition.known].outline(recognition.estimate, camera)
+
+    def _followed(self, probabilities: Array) -> list[int]:
+        """The actions whose objects are tracked: the likely ones, and the last that was known."""
+        likely = worth_following(probabilities)
+        if self._used is None or self._used in likely:
+            return likely
+        return [*likely, self._used]
 
     def _coast(self, time_ns: int) -> Recognition:
         known = self._last.known
@@ -97,9 +109,23 @@ class Cascade:
             known = None
         return Recognition(self._last.probabilities, known, estimate, self._last.box)
 
-    def _box(self, action: int, estimate: Estimate, camera: Intrinsics | None) -> Array | None:
-        outline = None if camera is None else self._trackers[action].outline(estimate, camera)
-        return None if outline is None else boxes_around(outline[None])[0]
+    def _box(
+        self, estimates: dict[int, Estimate], probabilities: Array, camera: Intrinsics
+    ) -> Array | None:
+        """The box (4,) of the object that is most probably there: by its action, of which the last
+        that was known has what none has, and by what its tracker says of its pose.
+
+        No mean of boxes: between two there is neither object.
+        """
+        there = probabilities.copy()
+        if self._used is not None:
+            there[self._used] += 1.0 - probabilities.sum()
+        outlines = {a: self._trackers[a].outline(e, camera) for a, e in estimates.items()}
+        placed = {action: outline for action, outline in outlines.items() if outline is not None}
+        if not placed:
+            return None
+        surest = max(placed, key=lambda action: there[action] * estimates[action].confidence)
+        return boxes_around(placed[surest][None])[0]
 
 
 def worth_following(probabilities: Array) -> list[int]:
@@ -107,12 +133,3 @@ def worth_following(probabilities: Array) -> list[int]:
     order = np.argsort(-probabilities)[:FOLLOWED]
     least = WORTH_FOLLOWING * probabilities.sum()
     return [int(a) for rank, a in enumerate(order) if rank == 0 or probabilities[a] >= least]
-
-
-def _expected_box(boxes: dict[int, Array | None], probabilities: Array) -> Array | None:
-    """The mean box (4,) by the probabilities of the actions whose boxes are known."""
-    known = {action: box for action, box in boxes.items() if box is not None}
-    weights = np.array([probabilities[action] for action in known])
-    if not known or not weights.sum() > 0.0:
-        return None
-    return np.asarray(weights @ np.stack(list(known.values())) / weights.sum())

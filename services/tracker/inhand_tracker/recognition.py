@@ -18,8 +18,8 @@ class Recognition:
     """``probabilities`` (K,) of the actions: what is missing from 1 is that of none of them.
 
     ``known`` is the number of the action that is known, whose object's pose ``estimate`` is; while
-    none is known that is lost. ``box`` is where an object would be in the image: its expected left,
-    top, right and bottom in pixels, (4,); None where that is not known.
+    none is known that is lost. ``box`` is where an object would be in the image, known or not:
+    left, top, right and bottom in pixels, (4,); None where that is not known.
     """
 
     probabilities: Array

@@ -1,0 +1,120 @@
+"""Which objects the cascade follows, and where it says one is, as recognition comes and goes."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from inhand_tracker import cascade as cascade_module
+from inhand_tracker.camera import Intrinsics
+from inhand_tracker.cascade import Cascade
+from inhand_tracker.estimate import LOST, Estimate
+from people import FRAME_NS, STANDING, wave_model
+
+CAMERA = Intrinsics(500.0, 500.0, 320.0, 240.0, 640, 480)
+ACTIONS = 4
+
+
+class AtPixel:
+    """A tracker of an object whose box is a square around one pixel; it keeps what it saw."""
+
+    def __init__(self, left: float) -> None:
+        self.left = left
+        self.confidence = 1.0
+        self.seen: list[int] = []
+
+    def restart(self) -> None:
+        self.seen = []
+
+    def step(self, joints: np.ndarray | None, time_ns: int, image: object = None) -> Estimate:
+        self.seen.append(time_ns)
+        unturned = np.array([1.0, 0.0, 0.0, 0.0])
+        return Estimate("tracked", self.confidence, np.zeros(3), unturned, np.eye(6))
+
+    def outline(self, estimate: Estimate, camera: Intrinsics) -> np.ndarray:
+        return np.array([[self.left, 0.0], [self.left + 10.0, 10.0]])
+
+
+@pytest.fixture
+def script(monkeypatch: pytest.MonkeyPatch) -> list[list[float]]:
+    """The probabilities that the recogniser will tell, frame by frame."""
+    frames: list[list[float]] = []
+
+    class Told:
+        def __init__(self, *_: object) -> None:
+            pass
+
+        def restart(self) -> None:
+            pass
+
+        def step(self, *_: object) -> np.ndarray:
+            told = np.array(frames.pop(0))
+            return np.append(told, 1.0 - told.sum())
+
+    monkeypatch.setattr(cascade_module, "MovementRecogniser", Told)
+    return frames
+
+
+def new_cascade() -> tuple[Cascade, list[AtPixel]]:
+    trackers = [AtPixel(100.0 * action) for action in range(ACTIONS)]
+    learned = SimpleNamespace(
+        movements=None, temper=1.0, body_poses=wave_model().mapping.body_poses
+    )
+    return Cascade(learned, trackers), trackers
+
+
+def run(cascade: Cascade, frames: int) -> list:
+    return [cascade.step(STANDING, (frame + 1) * FRAME_NS, None, CAMERA) for frame in range(frames)]
+
+
+def test_before_anything_was_known_the_box_is_that_of_the_likeliest(script) -> None:
+    script += [[0.1, 0.3, 0.0, 0.0]]
+    cascade, trackers = new_cascade()
+    (answer,) = run(cascade, 1)
+    assert answer.known is None
+    assert answer.box[0] == 100.0
+    assert [len(tracker.seen) for tracker in trackers] == [1, 1, 0, 0]
+
+
+def test_the_object_that_was_used_last_is_followed_while_others_are_likelier(script) -> None:
+    script += [[0.9, 0.0, 0.0, 0.0], *[[0.0, 0.4, 0.2, 0.0]] * 30, [0.9, 0.0, 0.0, 0.0]]
+    cascade, trackers = new_cascade()
+    answers = run(cascade, 32)
+    assert [answer.known for answer in answers] == [0, *[None] * 30, 0]
+    assert len(trackers[0].seen) == 32
+    assert [len(tracker.seen) for tracker in trackers[1:]] == [30, 30, 0]
+
+
+def test_where_nothing_is_in_use_the_box_is_where_the_last_object_was_left(script) -> None:
+    script += [[0.0, 0.9, 0.0, 0.0], [0.0, 0.0, 0.0, 0.1]]
+    cascade, _ = new_cascade()
+    answer = run(cascade, 2)[-1]
+    assert (answer.known, answer.estimate) == (None, LOST)
+    assert answer.box[0] == 100.0
+
+
+def test_a_tracker_that_is_not_sure_of_its_object_does_not_say_where_one_is(script) -> None:
+    script += [[0.0, 0.3, 0.2, 0.0], [0.0, 0.3, 0.2, 0.0]]
+    cascade, trackers = new_cascade()
+    trackers[1].confidence = 0.2
+    assert run(cascade, 1)[0].box[0] == 200.0
+    trackers[2].confidence = 0.2
+    assert run(cascade, 1)[0].box[0] == 100.0
+
+
+def test_another_object_that_is_known_takes_the_place_of_the_last(script) -> None:
+    script += [[0.9, 0.0, 0.0, 0.0], [0.0, 0.9, 0.0, 0.0], [0.0, 0.0, 0.1, 0.0]]
+    cascade, trackers = new_cascade()
+    answers = run(cascade, 3)
+    assert [answer.known for answer in answers] == [0, 1, None]
+    assert len(trackers[0].seen) == 1
+    assert answers[-1].box[0] == 100.0
+
+
+def test_somebody_else_left_nothing(script) -> None:
+    script += [[0.9, 0.0, 0.0, 0.0], [0.0, 0.0, 0.1, 0.0]]
+    cascade, trackers = new_cascade()
+    run(cascade, 1)
+    cascade.restart()
+    (answer,) = run(cascade, 1)
+    assert answer.box[0] == 200.0
+    assert trackers[0].seen == []
