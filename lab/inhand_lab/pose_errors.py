@@ -30,6 +30,8 @@ COMPARED_POINTS = 200
 CHUNK = 1024
 ADD_LIMIT_M = 0.10
 CLOSE_M = 0.05
+REGULAR = 1e-9
+"""Share of the largest variance below which a covariance says nothing of some direction."""
 CLOSE_RAD = np.deg2rad(5.0)
 
 
@@ -112,7 +114,8 @@ def region_share(estimated: Track, true: Track, covariances: Array | None) -> fl
         (estimated.translations - true.translations, rotations.to_vector(turns)), axis=1
     )
     known = np.flatnonzero(np.isfinite(off).all(axis=1) & np.isfinite(covariances).all(axis=(1, 2)))
-    known = known[np.linalg.eigvalsh(covariances[known])[:, 0] > 0.0]
+    variances = np.linalg.eigvalsh(covariances[known])
+    known = known[variances[:, 0] > REGULAR * variances[:, -1]]
     if len(known) == 0:
         return None
     solved = np.linalg.solve(covariances[known], off[known][..., None])[..., 0]
