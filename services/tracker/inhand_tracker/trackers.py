@@ -45,6 +45,9 @@ class ObjectTracker(Protocol):
     def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
         """One frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
 
+    def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
+        """The object's pose in a frame by itself; what is tracked is neither used nor changed."""
+
     def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:
         """Pixels (B, 2) of the boundary of the object at an estimate; None for a lost one."""
 
