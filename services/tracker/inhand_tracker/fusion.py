@@ -57,7 +57,7 @@ LEFT_DEVIATIONS = np.array([0.01, 0.01, 0.01, 0.05, 0.05, 0.05])
 FORGETTING_S = 0.3
 """How long what was seen makes sure of a pose: one frame errs as the next does."""
 SEEN_SCALE = 0.7
-"""Of the covariance told with an image: Laplace's is too wide, on the simulated people of seed 51."""
+"""Of the covariance told with an image: Laplace's is too wide, on simulated people of seed 51."""
 AROUND_RATE = 0.3
 LEARNING_RATE = 0.05
 LEARNING_LOG_LIKELIHOOD = 3.0
