@@ -56,6 +56,8 @@ LEFT_DEVIATIONS = np.array([0.01, 0.01, 0.01, 0.05, 0.05, 0.05])
 """By how much an object that was left, or the camera, moves from frame to frame."""
 FORGETTING_S = 0.3
 """How long what was seen makes sure of a pose: one frame errs as the next does."""
+BLURRED_PIXELS = 20.0
+"""An object that goes so far from frame to frame is seen half as well: its outline is a smear."""
 SEEN_SCALE = 0.7
 """Of the covariance told with an image: Laplace's is too wide, on simulated people of seed 51."""
 AROUND_RATE = 0.3
@@ -143,7 +145,8 @@ class FusionTracker:
             return self._coast(time_ns)
         expected = self._expect(body, time_ns)
         belief = self._carry(expected, time_ns)
-        seen = None if image is None else self._look(belief, image, body)
+        sharpness = self._sharpness(expected, image)
+        seen = None if image is None else self._look(belief, image, body, sharpness)
         believed = belief.parts[0] if seen is None else seen
         self._expected, self._believed, self._time_ns = expected, believed, time_ns
         scale = 1.0 if seen is None else SEEN_SCALE
@@ -214,7 +217,22 @@ class FusionTracker:
         off = np.array([expected.square_distance(part) for part in parts])
         return mixture(parts, np.log([CARRIED, AFRESH, LEFT])[: len(parts)] - 0.5 * off / DOUBT)
 
-    def _look(self, belief: PoseMixture, image: Image, body: Body) -> PoseGaussian | None:
+    def _sharpness(self, expected: PoseGaussian, image: Image | None) -> float:
+        """How well an object is seen that moved to where it is expected, from 0 to 1."""
+        before = self._expected
+        if before is None or image is None:
+            return 1.0
+        ends = self._radius * np.concatenate((np.eye(3), -np.eye(3)))
+        then, now = (
+            image.camera.project(pose.centre + rotations.rotate(pose.rotation, ends))
+            for pose in (before, expected)
+        )
+        way = float(np.nan_to_num(np.linalg.norm(now - then, axis=1)).max())
+        return 1.0 / (1.0 + (way / BLURRED_PIXELS) ** 2)
+
+    def _look(
+        self, belief: PoseMixture, image: Image, body: Body, sharpness: float
+    ) -> PoseGaussian | None:
         """What is believed after a look at the image; None where the object is out of it."""
         count = self._search.hypotheses
         centres, orientations = belief.sample(count, self._random)
@@ -222,7 +240,7 @@ class FusionTracker:
         view = self._view(centres, belief.parts[0], image, joints)
         if view is None:
             return None
-        scores = self._scores(belief, centres, orientations, view)
+        scores = self._scores(belief, centres, orientations, view, sharpness)
         root = np.linalg.cholesky(belief.moments().covariance)
         for round_ in range(1, self._search.rounds):
             best = np.resize(np.argsort(scores)[::-1][:SEEDS], count)
@@ -231,21 +249,26 @@ class FusionTracker:
             turned = rotations.multiply(rotations.from_vector(shifts[:, 3:]), orientations[best])
             centres = np.concatenate((centres, nearer))
             orientations = np.concatenate((orientations, turned))
-            scores = np.concatenate((scores, self._scores(belief, nearer, turned, view)))
+            scores = np.concatenate((scores, self._scores(belief, nearer, turned, view, sharpness)))
         likeliest = np.argsort(scores)[::-1][:REFINED]
         starts = [(part.centre, part.rotation) for part in belief.parts]
         starts += [(centres[index], orientations[index]) for index in likeliest]
-        modes = self._modes(belief, starts, view)
-        return self._weigh_modes(belief, modes, view).moments()
+        modes = self._modes(belief, starts, view, sharpness)
+        return self._weigh_modes(belief, modes, view, sharpness).moments()
 
     def _scores(
-        self, belief: PoseMixture, centres: Array, orientations: Array, view: SightView
+        self,
+        belief: PoseMixture,
+        centres: Array,
+        orientations: Array,
+        view: SightView,
+        sharpness: float,
     ) -> Array:
         """The log-posterior (P,) of poses (P, 3) and (P, 4), up to a constant."""
         sight = self._sight
         assert sight is not None
         seen = sight.log_likelihood(self._origins(centres, orientations), orientations, view)
-        return TEMPER * seen + np.logaddexp.reduce(
+        return TEMPER * sharpness * seen + np.logaddexp.reduce(
             belief.log_densities(centres, orientations), axis=0
         )
 
@@ -278,7 +301,11 @@ class FusionTracker:
         return left, top, right, bottom
 
     def _modes(
-        self, belief: PoseMixture, starts: list[tuple[Array, Array]], view: SightView
+        self,
+        belief: PoseMixture,
+        starts: list[tuple[Array, Array]],
+        view: SightView,
+        sharpness: float,
     ) -> list[PoseGaussian]:
         """Where image and belief agree best near each start; each place once."""
         sight = self._sight
@@ -303,7 +330,7 @@ class FusionTracker:
                 orientations[chosen],
                 view,
                 self._at_origin(part, information),
-                INDEPENDENT,
+                INDEPENDENT * sharpness,
             )
             for origin, turned, seen in zip(
                 refined.translations, refined.rotations, refined.information, strict=True
@@ -317,7 +344,7 @@ class FusionTracker:
         return modes
 
     def _weigh_modes(
-        self, belief: PoseMixture, modes: list[PoseGaussian], view: SightView
+        self, belief: PoseMixture, modes: list[PoseGaussian], view: SightView, sharpness: float
     ) -> PoseMixture:
         """The modes by their probability (Laplace's approximation)."""
         centres = np.array([mode.centre for mode in modes])
@@ -327,7 +354,7 @@ class FusionTracker:
         expected = np.logaddexp.reduce(belief.log_densities(centres, orientations), axis=0)
         seen = sight.log_likelihood(self._origins(centres, orientations), orientations, view)
         room = np.array([0.5 * np.linalg.slogdet(mode.covariance)[1] for mode in modes])
-        found = mixture(modes, expected + TEMPER * seen + room)
+        found = mixture(modes, expected + TEMPER * sharpness * seen + room)
         best = int(np.argmax(found.weights))
         if seen[best] > LEARNING_LOG_LIKELIHOOD and self._colours is not None:
             origin = self._origins(centres[best][None], orientations[best][None])[0]
