@@ -1,4 +1,4 @@
-from inhand_tracker.pairing import FLOWING_S, FRAMES_KEPT, LONGEST_WAIT_S, MOST_WAITING, Pairing
+from inhand_tracker.pairing import FLOWING_S, FRAMES_KEPT, LONGEST_WAIT_S, Pairing
 
 START = 100.0
 
@@ -112,10 +112,3 @@ def test_frames_of_before_a_restart_are_not_paired_when_no_skeleton_waits() -> N
     assert pairing.pop(START) is None
     pairing.add_frame(2, "new frame 2", START)
     assert pairing.pop(START) == ("new skeleton 2", "new frame 2")
-
-
-def test_what_comes_faster_than_it_is_taken_away_is_given_up_oldest_first() -> None:
-    pairing: Pairing[int, str] = Pairing()
-    given_up = [pairing.add_skeleton(number, number, START) for number in range(MOST_WAITING + 3)]
-    assert given_up == [False] * MOST_WAITING + [True] * 3
-    assert pairing.pop(START) == (3, None)

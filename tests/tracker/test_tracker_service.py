@@ -55,7 +55,7 @@ class Rig:
         assert topic is POSE
         return Publications(self.poses.setdefault(name, []))
 
-    def subscribe(self, topic: AnyTopic, name: str) -> None:
+    def subscribe(self, topic: AnyTopic, name: str, samples: int | None = None) -> None:
         assert name == "camera"
         self.subscribed.append(topic)
 

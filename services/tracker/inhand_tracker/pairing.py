@@ -13,8 +13,6 @@ T = TypeVar("T")
 FLOWING_S = 1.0
 LONGEST_WAIT_S = 0.05
 FRAMES_KEPT = 4
-MOST_WAITING = 15
-"""Half a second at 30 Hz: who is later than that is better off with what comes next."""
 
 
 @dataclass(frozen=True)
@@ -36,19 +34,12 @@ class Pairing(Generic[T, F]):
         self._last_frame_at = float("-inf")
         self._last_skeleton = -1
 
-    def add_skeleton(self, sequence: int, skeleton: T, now: float) -> bool:
-        """Take a skeleton; a sequence that went back tells of a restarted camera.
-
-        Tells whether the oldest was given up, because more come than are taken away.
-        """
+    def add_skeleton(self, sequence: int, skeleton: T, now: float) -> None:
+        """Take a skeleton; a sequence that went back tells of a restarted camera."""
         if sequence < self._last_skeleton:
             self._frames.clear()
         self._last_skeleton = sequence
         self._waiting.append(_Waiting(sequence, skeleton, now))
-        late = len(self._waiting) > MOST_WAITING
-        if late:
-            self._waiting.popleft()
-        return late
 
     def add_frame(self, sequence: int, frame: F, now: float) -> None:
         """Take a frame; only the newest few are kept."""

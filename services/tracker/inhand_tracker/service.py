@@ -41,6 +41,8 @@ from inhand_tracker.watching import GivenObjects, RecognisedObjects, Seen, Watch
 log = logging.getLogger(__name__)
 
 POLL_S = 0.01
+MOST_WAITING = 15
+"""Half a second at 30 Hz: who is later than that is better off with what comes next."""
 
 
 class TrackerSettings(Section):
@@ -80,7 +82,7 @@ class TrackerService:
         self._pairing: Pairing[Skeletons, RgbdFrame] = Pairing()
         self._info: CameraInfo | None = None
         daemon.subscribe(INFO, settings.camera)
-        daemon.subscribe(SKELETONS, settings.camera)
+        daemon.subscribe(SKELETONS, settings.camera, samples=MOST_WAITING)
         if self._needs:
             daemon.subscribe(RGBD, settings.camera)
         self._keys = {topic: topic.key(daemon.site, settings.camera) for topic in (INFO, RGBD)}
@@ -89,13 +91,11 @@ class TrackerService:
         """Track until the daemon stops."""
         self._daemon.health.state = "running"
         while not self._daemon.stop.is_set():
-            pair = self._pairing.pop(time.monotonic())
-            if pair is not None:
-                self._track(*pair)
-            wait = POLL_S if pair is None else 0.0
-            while (sample := self._daemon.inbox.get(wait)) is not None:
+            sample = self._daemon.inbox.get(POLL_S)
+            if sample is not None:
                 self._take(sample)
-                wait = 0.0
+            while (pair := self._pairing.pop(time.monotonic())) is not None:
+                self._track(*pair)
 
     def _take(self, sample: Received) -> None:
         now = time.monotonic()
@@ -105,9 +105,7 @@ class TrackerService:
             if (frame := self._daemon.decode(RGBD, sample)) is not None:
                 self._pairing.add_frame(frame.sequence, frame, now)
         elif (skeletons := self._daemon.decode(SKELETONS, sample)) is not None:
-            late = self._pairing.add_skeleton(skeletons.sequence, skeletons, now)
-            if late:
-                self._daemon.health.dropped(sample.key)
+            self._pairing.add_skeleton(skeletons.sequence, skeletons, now)
 
     def _track(self, skeletons: Skeletons, frame: RgbdFrame | None) -> None:
         camera = None if self._info is None else intrinsics_of(self._info)
