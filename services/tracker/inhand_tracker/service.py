@@ -41,8 +41,8 @@ from inhand_tracker.watching import GivenObjects, RecognisedObjects, Seen, Watch
 log = logging.getLogger(__name__)
 
 POLL_S = 0.01
-MOST_WAITING = 15
-"""Half a second at 30 Hz: who is later than that is better off with what comes next."""
+MOST_WAITING = 30
+"""A second at 30 Hz: who is later than that is better off with what comes next."""
 
 
 class TrackerSettings(Section):
