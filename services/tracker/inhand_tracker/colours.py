@@ -1,6 +1,6 @@
 """Colours as histograms: what an object's are, what its surroundings' are, and which is which."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -76,11 +76,6 @@ def log_odds_by_colour(colours: Colours) -> Floats:
         return np.zeros(BINS, np.float32)
     odds = np.log((colours.of_object + FLOOR) / (colours.around + FLOOR_AROUND))
     return np.asarray(np.clip(odds, -MOST_LOG_ODDS, MOST_LOG_ODDS), np.float32)
-
-
-def with_around(colours: Colours, around: Floats | None, rate: float) -> Colours:
-    """The same object among other things."""
-    return replace(colours, around=blend(colours.around, around, rate))
 
 
 @njit(cache=True, nogil=True)

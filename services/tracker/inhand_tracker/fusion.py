@@ -105,7 +105,6 @@ class FusionTracker:
         self._mapping = model.mapping
         self._mirror_normal = model.shape.mirror_normal
         self._left_handed = left_handed
-        self._terms = frozenset(terms)
         self._sight = Sight(model, terms) if terms else None
         if self._sight is not None:
             self._sight.compile()

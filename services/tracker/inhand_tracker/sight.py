@@ -142,14 +142,10 @@ class Sight:
         rate: float = 0.5,
     ) -> Colours:
         """The surroundings' colours learned from around a predicted pose (3,), (4,)."""
-        region = region_around(self._shape, translation, rotation, frame.camera)
-        if frame.bins is None or region is None:
+        part, depths = self._part_around(frame, translation, rotation)
+        if part is None or part.bins is None:
             return colours
-        part = prepare(Image(None, frame.camera, frame.depth, frame.colour), region)
-        within = np.isfinite(silhouette_depths(self._shape, translation, rotation, part.camera))
-        wide = cv2.dilate(within.astype(np.uint8), np.ones((5, 5)))
-        if part.bins is None:
-            return colours
+        wide = cv2.dilate(np.isfinite(depths).astype(np.uint8), np.ones((5, 5)))
         around = histogram(part.bins, (1 - wide).astype(np.float32))
         return replace(colours, around=blend(colours.around, around, rate))
 
@@ -162,15 +158,22 @@ class Sight:
         rate: float = 0.1,
     ) -> Colours:
         """The object's colours learned from a pose (3,), (4,) that is trusted."""
-        region = region_around(self._shape, translation, rotation, frame.camera)
-        if frame.bins is None or region is None:
-            return colours
-        part = prepare(Image(None, frame.camera, frame.depth, frame.colour), region)
-        depths = silhouette_depths(self._shape, translation, rotation, part.camera)
-        if part.bins is None:
+        part, depths = self._part_around(frame, translation, rotation)
+        if part is None or part.bins is None:
             return colours
         seen = histogram(part.bins, pixels_within(part, depths).astype(np.float32))
         return replace(colours, of_object=blend(colours.of_object, seen, rate))
+
+    def _part_around(
+        self, frame: SightFrame, translation: Array, rotation: Array
+    ) -> tuple[SightFrame | None, Array]:
+        """The part of a coloured frame around a pose, and how far away its surface is in each pixel
+        of it; None where there is nothing to learn colours from."""
+        region = region_around(self._shape, translation, rotation, frame.camera)
+        if frame.colour is None or region is None:
+            return None, np.empty((0, 0))
+        part = prepare(Image(None, frame.camera, frame.depth, frame.colour), region)
+        return part, silhouette_depths(self._shape, translation, rotation, part.camera)
 
     def view(self, frame: SightFrame, colours: Colours, joints: Array | None = None) -> SightView:
         """A frame as one with these colours sees it, and a person with joints (20, 3) in it."""
