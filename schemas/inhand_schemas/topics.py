@@ -21,18 +21,20 @@ class Delivery:
     """Quality of service of a stream, in words of our own.
 
     ``newest`` readers keep the newest messages only, ``every`` readers queue them; a ``kept``
-    stream hands its last message to late joiners. ``wait_for_first`` lets a fragmented message
-    that is under way finish, but a slow reader never slows another.
+    stream hands its last message to late joiners. Where a link is full, ``drop`` drops a message
+    and ``wait_for_first`` lets a fragmented one that is under way finish; in both a slow reader
+    never slows another. Small messages ``drop``: a busy machine loses some of a burst of them that
+    would ``wait_for_first``.
     """
 
     readers: Literal["newest", "every"]
-    congestion: Literal["wait_for_first", "wait"]
+    congestion: Literal["drop", "wait_for_first", "wait"]
     priority: Literal["urgent", "normal", "bulk"]
     kept: bool = False
 
 
 BULK = Delivery("newest", "wait_for_first", "bulk")
-URGENT = Delivery("every", "wait_for_first", "urgent")
+URGENT = Delivery("every", "drop", "urgent")
 RELIABLE = Delivery("every", "wait", "normal")
 KEPT = Delivery("every", "wait", "normal", kept=True)
 

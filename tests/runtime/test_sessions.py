@@ -11,8 +11,9 @@ from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.inbox import Inbox, Received
 from inhand_runtime.session import open_session, subscribe
 from inhand_runtime.settings import ZenohSettings
-from inhand_schemas.messages import CameraInfo, ColourImage, RgbdFrame, Skeletons
-from inhand_schemas.topics import INFO, RGBD, SKELETONS
+from inhand_schemas.messages import CameraInfo, ColourImage, ObjectPose, RgbdFrame, Skeletons
+from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
+from msgspec.structs import replace
 from running_rig import RunningRig, eventually
 from wire import Wire
 
@@ -22,6 +23,8 @@ OPENS_WITHIN_S = 5.0
 INFO_MESSAGE = CameraInfo(
     sequence=0, time_ns=1, width=64, height=48, fx=50.0, fy=50.0, cx=32.0, cy=24.0
 )
+
+LOST = ObjectPose(sequence=0, time_ns=1, object="mug", camera="front", state="lost", confidence=0.0)
 
 
 def test_peers_that_start_together_find_each_other(rig: RunningRig) -> None:
@@ -112,6 +115,20 @@ def test_the_last_message_before_a_session_closes_arrives(wire: Wire, rig: Runni
         for number in range(100):
             publisher.put(Skeletons(sequence=number, time_ns=number))
     eventually("the last message", lambda: len(heard) == 100)
+
+
+def test_a_burst_of_small_messages_arrives_whole_on_a_busy_machine(
+    wire: Wire, rig: RunningRig
+) -> None:
+    heard = wire.hear(POSE)
+    for _ in range(4 * (os.cpu_count() or 1)):
+        rig.python("-c", "while True: pass")
+    with Wire.at(rig.meeting) as speaker:
+        publisher = speaker.publisher(POSE, "mug")
+        eventually("the reader", publisher.wanted)
+        for number in range(300):
+            publisher.put(replace(LOST, sequence=number))
+    eventually("the last message", lambda: len(heard) == 300)
 
 
 def test_a_slow_reader_keeps_the_newest_and_slows_nobody(wire: Wire, rig: RunningRig) -> None:

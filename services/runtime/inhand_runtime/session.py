@@ -28,8 +28,9 @@ HEARTBEAT_S = 0.5
 CLIENT_TIMEOUT_MS = 3_000
 HANDSHAKE_TIMEOUT_MS = 1_500
 FOR_EVER_MS = -1
-FRAMES_QUEUE = 16
-"""Batches of 64 KiB that may wait for a link: some frames, so that a busy moment drops none."""
+LONGEST_QUEUE = 16
+"""Batches of 64 KiB that may wait for a link: some frames, or bursts of small messages, which share
+batches, so that a busy moment drops none."""
 
 _PRIORITIES = {
     "urgent": zenoh.Priority.REAL_TIME,
@@ -37,6 +38,7 @@ _PRIORITIES = {
     "bulk": zenoh.Priority.DATA_LOW,
 }
 _CONGESTION = {
+    "drop": zenoh.CongestionControl.DROP,
     "wait_for_first": zenoh.CongestionControl.BLOCK_FIRST,
     "wait": zenoh.CongestionControl.BLOCK,
 }
@@ -95,7 +97,8 @@ def _config(
         "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000},
         "transport/unicast/open_timeout": HANDSHAKE_TIMEOUT_MS,
         "scouting/multicast/enabled": False,
-        "transport/link/tx/queue/size/data_low": FRAMES_QUEUE,
+        "transport/link/tx/queue/size/data_low": LONGEST_QUEUE,
+        "transport/link/tx/queue/size/real_time": LONGEST_QUEUE,
         "transport/shared_memory/enabled": False,
     }
     config = zenoh.Config()
@@ -122,7 +125,6 @@ class Publisher(Generic[T]):
             "encoding": topic.encoding,
             "priority": _PRIORITIES[delivery.priority],
             "congestion_control": _CONGESTION[delivery.congestion],
-            "express": delivery.priority == "urgent",
         }
         self._publisher: zenoh.Publisher | zenoh.ext.AdvancedPublisher
         if not delivery.kept:
