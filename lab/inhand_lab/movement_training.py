@@ -24,6 +24,8 @@ BACKGROUND_GAUSSIANS = 60
 """To people who use nothing, who may do anything."""
 KEPT = 0.98
 """The share of frames of people left out within the limits of strangeness."""
+REACHED = 0.3
+"""The share of frames of people left out within the reach of their own action."""
 SHRINKAGE = 0.05
 """How far the covariance goes towards the identity of standardised features."""
 GROUPS = 5
@@ -83,6 +85,7 @@ def train_movements(
     learned = {
         "says": says / says.sum(axis=1, keepdims=True) / frequencies,
         "limits": _limits(judges, frames),
+        "reaches": _reaches(judges, frames, actions),
     }
     people = [set(frames.people[out]) for out, _ in judges]
     temper = _best_temper(
@@ -150,6 +153,8 @@ def _fit(frames: _Frames, actions: int) -> MovementClasses:
         np.log(sizes / sizes.sum()),
         np.full((len(owners), actions + 1), 1.0),
         np.full(2, np.inf),
+        np.full(actions, np.inf),
+        owners,
     )
 
 
@@ -166,6 +171,19 @@ def _limits(judges: Sequence[tuple[Flags, MovementClasses]], frames: _Frames) ->
         judge.gaussians(frames.features[out & (frames.actions < last)])[1] for out, judge in judges
     ]
     return np.quantile(np.concatenate(known), KEPT, axis=0)
+
+
+def _reaches(
+    judges: Sequence[tuple[Flags, MovementClasses]], frames: _Frames, actions: int
+) -> Array:
+    reaches = []
+    for action in range(actions):
+        apart = []
+        for out, judge in judges:
+            theirs = frames.features[out & (frames.actions == action)]
+            apart.append(judge.apart(theirs)[:, action])
+        reaches.append(np.quantile(np.concatenate(apart), REACHED))
+    return np.array(reaches)
 
 
 def _best_temper(judged: Sequence[tuple[MovementSequence, MovementClasses]], actions: int) -> float:

@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 from inhand_tracker.movement_classes import MovementClasses
+from inhand_tracker.presence import usual_presence
 from inhand_tracker.recogniser import Recogniser
 from numpy.typing import NDArray
 
@@ -57,7 +58,8 @@ def recogniser_of(people: Sequence[Watched], named: str = "the recordings") -> R
     learned = learn_movements(people, named)
     kept = learned.poses[:: max(1, len(learned.poses) // KEPT_POSES)]
     svm = train_svm(learned.poses, learned.labels)
-    return Recogniser(learned.actions, kept, svm, learned.movements, learned.temper)
+    presence = usual_presence(len(learned.actions))
+    return Recogniser(learned.actions, kept, svm, learned.movements, learned.temper, presence)
 
 
 @dataclass(frozen=True)

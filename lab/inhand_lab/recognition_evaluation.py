@@ -5,7 +5,7 @@ get bodies and images; the labels meet their answers only in ``recognition_score
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from inhand_tracker.camera import Intrinsics
@@ -30,6 +30,7 @@ from inhand_lab.evaluation import fold_model
 from inhand_lab.folds import Fold
 from inhand_lab.observations import Observation, observe
 from inhand_lab.pose_errors import ErrorGauge
+from inhand_lab.presence_training import learn_presence
 from inhand_lab.recogniser_training import train_recogniser
 from inhand_lab.recognition_scores import Answers, RecognitionScore, score_answers, score_boxes
 from inhand_lab.true_boxes import person_pixels, true_boxes
@@ -111,7 +112,11 @@ def learn_from(
         Fold(action, (), tuple(entry for entry in entries if entry.interaction == action))
         for action in recogniser.actions
     ]
-    return recogniser, [fold_model(dataset, fold, images=images, fused=True) for fold in folds]
+    models = [fold_model(dataset, fold, images=images, fused=True) for fold in folds]
+    if images:
+        presence = learn_presence(dataset, entries, recogniser.actions, models)
+        recogniser = replace(recogniser, presence=presence)
+    return recogniser, models
 
 
 def _try_person(task: tuple[RecognitionProtocol, str]) -> list[RecognitionTrial]:

@@ -1,9 +1,10 @@
-"""Our own cascade: recognition over time says which objects to follow, and each likely one has a
-tracker of the default method.
+"""Our own cascade: recognition over time says which objects to follow, each likely one has a tracker
+of the default method, and what these see says whether it is their object at all.
 
-Nothing is known while nobody uses anything, or does what nobody taught. Most often the object that
-was used last has been put down then: it is followed on, so that it is found again where it is, and
-its tracker forgets nothing of it while recognition wavers.
+While an object is not sure others take their turns: each is looked for in some frames, so that one
+is found that the movement does not tell, as where it lies untouched. Nothing is known while no
+object is seen, or somebody does what nobody taught. The object that was used last is followed on,
+so that it is found again where it is, and its tracker forgets nothing of it while recognition wavers.
 """
 
 from collections.abc import Sequence
@@ -26,6 +27,14 @@ FOLLOWED = 2
 used last."""
 WORTH_FOLLOWING = 0.2
 """Of the probability of all actions, the share from which a second action's object is tracked."""
+TURN = 3
+"""So many frames one after the other another object is looked for, beside the followed ones."""
+SURE = 0.9
+"""From this probability on an object is sure, and others are looked for but seldom."""
+SELDOM = 8
+"""One turn in so many."""
+UNSEEN_NS = 1_000_000_000
+"""After so long without an image only the movement speaks, and has to say more."""
 
 
 class Cascade:
@@ -53,6 +62,8 @@ class Cascade:
             tracker.restart()
         self._last = Recognition(np.zeros(len(self._trackers)))
         self._used: int | None = None
+        self._frames = 0
+        self._seen_ns: int | None = None
 
     def step(
         self,
@@ -71,14 +82,20 @@ class Cascade:
         body = None if joints is None else self._reader.read(joints)
         if body is None:
             return self._coast(time_ns)
-        probabilities = self._recogniser.step(time_ns, body)[:-1]
+        followed = self._followed(image is not None)
+        estimates = {
+            action: self._trackers[action].step_body(body, time_ns, image) for action in followed
+        }
+        seen = self._seen(followed, time_ns)
+        probabilities = self._recogniser.step(time_ns, body, seen)[:-1]
         known = known_action(probabilities)
         if known is not None:
             self._used = known
-        estimates = {
-            action: self._trackers[action].step(joints, time_ns, image)
-            for action in self._followed(probabilities)
-        }
+            if known not in estimates:
+                estimates[known] = self._trackers[known].step_body(body, time_ns, image)
+        for action, tracker in enumerate(self._trackers):
+            if action not in estimates:
+                tracker.remember(body, time_ns)
         self._last = Recognition(
             probabilities,
             known,
@@ -93,12 +110,33 @@ class Cascade:
             return None
         return self._trackers[recognition.known].outline(recognition.estimate, camera)
 
-    def _followed(self, probabilities: Array) -> list[int]:
-        """The actions whose objects are tracked: the likely ones, and the last that was known."""
-        likely = worth_following(probabilities)
-        if self._used is None or self._used in likely:
-            return likely
-        return [*likely, self._used]
+    def _followed(self, seeing: bool) -> list[int]:
+        """The actions whose objects are tracked: the likely ones, the last that was known, and
+        in an image another one whose turn it is."""
+        probabilities = self._last.probabilities
+        followed = worth_following(probabilities)
+        if self._used is not None and self._used not in followed:
+            followed.append(self._used)
+        turn, frame = divmod(self._frames, TURN * SELDOM)
+        sure = probabilities.max(initial=0.0) >= SURE
+        if seeing and (not sure or frame < TURN):
+            others = [action for action in range(len(self._trackers)) if action not in followed]
+            if others:
+                count = turn if sure else self._frames // TURN
+                followed.append(others[count % len(others)])
+        self._frames += 1
+        return followed
+
+    def _seen(self, followed: Sequence[int], time_ns: int) -> Array | None:
+        """What an image says of the objects that were looked for in it, (K + 1,), 0 where none
+        comes with a frame; None where none has for a second."""
+        supports = {action: self._trackers[action].support for action in followed}
+        told = {action: support for action, support in supports.items() if support is not None}
+        if told:
+            self._seen_ns = time_ns
+        if self._seen_ns is None or not 0 <= time_ns - self._seen_ns < UNSEEN_NS:
+            return None
+        return self._learned.presence.evidence(told)
 
     def _coast(self, time_ns: int) -> Recognition:
         known = self._last.known

@@ -128,6 +128,7 @@ class FusionTracker:
         self._believed: PoseGaussian | None = None
         self._estimate = LOST
         self._time_ns = 0
+        self.support: float | None = None
 
     def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
         """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
@@ -140,6 +141,7 @@ class FusionTracker:
 
     def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
         """One frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
+        self.support = None
         if body is None:
             return self._coast(time_ns)
         expected = self._expect(body, time_ns)
@@ -151,6 +153,10 @@ class FusionTracker:
         scale = 1.0 if seen is None else SEEN_SCALE
         self._estimate = self._estimated(replace(believed, covariance=scale * believed.covariance))
         return self._estimate
+
+    def remember(self, body: Body, time_ns: int) -> None:
+        """A frame in which the object is not looked for; what the body did before counts later."""
+        self._window.add(body.joints, time_ns, body.height)
 
     def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
         """The object's pose in a frame by itself; what is tracked is neither used nor changed."""
@@ -253,7 +259,9 @@ class FusionTracker:
         starts = [(part.centre, part.rotation) for part in belief.parts]
         starts += [(centres[index], orientations[index]) for index in likeliest]
         modes = self._modes(belief, starts, view, sharpness)
-        return self._weigh_modes(belief, modes, view, sharpness).moments()
+        found = self._weigh_modes(belief, modes, view, sharpness)
+        self.support = self._support(modes, view, joints)
+        return found.moments()
 
     def _scores(
         self,
@@ -361,6 +369,18 @@ class FusionTracker:
                 self._colours, view.frame, origin, orientations[best], LEARNING_RATE
             )
         return found
+
+    def _support(self, modes: list[PoseGaussian], view: SightView, joints: Array) -> float | None:
+        """How many times likelier (log) the frame is with the object, in its colours of training:
+        what was learned since may be another thing's."""
+        sight, colours = self._sight, self._colours
+        if sight is None or colours is None:
+            return None
+        trained = replace(colours, of_object=sight.start().of_object)
+        view = sight.view(view.frame, trained, joints)
+        orientations = np.array([mode.rotation for mode in modes])
+        origins = self._origins(np.array([mode.centre for mode in modes]), orientations)
+        return float(sight.log_likelihood(origins, orientations, view).max())
 
     def _origins(self, centres: Array, orientations: Array) -> Array:
         """The translations (P, 3) of poses whose centres are known."""

@@ -4,7 +4,8 @@ Mixture discriminant analysis (Hastie and Tibshirani 1996): each action is a few
 covariance for all, shrunk. What a Gaussian says about the action is what it said of people left out
 in training, so that poses which all actions share, such as rest, speak for none. One class is that
 of people who use nothing. A movement farther from all of them than those of people are speaks for
-none of the actions, too.
+none of the actions, too. Where no image shows whether there is an object, each action is also doubted
+by itself: a movement has to be as near to it as the nearer ones of people are who do it.
 """
 
 from dataclasses import dataclass
@@ -13,11 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 CAUTION = 1.0
 """What speaks for none in every frame: a false object is worse than one that is found later."""
 STRANGENESS = 8.0
 """How much a movement at e times the limit speaks against every action."""
+DOUBT = 20.0
+"""How much a movement at e times an action's reach speaks against that action without an image."""
+UNSEEN_CAUTION = 2.0
+"""What further speaks for none in every frame without an image."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +33,9 @@ class MovementClasses:
     ``means`` (D,) and ``whitening`` (D, D) make the covariance of features the identity,
     ``directions`` (D, E) span the Gaussians' ``centres`` (G, E), ``log_shares`` (G,) are their
     weights, ``says`` (G, K + 1) is P(class | Gaussian) over P(class); ``limits`` (2,) are the
-    distances, to the nearest centre within the span and outside of it, that people keep.
+    distances, to the nearest centre within the span and outside of it, that people keep;
+    ``reaches`` (K,) those to an action's own nearest centre that a part of its people keep, and
+    ``owners`` (G,) the class of each Gaussian.
     """
 
     means: Array
@@ -37,6 +45,8 @@ class MovementClasses:
     log_shares: Array
     says: Array
     limits: Array
+    reaches: Array
+    owners: Indices
 
     @property
     def actions(self) -> int:
@@ -54,6 +64,20 @@ class MovementClasses:
         evidence[:, :-1] -= STRANGENESS * beyond[:, None]
         evidence[:, -1] += CAUTION
         return np.asarray(evidence)
+
+    def doubts(self, features: Array) -> Array:
+        """Log evidence (N, K + 1) to be added where no image tells whether an object is there."""
+        doubts = np.zeros((len(features), self.actions + 1))
+        doubts[:, :-1] = -DOUBT * np.log(np.maximum(self.apart(features) / self.reaches, 1.0))
+        doubts[:, -1] = UNSEEN_CAUTION
+        return doubts
+
+    def apart(self, features: Array) -> Array:
+        """How far features (N, D) are from the nearest centre of each action's own, (N, K)."""
+        inside, _ = self.project(features)
+        squares = np.square(inside[:, None] - self.centres).sum(axis=2)
+        nearest = [squares[:, self.owners == action].min(axis=1) for action in range(self.actions)]
+        return np.sqrt(np.column_stack(nearest))
 
     def gaussians(self, features: Array) -> tuple[Array, Array]:
         """P(Gaussian | features), (N, G), and the two distances (N, 2)."""

@@ -15,10 +15,11 @@ import numpy as np
 from inhand_tracker.model_file import ModelError
 from inhand_tracker.movement_classes import MovementClasses
 from inhand_tracker.pairwise_svm import PairwiseSvm
+from inhand_tracker.presence import Presence
 from inhand_tracker.recogniser import Recogniser
 
 FORMAT = "inhand-recogniser"
-VERSION = 1
+VERSION = 2
 MEND = "make one with `inhand train --recogniser`"
 
 
@@ -69,6 +70,7 @@ def load_recogniser(path: Path) -> Recogniser:
             PairwiseSvm(gamma=float(description["gamma"]), **parts["svm"]),
             MovementClasses(**parts["movements"]),
             float(description["temper"]),
+            Presence(**parts["presence"]),
         )
     except ModelError:
         raise
@@ -83,4 +85,5 @@ def load_recogniser(path: Path) -> Recogniser:
 _ARRAYS = {
     "svm": tuple(field.name for field in fields(PairwiseSvm) if field.name != "gamma"),
     "movements": tuple(field.name for field in fields(MovementClasses)),
+    "presence": tuple(field.name for field in fields(Presence)),
 }

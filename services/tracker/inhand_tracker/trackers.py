@@ -33,6 +33,12 @@ ALL_TERMS: tuple[AnyTerm, ...] = get_args(AnyTerm)
 class ObjectTracker(Protocol):
     """Follows one object of one person through the frames of one camera."""
 
+    support: float | None
+    """How many times likelier (log) the last image is with the object, as trained, than without.
+
+    None where it says nothing.
+    """
+
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""
 
@@ -44,6 +50,9 @@ class ObjectTracker(Protocol):
 
     def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
         """One frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
+
+    def remember(self, body: Body, time_ns: int) -> None:
+        """A frame in which the object is not looked for; what the body did before counts later."""
 
     def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
         """The object's pose in a frame by itself; what is tracked is neither used nor changed."""

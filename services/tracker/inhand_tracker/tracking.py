@@ -68,6 +68,7 @@ class Tracker:
         self._weights = np.full(self._count, 1.0 / self._count)
         self._estimate = LOST
         self._time_ns = 0
+        self.support: float | None = None
 
     def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
         """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
@@ -88,6 +89,9 @@ class Tracker:
         self._particles, self._weights, self._time_ns = particles, weights, time_ns
         self._estimate = weighted_estimate(translations, orientations, weights)
         return self._estimate
+
+    def remember(self, body: Body, time_ns: int) -> None:
+        """A frame in which the object is not looked for: what the body did before says nothing."""
 
     def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
         """The object's pose in a frame by itself: every particle is discriminative (section 7).

@@ -1,0 +1,89 @@
+"""What a tracker's support is worth: how well objects are seen that are there, and that are not.
+
+Every object is looked for in some frames of every recording, whichever is in use in it.
+"""
+
+from collections.abc import Sequence
+from typing import cast
+
+import numpy as np
+from inhand_tracker.model_file import Model
+from inhand_tracker.presence import Presence, usual_presence
+from inhand_tracker.trackers import DEFAULT_METHOD, needs_of, new_tracker, usual_terms
+from numpy.typing import NDArray
+
+from inhand_lab.dataset import Dataset, Entry, load_frames
+from inhand_lab.observations import observe
+
+Array = NDArray[np.float64]
+
+PLACES = (0.02, 0.35, 0.7)
+"""Where in a recording objects are looked for: at first most lie untouched."""
+STEPS = 2
+"""Frames one after the other: the second look finds more."""
+PRIOR_COUNT = 4.0
+"""So many looks are taken to have shown the usual support beforehand."""
+LEAST_SPREAD = 3.0
+
+
+def learn_presence(
+    dataset: Dataset, entries: Sequence[Entry], actions: Sequence[str], models: Sequence[Model]
+) -> Presence:
+    """Of the objects of ``models``, in the order of their actions; raises RecordingError."""
+    present: list[list[float]] = [[] for _ in actions]
+    absent: list[list[float]] = [[] for _ in actions]
+    for entry in entries:
+        for supports in _looks(dataset, entry, models):
+            for number, support in supports.items():
+                ours = entry.interaction == actions[number]
+                (present if ours else absent)[number].append(support)
+    usual = usual_presence(len(actions))
+    spreads = [
+        _spread(np.array(there), np.array(not_there), usual.spread[number])
+        for number, (there, not_there) in enumerate(zip(present, absent, strict=True))
+    ]
+    return Presence(
+        _means(absent, usual.absent), _means(present, usual.present), np.array(spreads)
+    )
+
+
+def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict[int, float]]:
+    """The support of each object that says anything, at each place in a recording."""
+    path = dataset.path(entry)
+    frames = load_frames(path, entry.object)
+    firsts = [int(place * (len(frames) - STEPS)) for place in PLACES]
+    needs = needs_of(DEFAULT_METHOD, usual_terms(DEFAULT_METHOD))
+    looked_at = [frames[first + step] for first in firsts for step in range(STEPS)]
+    images = {seen.time_ns: seen.image for seen in observe(path, looked_at, needs)}
+    trackers = [new_tracker(model, DEFAULT_METHOD, left_handed=entry.handedness == "left") for model in models]
+    reader = trackers[0].new_reader()
+    found: list[dict[int, float]] = []
+    for index, seen in enumerate(observe(path, frames)):
+        body = None if seen.joints is None else reader.read(seen.joints)
+        if body is None:
+            continue
+        image = images.get(seen.time_ns)
+        for tracker in trackers:
+            if image is None:
+                tracker.remember(body, seen.time_ns)
+            else:
+                tracker.step_body(body, seen.time_ns, image)
+        if index - STEPS + 1 in firsts:
+            told = {number: tracker.support for number, tracker in enumerate(trackers)}
+            found.append({n: support for n, support in told.items() if support is not None})
+    return found
+
+
+def _means(samples: Sequence[Sequence[float]], usual: Array) -> Array:
+    totals = np.array([sum(some) for some in samples]) + PRIOR_COUNT * usual
+    return cast(Array, totals / (np.array([len(some) for some in samples]) + PRIOR_COUNT))
+
+
+def _spread(present: Array, absent: Array, usual: float) -> float:
+    """Of both kinds alike, however many there are of each."""
+    variances = [
+        (np.square(some - some.mean()).sum() + PRIOR_COUNT * usual**2) / (len(some) + PRIOR_COUNT)
+        for some in (present, absent)
+        if len(some)
+    ]
+    return float(max(np.sqrt(np.mean(variances or [usual**2])), LEAST_SPREAD))
