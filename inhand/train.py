@@ -1,15 +1,18 @@
 """``inhand train``: learn where an object is from how people move with it."""
 
 import argparse
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from inhand_lab.dataset import Dataset, load_dataset
 from inhand_lab.learned import learned_by
+from inhand_lab.presence_training import learn_presence
 from inhand_lab.recogniser_training import stages as recogniser_stages
 from inhand_lab.recogniser_training import train_recogniser
 from inhand_lab.training import entries_for, stages, train
 from inhand_runtime.errors import SettingsError
-from inhand_tracker.model_file import Model, save_model
+from inhand_tracker.model_file import Model, load_model, save_model
 from inhand_tracker.recogniser_file import save_recogniser
 from rich.console import Console
 from rich.table import Table
@@ -34,11 +37,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="learn to tell all the dataset's interactions apart, for objects that are not given",
     )
+    parser.add_argument(
+        "--models",
+        nargs="+",
+        type=Path,
+        default=[],
+        metavar="MODEL",
+        help="with --recogniser: learn from the dataset's images how each object is seen",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Train and save; raises DatasetError or InhandError."""
     dataset = load_dataset(arguments.dataset)
+    if arguments.models and not arguments.recogniser:
+        raise SettingsError("--models is for --recogniser: a model is learned by itself")
     if arguments.recogniser:
         return _train_recogniser(dataset, arguments)
     entries = entries_for(dataset, arguments.object, arguments.without)
@@ -63,12 +76,23 @@ def _train_recogniser(dataset: Dataset, arguments: argparse.Namespace) -> int:
     entries = [entry for entry in dataset.entries if entry.participant not in arguments.without]
     with progress_bars({**recogniser_stages(len(entries)), "saving": 1}) as advance:
         recogniser = train_recogniser(dataset, entries, advance)
+        if arguments.models:
+            models = _models_of(recogniser.actions, arguments.models)
+            presence = learn_presence(dataset, entries, recogniser.actions, models)
+            recogniser = replace(recogniser, presence=presence)
         save_recogniser(recogniser, arguments.output)
         advance("saving")
     console = Console()
     console.print(f"learned to recognise {', '.join(recogniser.actions)}")
     console.print(f"saved {arguments.output}: {arguments.output.stat().st_size / 1e6:.1f} MB")
     return 0
+
+
+def _models_of(actions: Sequence[str], files: Sequence[Path]) -> list[Model]:
+    by_action = {model.interaction: model for model in map(load_model, files)}
+    if missing := [action for action in actions if action not in by_action]:
+        raise SettingsError(f"--models has none of {missing[0]!r}: name one for each interaction")
+    return [by_action[action] for action in actions]
 
 
 def _summary(model: Model) -> Table:

@@ -4,7 +4,6 @@ Every object is looked for in some frames of every recording, whichever is in us
 """
 
 from collections.abc import Sequence
-from typing import cast
 
 import numpy as np
 from inhand_tracker.model_file import Model
@@ -42,9 +41,7 @@ def learn_presence(
         _spread(np.array(there), np.array(not_there), usual.spread[number])
         for number, (there, not_there) in enumerate(zip(present, absent, strict=True))
     ]
-    return Presence(
-        _means(absent, usual.absent), _means(present, usual.present), np.array(spreads)
-    )
+    return Presence(_means(absent, usual.absent), _means(present, usual.present), np.array(spreads))
 
 
 def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict[int, float]]:
@@ -55,7 +52,10 @@ def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict
     needs = needs_of(DEFAULT_METHOD, usual_terms(DEFAULT_METHOD))
     looked_at = [frames[first + step] for first in firsts for step in range(STEPS)]
     images = {seen.time_ns: seen.image for seen in observe(path, looked_at, needs)}
-    trackers = [new_tracker(model, DEFAULT_METHOD, left_handed=entry.handedness == "left") for model in models]
+    trackers = [
+        new_tracker(model, DEFAULT_METHOD, left_handed=entry.handedness == "left")
+        for model in models
+    ]
     reader = trackers[0].new_reader()
     found: list[dict[int, float]] = []
     for index, seen in enumerate(observe(path, frames)):
@@ -76,7 +76,7 @@ def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict
 
 def _means(samples: Sequence[Sequence[float]], usual: Array) -> Array:
     totals = np.array([sum(some) for some in samples]) + PRIOR_COUNT * usual
-    return cast(Array, totals / (np.array([len(some) for some in samples]) + PRIOR_COUNT))
+    return totals / (np.array([len(some) for some in samples]) + PRIOR_COUNT)
 
 
 def _spread(present: Array, absent: Array, usual: float) -> float:

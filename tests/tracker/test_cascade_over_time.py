@@ -8,6 +8,7 @@ from inhand_tracker import cascade as cascade_module
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.cascade import Cascade
 from inhand_tracker.estimate import LOST, Estimate
+from inhand_tracker.presence import usual_presence
 from people import FRAME_NS, STANDING, wave_model
 
 CAMERA = Intrinsics(500.0, 500.0, 320.0, 240.0, 640, 480)
@@ -20,12 +21,17 @@ class AtPixel:
     def __init__(self, left: float) -> None:
         self.left = left
         self.confidence = 1.0
-        self.seen: list[int] = []
+        self.support: float | None = None
+        self.restart()
 
     def restart(self) -> None:
-        self.seen = []
+        self.seen: list[int] = []
+        self.remembered: list[int] = []
 
-    def step(self, joints: np.ndarray | None, time_ns: int, image: object = None) -> Estimate:
+    def remember(self, body: object, time_ns: int) -> None:
+        self.remembered.append(time_ns)
+
+    def step_body(self, body: object, time_ns: int, image: object = None) -> Estimate:
         self.seen.append(time_ns)
         unturned = np.array([1.0, 0.0, 0.0, 0.0])
         return Estimate("tracked", self.confidence, np.zeros(3), unturned, np.eye(6))
@@ -57,7 +63,10 @@ def script(monkeypatch: pytest.MonkeyPatch) -> list[list[float]]:
 def new_cascade() -> tuple[Cascade, list[AtPixel]]:
     trackers = [AtPixel(100.0 * action) for action in range(ACTIONS)]
     learned = SimpleNamespace(
-        movements=None, temper=1.0, body_poses=wave_model().mapping.body_poses
+        movements=None,
+        temper=1.0,
+        body_poses=wave_model().mapping.body_poses,
+        presence=usual_presence(ACTIONS),
     )
     return Cascade(learned, trackers), trackers
 

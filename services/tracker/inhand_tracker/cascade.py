@@ -1,13 +1,14 @@
-"""Our own cascade: recognition over time says which objects to follow, each likely one has a tracker
-of the default method, and what these see says whether it is their object at all.
+"""Our own cascade: recognition over time says which objects to follow, each likely one has a
+tracker of the default method, and what these see says whether it is their object at all.
 
 While an object is not sure others take their turns: each is looked for in some frames, so that one
 is found that the movement does not tell, as where it lies untouched. Nothing is known while no
 object is seen, or somebody does what nobody taught. The object that was used last is followed on,
-so that it is found again where it is, and its tracker forgets nothing of it while recognition wavers.
+so that it is found again where it is, and its tracker forgets nothing of it while recognition
+wavers.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from inhand_tracker.body_reader import BodyReader
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.estimate import LOST, Estimate
 from inhand_tracker.image import Image
+from inhand_tracker.presence import Looks
 from inhand_tracker.recogniser import MovementRecogniser, Recogniser
 from inhand_tracker.recognition import Recognition, boxes_around, known_action
 from inhand_tracker.trackers import ObjectTracker
@@ -52,12 +54,14 @@ class Cascade:
         self._left_handed = left_handed
         self._recogniser = MovementRecogniser(recogniser.movements, recogniser.temper)
         self._trackers = trackers
+        self._looks = Looks(recogniser.presence)
         self.restart()
 
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""
         self._reader = BodyReader(self._learned, left_handed=self._left_handed)
         self._recogniser.restart()
+        self._looks.restart()
         for tracker in self._trackers:
             tracker.restart()
         self._last = Recognition(np.zeros(len(self._trackers)))
@@ -82,12 +86,18 @@ class Cascade:
         body = None if joints is None else self._reader.read(joints)
         if body is None:
             return self._coast(time_ns)
-        followed = self._followed(image is not None)
+        if image is None:
+            probabilities = self._recogniser.step(time_ns, body, self._seen({}, time_ns))[:-1]
+            followed = self._followed(probabilities)
+        else:
+            followed = self._followed(self._last.probabilities)
+            followed += self._turn(followed)
         estimates = {
             action: self._trackers[action].step_body(body, time_ns, image) for action in followed
         }
-        seen = self._seen(followed, time_ns)
-        probabilities = self._recogniser.step(time_ns, body, seen)[:-1]
+        if image is not None:
+            supports = {action: self._trackers[action].support for action in followed}
+            probabilities = self._recogniser.step(time_ns, body, self._seen(supports, time_ns))[:-1]
         known = known_action(probabilities)
         if known is not None:
             self._used = known
@@ -110,33 +120,34 @@ class Cascade:
             return None
         return self._trackers[recognition.known].outline(recognition.estimate, camera)
 
-    def _followed(self, seeing: bool) -> list[int]:
-        """The actions whose objects are tracked: the likely ones, the last that was known, and
-        in an image another one whose turn it is."""
-        probabilities = self._last.probabilities
-        followed = worth_following(probabilities)
-        if self._used is not None and self._used not in followed:
-            followed.append(self._used)
-        turn, frame = divmod(self._frames, TURN * SELDOM)
-        sure = probabilities.max(initial=0.0) >= SURE
-        if seeing and (not sure or frame < TURN):
-            others = [action for action in range(len(self._trackers)) if action not in followed]
-            if others:
-                count = turn if sure else self._frames // TURN
-                followed.append(others[count % len(others)])
-        self._frames += 1
-        return followed
+    def _followed(self, probabilities: Array) -> list[int]:
+        """The actions whose objects are tracked: the likely ones, and the last that was known."""
+        known = known_action(probabilities)
+        used = self._used if known is None else known
+        likely = worth_following(probabilities)
+        return likely if used is None or used in likely else [*likely, used]
 
-    def _seen(self, followed: Sequence[int], time_ns: int) -> Array | None:
-        """What an image says of the objects that were looked for in it, (K + 1,), 0 where none
-        comes with a frame; None where none has for a second."""
-        supports = {action: self._trackers[action].support for action in followed}
+    def _turn(self, followed: Sequence[int]) -> list[int]:
+        """The action whose object is looked for as well in this frame, if any."""
+        turn = self._frames // TURN
+        self._frames += 1
+        if self._last.probabilities.max(initial=0.0) >= SURE:
+            turn, others_turn = divmod(turn, SELDOM)
+            if others_turn:
+                return []
+        others = [action for action in range(len(self._trackers)) if action not in followed]
+        return [others[turn % len(others)]] if others else []
+
+    def _seen(self, supports: Mapping[int, float | None], time_ns: int) -> Array | None:
+        """What images say, (K + 1,), with the last one's supports; None where none said anything
+        for a second."""
         told = {action: support for action, support in supports.items() if support is not None}
         if told:
             self._seen_ns = time_ns
+            self._looks.add(time_ns, told)
         if self._seen_ns is None or not 0 <= time_ns - self._seen_ns < UNSEEN_NS:
             return None
-        return self._learned.presence.evidence(told)
+        return self._looks.evidence(time_ns)
 
     def _coast(self, time_ns: int) -> Recognition:
         known = self._last.known

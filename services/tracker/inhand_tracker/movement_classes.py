@@ -4,8 +4,9 @@ Mixture discriminant analysis (Hastie and Tibshirani 1996): each action is a few
 covariance for all, shrunk. What a Gaussian says about the action is what it said of people left out
 in training, so that poses which all actions share, such as rest, speak for none. One class is that
 of people who use nothing. A movement farther from all of them than those of people are speaks for
-none of the actions, too. Where no image shows whether there is an object, each action is also doubted
-by itself: a movement has to be as near to it as the nearer ones of people are who do it.
+none of the actions, too. Each action is also doubted by itself: a movement has to be as near to it
+as the nearer ones of people are who do it, above all where no image shows whether there is an
+object.
 """
 
 from dataclasses import dataclass
@@ -20,8 +21,9 @@ CAUTION = 1.0
 """What speaks for none in every frame: a false object is worse than one that is found later."""
 STRANGENESS = 8.0
 """How much a movement at e times the limit speaks against every action."""
-DOUBT = 20.0
-"""How much a movement at e times an action's reach speaks against that action without an image."""
+DOUBT, SEEN_DOUBT = 20.0, 5.0
+"""How much a movement at e times an action's reach speaks against that action, without an image,
+and with one, which tells more."""
 UNSEEN_CAUTION = 2.0
 """What further speaks for none in every frame without an image."""
 
@@ -65,11 +67,13 @@ class MovementClasses:
         evidence[:, -1] += CAUTION
         return np.asarray(evidence)
 
-    def doubts(self, features: Array) -> Array:
-        """Log evidence (N, K + 1) to be added where no image tells whether an object is there."""
+    def doubts(self, features: Array, *, seeing: bool) -> Array:
+        """Log evidence (N, K + 1) against each action by itself, and, without an image that tells
+        whether an object is there, for none."""
         doubts = np.zeros((len(features), self.actions + 1))
-        doubts[:, :-1] = -DOUBT * np.log(np.maximum(self.apart(features) / self.reaches, 1.0))
-        doubts[:, -1] = UNSEEN_CAUTION
+        beyond = np.log(np.maximum(self.apart(features) / self.reaches, 1.0))
+        doubts[:, :-1] = -(SEEN_DOUBT if seeing else DOUBT) * beyond
+        doubts[:, -1] = 0.0 if seeing else UNSEEN_CAUTION
         return doubts
 
     def apart(self, features: Array) -> Array:

@@ -15,27 +15,58 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CERTAIN = 6.0
-"""How much one image can say at the most, for or against: what it errs in, others err in too."""
-WEIGHT = 3.0
-"""An image tells so many times more that is new than a movement, which hardly changes."""
+"""How much the looks of the last moments can say at the most, for or against."""
+LOOKS_S = 0.7
+"""Looks of so long ago count for a third as much: one frame errs as the next does."""
+FORGOTTEN_S = 4.0
+"""What was seen so long ago says a third as much."""
 
 
 @dataclass(frozen=True)
 class Presence:
-    """The mean support (K,) of K objects that are ``absent`` and ``present``, and its ``spread``."""
+    """The mean support (K,) of objects that are ``absent`` and ``present``, and its ``spread``."""
 
     absent: Array
     present: Array
     spread: Array
 
-    def evidence(self, supports: Mapping[int, float]) -> Array:
-        """Log evidence (K + 1,) for each object, and, last, for none; 0 for those not looked for."""
-        evidence = np.zeros(len(self.absent) + 1)
+    def evidence(self, number: int, support: float) -> float:
+        """Log evidence that an object is there which has so much support."""
+        apart = (self.present[number] - self.absent[number]) / self.spread[number] ** 2
+        middle = 0.5 * (self.present[number] + self.absent[number])
+        return float(np.clip(apart * (support - middle), -CERTAIN, CERTAIN))
+
+
+class Looks:
+    """The last looks at each object: a thing that resembles one does so in every frame, so looks
+    are averaged, and do not add up."""
+
+    def __init__(self, presence: Presence) -> None:
+        self._presence = presence
+        self.restart()
+
+    def restart(self) -> None:
+        """Another scene."""
+        self._supports: dict[int, tuple[float, float, int]] = {}
+
+    def add(self, time_ns: int, supports: Mapping[int, float]) -> None:
+        """Take the supports of those objects that were looked for in a frame."""
         for number, support in supports.items():
-            apart = (self.present[number] - self.absent[number]) / self.spread[number] ** 2
-            middle = 0.5 * (self.present[number] + self.absent[number])
-            evidence[number] = np.clip(apart * (support - middle), -CERTAIN, CERTAIN)
-        return WEIGHT * evidence
+            mean, count, before_ns = self._supports.get(number, (0.0, 0.0, time_ns))
+            kept = count * np.exp(-max(time_ns - before_ns, 0) / 1e9 / LOOKS_S)
+            self._supports[number] = (
+                (kept * mean + support) / (kept + 1.0),
+                kept + 1.0,
+                time_ns,
+            )
+
+    def evidence(self, time_ns: int) -> Array:
+        """Log evidence (K + 1,) for each object, and, last, for none; 0 where nobody looked."""
+        evidence = np.zeros(len(self._presence.absent) + 1)
+        for number, (mean, _, seen_ns) in self._supports.items():
+            age = max(time_ns - seen_ns, 0) / 1e9
+            evidence[number] = np.exp(-age / FORGOTTEN_S) * self._presence.evidence(number, mean)
+        return evidence
 
 
 def usual_presence(objects: int) -> Presence:

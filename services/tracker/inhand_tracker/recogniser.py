@@ -14,6 +14,9 @@ from inhand_tracker.presence import Presence
 
 Array = NDArray[np.float64]
 
+AT_ONCE = 2.5
+"""So many looks' worth are the last ones together."""
+
 
 @dataclass(frozen=True)
 class Recogniser:
@@ -48,10 +51,16 @@ class MovementRecogniser:
     def step(self, time_ns: int, body: Body, seen: Array | None = None) -> Array:
         """The probabilities (K + 1,) of the actions and, last, of none or an unknown one.
 
-        ``seen`` (K + 1,) is further log evidence, from an image; None where there is none.
+        ``seen`` (K + 1,) is log evidence of the last looks at images, None where there is none.
+        It counts at once, and as any other evidence over time.
         """
         self._movement.add(time_ns, body.pose)
         features = self._movement.features()[None]
-        evidence = self._classes.evidence(features)[0]
-        further = self._classes.doubts(features)[0] if seen is None else seen
-        return self._filter.step(time_ns, evidence + further)
+        doubts = self._classes.doubts(features, seeing=seen is not None)
+        evidence = (self._classes.evidence(features) + doubts)[0]
+        if seen is None:
+            return self._filter.step(time_ns, evidence)
+        probabilities = self._filter.step(time_ns, evidence + seen)
+        logs = np.log(np.maximum(probabilities, 1e-300)) + AT_ONCE * seen
+        weights = np.exp(logs - logs.max())
+        return np.asarray(weights / weights.sum())
