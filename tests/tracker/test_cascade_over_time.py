@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from inhand_tracker import cascade as cascade_module
 from inhand_tracker.camera import Intrinsics
-from inhand_tracker.cascade import Cascade
+from inhand_tracker.cascade import TURN, Cascade
 from inhand_tracker.estimate import LOST, Estimate
+from inhand_tracker.image import Image
 from inhand_tracker.presence import usual_presence
 from people import FRAME_NS, STANDING, wave_model
 
@@ -41,7 +42,13 @@ class AtPixel:
 
 
 @pytest.fixture
-def script(monkeypatch: pytest.MonkeyPatch) -> list[list[float]]:
+def told() -> list:
+    """The evidence of images that the recogniser was told, frame by frame."""
+    return []
+
+
+@pytest.fixture
+def script(monkeypatch: pytest.MonkeyPatch, told: list) -> list[list[float]]:
     """The probabilities that the recogniser will tell, frame by frame."""
     frames: list[list[float]] = []
 
@@ -52,9 +59,10 @@ def script(monkeypatch: pytest.MonkeyPatch) -> list[list[float]]:
         def restart(self) -> None:
             pass
 
-        def step(self, *_: object) -> np.ndarray:
-            told = np.array(frames.pop(0))
-            return np.append(told, 1.0 - told.sum())
+        def step(self, time_ns: int, body: object, seen: np.ndarray | None) -> np.ndarray:
+            told.append(seen)
+            shares = np.array(frames.pop(0))
+            return np.append(shares, 1.0 - shares.sum())
 
     monkeypatch.setattr(cascade_module, "MovementRecogniser", Told)
     return frames
@@ -71,8 +79,16 @@ def new_cascade() -> tuple[Cascade, list[AtPixel]]:
     return Cascade(learned, trackers), trackers
 
 
-def run(cascade: Cascade, frames: int) -> list:
-    return [cascade.step(STANDING, (frame + 1) * FRAME_NS, None, CAMERA) for frame in range(frames)]
+def run(cascade: Cascade, frames: int, *, image: Image | None = None, first: int = 0) -> list:
+    return [
+        cascade.step(STANDING, (first + frame + 1) * FRAME_NS, image, CAMERA)
+        for frame in range(frames)
+    ]
+
+
+def look(cascade: Cascade, frames: int, *, first: int = 0) -> list:
+    """The same with images."""
+    return run(cascade, frames, image=Image(None, CAMERA), first=first)
 
 
 def test_before_anything_was_known_the_box_is_that_of_the_likeliest(script) -> None:
@@ -127,3 +143,53 @@ def test_somebody_else_left_nothing(script) -> None:
     (answer,) = run(cascade, 1)
     assert answer.box[0] == 200.0
     assert trackers[0].seen == []
+
+
+def test_without_an_image_the_others_keep_what_the_body_did(script) -> None:
+    script += [[0.9, 0.0, 0.0, 0.0]] * 3
+    cascade, trackers = new_cascade()
+    run(cascade, 3)
+    assert [len(tracker.remembered) for tracker in trackers] == [0, 3, 3, 3]
+
+
+def test_in_images_every_object_takes_its_turn_until_one_is_sure(script) -> None:
+    script += [[0.6, 0.0, 0.0, 0.0]] * (1 + 6 * TURN) + [[0.95, 0.0, 0.0, 0.0]] * (6 * TURN)
+    cascade, trackers = new_cascade()
+    look(cascade, 1 + 6 * TURN)
+    unsure = [len(tracker.seen) for tracker in trackers]
+    assert unsure[0] == 1 + 6 * TURN
+    assert min(unsure[1:]) >= 2 * TURN - 1
+    look(cascade, 6 * TURN, first=1 + 6 * TURN)
+    assert sum(len(tracker.seen) for tracker in trackers[1:]) - sum(unsure[1:]) <= TURN + 1
+
+
+def test_an_object_that_becomes_known_has_its_pose_in_that_frame(script) -> None:
+    script += [[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.9]]
+    cascade, trackers = new_cascade()
+    answer = look(cascade, 2)[-1]
+    assert answer.known == 3
+    assert answer.estimate.state == "tracked"
+    assert len(trackers[3].seen) + len(trackers[3].remembered) == 2
+
+
+def test_the_supports_of_the_objects_looked_for_reach_the_recogniser(script, told) -> None:
+    script += [[0.9, 0.0, 0.0, 0.0]] * 2
+    cascade, trackers = new_cascade()
+    for tracker in trackers:
+        tracker.support = 100.0
+    look(cascade, 1)
+    assert told[0][0] > 0.0
+    assert told[0][-1] == 0.0
+    assert np.count_nonzero(told[0]) == sum(len(tracker.seen) for tracker in trackers)
+
+
+def test_a_second_without_images_is_told_as_no_image(script, told) -> None:
+    script += [[0.9, 0.0, 0.0, 0.0]] * 40
+    cascade, trackers = new_cascade()
+    for tracker in trackers:
+        tracker.support = 100.0
+    look(cascade, 1)
+    for tracker in trackers:
+        tracker.support = None
+    run(cascade, 39, first=1)
+    assert [one is None for one in told] == [False] * 31 + [True] * 9
