@@ -36,8 +36,9 @@ class Recognised:
 
     @property
     def sequence(self) -> int:
-        """The action of the whole recording: the likeliest on average."""
-        return int(np.argmax(self.probabilities[:, :-1].mean(axis=0)))
+        """The action of the whole recording: the likeliest on average, none being no answer."""
+        actions = self.probabilities[:, :-1]
+        return int(np.argmax((actions / actions.sum(axis=1, keepdims=True)).mean(axis=0)))
 
 
 @dataclass(frozen=True)
