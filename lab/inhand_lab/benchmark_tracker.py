@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -79,7 +80,7 @@ def measure_tracker(seconds: float = SECONDS) -> TrackerSpeed:
     shown = simulate(INTERACTION, PEOPLE, SEED, LEARNED_FRAMES)
     model, image = _model(), _image(shown)
     translations, orientations = _poses(model, shown, HYPOTHESES)
-    edges, sight = Likelihood(model), Sight(model)
+    edges, sight = Likelihood(model), _sight(model)
     view = sight.view(prepare(image), sight.start())
 
     def weigh_by_edges() -> Array:
@@ -113,26 +114,31 @@ def _frame_costs(
     ``naive_ms`` is what NumPy takes for one hypothesis.
     """
     cores = min(FRAME_CORES, usable_cores())
-    objects = [Sight(model, threads=cores) for _ in range(max(OBJECT_COUNTS))]
+    objects = [_sight(model, cores) for _ in range(max(OBJECT_COUNTS))]
     joints = shown.true_joints_in_camera[SHOWN_FRAME]
     for hypotheses, count in product(HYPOTHESIS_COUNTS, OBJECT_COUNTS):
         poses = _poses(model, shown, hypotheses)
         around = image.camera.project(poses[0])
         low, high = around.min(axis=0) - REGION_MARGIN, around.max(axis=0) + REGION_MARGIN
 
-        def weigh_frame(
-            count: int = count,
-            poses: tuple[Array, Array] = poses,
-            region: Region = (*low.tolist(), *high.tolist()),  # noqa: B008
-        ) -> None:
-            frame = prepare(image, region)
-            for sight in objects[:count]:
-                colours = sight.look_around(sight.start(), frame, poses[0][0], poses[1][0])
-                sight.log_likelihood(*poses, sight.view(frame, colours, joints))
-
+        region = (*low.tolist(), *high.tolist())
+        weigh_frame = partial(_weigh_frame, objects[:count], poses, image, region, joints)
         share = seconds / (len(HYPOTHESIS_COUNTS) * len(OBJECT_COUNTS))
         (took_s,) = _fastest((weigh_frame,), share)
         yield FrameCost(count, hypotheses, cores, 1e3 * took_s, naive_ms * hypotheses * count)
+
+
+def _weigh_frame(
+    objects: Sequence[Sight],
+    poses: tuple[Array, Array],
+    image: Image,
+    region: Region,
+    joints: Array,
+) -> None:
+    frame = prepare(image, region)
+    for sight in objects:
+        colours = sight.look_around(sight.start(), frame, poses[0][0], poses[1][0])
+        sight.log_likelihood(*poses, sight.view(frame, colours, joints))
 
 
 def naive_edge_log_weights(
@@ -172,6 +178,10 @@ def _model() -> Model:
         for one in people
     ]
     return Model(INTERACTION, shape, learn(sequences, shape.mirror_normal), find_viewpoints(shape))
+
+
+def _sight(model: Model, threads: int = 1) -> Sight:
+    return Sight(model.shape, model.viewpoints, model.appearance, threads=threads)
 
 
 def _image(shown: Simulation) -> Image:

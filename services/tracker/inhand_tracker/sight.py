@@ -19,6 +19,7 @@ from inhand_tracker import rotations
 from inhand_tracker.appearance import (
     BEHIND,
     RETURNED,
+    Appearance,
     pixels_within,
     region_around,
     silhouette_depths,
@@ -34,7 +35,6 @@ from inhand_tracker.colours import (
 from inhand_tracker.contours import Contours, find_contours
 from inhand_tracker.image import Image
 from inhand_tracker.limbs import limb_mask
-from inhand_tracker.model_file import Model
 from inhand_tracker.refine import (
     DAMPING,
     REACH_M,
@@ -45,9 +45,11 @@ from inhand_tracker.refine import (
     Refined,
     gather,
 )
+from inhand_tracker.shape import ObjectShape
 from inhand_tracker.sight_frame import SightFrame, prepare
 from inhand_tracker.sight_kernels import depth_scores, weigh
 from inhand_tracker.view_grid import view_grid
+from inhand_tracker.viewpoints import Viewpoints
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -87,17 +89,23 @@ class Sight:
     """Weighs and refines poses of one object; many poses are weighed in so many threads."""
 
     def __init__(
-        self, model: Model, terms: Collection[SightTerm] = SIGHT_TERMS, *, threads: int = 1
+        self,
+        shape: ObjectShape,
+        viewpoints: Viewpoints,
+        appearance: Appearance | None = None,
+        terms: Collection[SightTerm] = SIGHT_TERMS,
+        *,
+        threads: int = 1,
     ) -> None:
-        self._shape = model.shape
+        self._shape = shape
         self._threads = threads
         self._pool = ThreadPoolExecutor(threads)
-        contours = model.viewpoints.contours
+        contours = viewpoints.contours
         if contours is None:
-            contours = find_contours(model.shape, model.viewpoints.directions)
+            contours = find_contours(shape, viewpoints.directions)
         self._contours: Contours = contours
         self._grid = view_grid(contours.directions)
-        self._model = (
+        self._outlines = (
             self._grid,
             contours.directions,
             _points_last(contours.points),
@@ -108,10 +116,10 @@ class Sight:
             np.sqrt(contours.areas),
         )
         self._wanted = np.array([term in terms for term in SIGHT_TERMS])
-        self._appearance = model.appearance
+        self._appearance = appearance
         returned, behind = RETURNED, BEHIND
-        if model.appearance is not None:
-            returned, behind = model.appearance.returned, model.appearance.behind
+        if appearance is not None:
+            returned, behind = appearance.returned, appearance.behind
         self._returned = returned if returned >= LEAST_RETURNED else 0.0
         self._depth_scores = depth_scores(self._returned, behind)
 
@@ -299,7 +307,7 @@ class Sight:
             weigh(
                 np.ascontiguousarray(translations[part], np.float32),
                 np.ascontiguousarray(orientations[part], np.float32),
-                *self._model,
+                *self._outlines,
                 lens,
                 edges,
                 edge_scores,
