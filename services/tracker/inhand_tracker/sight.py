@@ -9,7 +9,7 @@ farther away, which speaks against (a mixture as of Wüthrich et al. 2013).
 from collections.abc import Collection
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 import cv2
 import numpy as np
@@ -32,7 +32,7 @@ from inhand_tracker.colours import (
     log_odds_by_colour,
     look_up,
 )
-from inhand_tracker.contours import Contours, find_contours
+from inhand_tracker.contours import find_contours
 from inhand_tracker.image import Image
 from inhand_tracker.limbs import limb_mask
 from inhand_tracker.refine import (
@@ -47,7 +47,7 @@ from inhand_tracker.refine import (
 )
 from inhand_tracker.shape import ObjectShape
 from inhand_tracker.sight_frame import SightFrame, prepare
-from inhand_tracker.sight_kernels import depth_scores, weigh
+from inhand_tracker.sight_kernels import Outlines, Pixels, depth_scores, weigh
 from inhand_tracker.view_grid import view_grid
 from inhand_tracker.viewpoints import Viewpoints
 
@@ -103,16 +103,15 @@ class Sight:
         contours = viewpoints.contours
         if contours is None:
             contours = find_contours(shape, viewpoints.directions)
-        self._contours: Contours = contours
-        self._grid = view_grid(contours.directions)
-        self._outlines = (
-            self._grid,
+        self._outlines = Outlines(
+            view_grid(contours.directions),
             contours.directions,
             _points_last(contours.points),
             _points_last(contours.normals),
             contours.inside,
             contours.outside,
             _points_last(contours.surface_points),
+            _points_last(contours.surface_normals),
             np.sqrt(contours.areas),
         )
         self._wanted = np.array([term in terms for term in SIGHT_TERMS])
@@ -254,39 +253,25 @@ class Sight:
         frame = view.frame
         coloured, deep = frame.bins is not None, frame.depth is not None
         wanted = self._wanted[_REFINED_TERMS] & [coloured, coloured, deep]
-        lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
-        contours = self._contours
+        pixels = self._pixels(view)
         information = np.zeros((len(translations), 6, 6))
         reach_m, reach_rad = (REACH_M, REACH_RAD) if prior is None else prior.reach()
         for share in REACHES:
             information = np.zeros((len(translations), 6, 6))
             gradients = np.zeros((len(translations), 6))
-            for index in range(len(translations)):
-                gather(
-                    translations[index],
-                    orientations[index],
-                    self._grid,
-                    contours.directions,
-                    contours.points,
-                    contours.normals,
-                    contours.inside,
-                    contours.outside,
-                    contours.surface_points,
-                    contours.surface_normals,
-                    lens,
-                    edges,
-                    edge_scores,
-                    colour_scores,
-                    limbs,
-                    depth,
-                    self._returned,
-                    wanted,
-                    share * reach_m,
-                    share * reach_rad,
-                    trust * POINT_WEIGHTS,
-                    information[index],
-                    gradients[index],
-                )
+            gather(
+                translations,
+                orientations,
+                self._outlines,
+                pixels,
+                self._returned,
+                wanted,
+                share * reach_m,
+                share * reach_rad,
+                trust * POINT_WEIGHTS,
+                information,
+                gradients,
+            )
             total, pull = information + np.diag(DAMPING), gradients
             if prior is not None:
                 total, pull = prior.added_to(total, pull, translations, orientations)
@@ -300,21 +285,16 @@ class Sight:
         frame = view.frame
         coloured, deep = frame.bins is not None, frame.depth is not None
         wanted = self._wanted & [coloured, coloured, coloured, deep]
-        lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
+        pixels = self._pixels(view)
         scores = np.zeros((len(translations), len(SIGHT_TERMS)), np.float32)
 
         def weigh_some(part: slice) -> None:
             weigh(
                 np.ascontiguousarray(translations[part], np.float32),
                 np.ascontiguousarray(orientations[part], np.float32),
-                *self._outlines,
-                lens,
-                edges,
-                edge_scores,
-                colour_scores,
-                limbs,
+                self._outlines,
+                pixels,
                 np.float32(LIMB_WEIGHT),
-                depth,
                 self._depth_scores,
                 wanted,
                 scores[part],
@@ -328,12 +308,12 @@ class Sight:
             weigh_some(parts[0])
         return scores.astype(float)
 
-    def _arrays(self, view: SightView) -> tuple[NDArray[Any], ...]:
+    def _pixels(self, view: SightView) -> Pixels:
         """The frame for the kernels; what it does not hold is not read, or says nothing."""
         frame, camera = view.frame, view.frame.camera
         size = (camera.height, camera.width)
         edges, scores, depth = frame.edges, frame.edge_scores, frame.depth
-        return (
+        return Pixels(
             np.array([camera.fx, camera.fy, camera.cx, camera.cy], np.float32),
             np.zeros((4, 1, 1), np.uint8) if edges is None else edges,
             np.zeros((4, 8), np.float32) if scores is None else scores,

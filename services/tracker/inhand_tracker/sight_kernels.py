@@ -1,6 +1,6 @@
 """Weighing poses by what a frame shows: one pass over the points of each pose's view."""
 
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numba import njit
@@ -84,37 +84,55 @@ def channel_of(x: Real, y: Real) -> int:
     return 1 if x * y > np.float32(0.0) else 3
 
 
+class Outlines(NamedTuple):
+    """``Contours`` for the kernels, the coordinate before the point: (V, 3, B).
+
+    ``grid`` finds the nearest direction (``view_grid``); ``sizes`` (V,) is the square root of the
+    areas.
+    """
+
+    grid: NDArray[np.int16]
+    directions: Floats
+    points: Floats
+    normals: Floats
+    inside: Floats
+    outside: Floats
+    surface_points: Floats
+    surface_normals: Floats
+    sizes: Floats
+
+
+class Pixels(NamedTuple):
+    """A frame for the kernels: ``lens`` (fx, fy, cx, cy), distances to ``edges`` (4, H, W) with
+    ``edge_scores`` (4, 8), ``colour_scores`` (H, W, 2) of a pixel's being within or beside the
+    object, ``limbs`` (H, W) and ``depth`` (H, W)."""
+
+    lens: Floats
+    edges: Bytes
+    edge_scores: Floats
+    colour_scores: Floats
+    limbs: Bytes
+    depth: Floats
+
+
 @njit(cache=True, nogil=True, fastmath={"nsz", "arcp", "contract", "afn", "reassoc"})
 def weigh(
     translations: Floats,
     rotations: Floats,
-    grid: NDArray[np.int16],
-    directions: Floats,
-    points: Floats,
-    normals: Floats,
-    inside: Floats,
-    outside: Floats,
-    surface_points: Floats,
-    sizes: Floats,
-    lens: Floats,
-    edges: Bytes,
-    edge_scores: Floats,
-    colour_scores: Floats,
-    limbs: Bytes,
+    outlines: Outlines,
+    pixels: Pixels,
     limb_weight: Real,
-    depth: Floats,
     depth_scores: Floats,
     wanted: NDArray[np.bool_],
     scores: Floats,
 ) -> None:
     """Fill ``scores`` (P, 4): the mean over a view's points of what each term says of a pose.
 
-    The model's arrays are those of ``Contours``, the coordinate before the point: (V, 3, B);
-    ``sizes`` (V,) is the square root of the areas; ``lens`` is (fx, fy, cx, cy); ``edges``
-    (4, H, W) with ``edge_scores`` (4, 8), ``colour_scores`` (H, W, 2) of a pixel's being within
-    or beside the object, ``limbs`` (H, W) and ``depth`` (H, W) with ``depth_scores``. ``wanted``
-    (4,) tells which terms are; what is not wanted is not read.
+    Poses are (P, 3) and (P, 4). ``wanted`` (4,) tells which terms are; what is not wanted is not
+    read.
     """
+    grid, directions, points, normals, inside, outside, surface_points, _, sizes = outlines
+    lens, edges, edge_scores, colour_scores, limbs, depth = pixels
     height, width = limbs.shape
     zero, half, one = np.float32(0.0), np.float32(0.5), np.float32(1.0)
     fx, fy, cx, cy = lens[0], lens[1], lens[2] + half, lens[3] + half
