@@ -28,6 +28,7 @@ TEMPER = 0.4
 """How much of an image's log-likelihood counts: one frame's errors are the next one's too."""
 INDEPENDENT = 0.1
 """The same of what it says in refinement."""
+LEAST_SHARPNESS = 1e-3
 SAME_M, SAME_RAD = 0.01, 0.1
 """Refined poses no farther apart than this are the same one."""
 AROUND_RATE = 0.3
@@ -76,7 +77,11 @@ class ImageSearch:
         region = self._region(centres, image.camera)
         if region is None:
             return None
-        look = self._open(belief, image, region, joints, sharpness)
+        view = self._open(belief.parts[0], image, region, joints)
+        origins = self._sphere.origins(centres, orientations)
+        trust = TEMPER * max(sharpness, LEAST_SHARPNESS)
+        view = self._sight.compare_unseen(origins, orientations, view, trust)
+        look = _Look(self._sight, self._sphere, view, belief, sharpness)
         scores, _ = look.scores(centres, orientations)
         root = np.linalg.cholesky(belief.moments().covariance)
         for round_ in range(1, self._search.rounds):
@@ -95,17 +100,14 @@ class ImageSearch:
         modes = look.modes(centres, orientations, refines=self._search.refines)
         return self._weigh(modes, look).moments()
 
-    def _open(
-        self, belief: PoseMixture, image: Image, region: Region, joints: Array, sharpness: float
-    ) -> "_Look":
+    def _open(self, guess: PoseGaussian, image: Image, region: Region, joints: Array) -> SightView:
+        """A region of the image, and its surroundings' colours learned."""
         frame = prepare(image, region)
-        guess = belief.parts[0]
         origin = guess.centre - self._sphere.arm(guess.rotation)
         self._colours = self._sight.look_around(
             self._colours, frame, origin, guess.rotation, AROUND_RATE
         )
-        view = self._sight.view(frame, self._colours, joints)
-        return _Look(self._sight, self._sphere, view, belief, sharpness)
+        return self._sight.view(frame, self._colours, joints)
 
     def _region(self, centres: Array, camera: Intrinsics) -> Region | None:
         """The part of the image that hypotheses (P, 3) lie in; None where they are out of it."""

@@ -32,8 +32,8 @@ learned from, is stretched to it: far from what was learned the nearest of it is
 MOST_STRETCHED = 3.0
 """So many times is the guess's deviation stretched as well, at the most."""
 NEW = 0.7
-"""A body is new where the kernel is below this at all landmarks, the more so the smaller it is: what
-carries the object along then tells more than where it was usual."""
+"""A body is new where the kernel is below this at all landmarks, the more so the smaller it is:
+what carries the object along then tells more than where it was usual."""
 BASE = 0.1
 """Share of the covariance over all body poses in that of any."""
 
@@ -125,8 +125,8 @@ def predict(
 
 
 def _taken_along(prior: Prior, local: Array) -> tuple[Array, Array]:
-    """Of a new body: what each anchor has at the landmarks that say so much (1, L), (E, 12), and how
-    many times its usual error that errs by, (E,).
+    """Of a new body: what each anchor has at landmarks that say so much (1, L), (E, 12), and by how
+    many times its usual error that errs, (E,).
 
     What is nearest to an object takes it along (Darby et al. 2014, section 5.2): an anchor errs by
     so much more as the object is farther from it.

@@ -47,7 +47,7 @@ from inhand_tracker.refine import (
 )
 from inhand_tracker.shape import ObjectShape
 from inhand_tracker.sight_frame import SightFrame, prepare
-from inhand_tracker.sight_kernels import Outlines, Pixels, depth_scores, weigh
+from inhand_tracker.sight_kernels import SEEN, Outlines, Pixels, depth_scores, weigh
 from inhand_tracker.view_grid import view_grid
 from inhand_tracker.viewpoints import Viewpoints
 
@@ -71,6 +71,9 @@ LIMB_SHARE = 0.25
 """How much of what speaks against the object is believed where a hand may cover it."""
 FEWEST_IN_THREAD = 500
 """Poses for which another thread is worth while."""
+LEAST_SEEN = 0.1
+FEWEST_SEEN = 1.0
+"""Poses that can be seen, with which others can be compared."""
 LEAST_RETURNED = 0.5
 """Depth that is measured of less of an object's surface is rather that of the hand around it."""
 
@@ -78,11 +81,14 @@ LEAST_RETURNED = 0.5
 @dataclass(frozen=True)
 class SightView:
     """A frame with one object's eyes: ``colour_scores`` (H, W, 2), what each pixel's colour says
-    to its being within and beside the object, and ``limbs`` (H, W)."""
+    to its being within and beside the object, and ``limbs`` (H, W). ``unseen`` is the
+    log-likelihood ratio of an object that is out of the frame, or covered: of one that is so for a
+    part, that part of it counts."""
 
     frame: SightFrame
     colour_scores: Floats
     limbs: NDArray[np.uint8]
+    unseen: float = 0.0
 
 
 class Sight:
@@ -196,13 +202,34 @@ class Sight:
     def log_likelihood(self, translations: Array, orientations: Array, view: SightView) -> Array:
         """Of poses (P, 3) and (P, 4), (P,): how many times likelier (log) the frame is with the
         object there than with none; 0 where the frame says nothing."""
-        return self._scores(translations, orientations, view) @ TERM_WEIGHTS
+        scores = self._scores(translations, orientations, view)
+        return scores[:, :SEEN] @ TERM_WEIGHTS + (1.0 - scores[:, SEEN]) * view.unseen
+
+    def compare_unseen(
+        self, translations: Array, orientations: Array, view: SightView, trust: float
+    ) -> SightView:
+        """The view in which an object that is not seen is as likely as one that is, of a sample of
+        what is believed, poses (P, 3) and (P, 4).
+
+        Not to be seen is no evidence, but a pose that could be seen is unlikely by a frame without
+        the object: to come off better others need only lie out of it. So they get the mean
+        likelihood of those that can be seen (of their seen part, as if it were all), where that
+        is less than 1. The frame counts by ``trust``.
+        """
+        scores = self._scores(translations, orientations, view)
+        seen = scores[:, SEEN]
+        if seen.sum() < FEWEST_SEEN:
+            return view
+        said = trust * (scores[:, :SEEN] @ TERM_WEIGHTS) / np.maximum(seen, LEAST_SEEN)
+        most = float(said.max())
+        mean = most + float(np.log(seen @ np.exp(said - most) / seen.sum()))
+        return replace(view, unseen=min(mean / trust, 0.0))
 
     def log_likelihoods_by_term(
         self, translations: Array, orientations: Array, view: SightView
     ) -> dict[str, Array]:
         """The parts of ``log_likelihood``, each (P,)."""
-        scores = self._scores(translations, orientations, view) * TERM_WEIGHTS
+        scores = self._scores(translations, orientations, view)[:, :SEEN] * TERM_WEIGHTS
         return dict(zip(SIGHT_TERMS, scores.T, strict=True))
 
     def refine(
@@ -286,7 +313,7 @@ class Sight:
         coloured, deep = frame.bins is not None, frame.depth is not None
         wanted = self._wanted & [coloured, coloured, coloured, deep]
         pixels = self._pixels(view)
-        scores = np.zeros((len(translations), len(SIGHT_TERMS)), np.float32)
+        scores = np.zeros((len(translations), SEEN + 1), np.float32)
 
         def weigh_some(part: slice) -> None:
             weigh(
