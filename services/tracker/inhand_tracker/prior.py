@@ -131,7 +131,7 @@ def _taken_along(prior: Prior, local: Array) -> tuple[Array, Array]:
     What is nearest to an object takes it along (Darby et al. 2014, section 5.2): an anchor errs by
     so much more as the object is farther from it.
     """
-    nearest = np.einsum("l,lei->ei", local[0], prior.landmark_targets)
+    nearest = np.tensordot(local[0], prior.landmark_targets, axes=1)
     square = np.square(nearest[:, :3]).sum(axis=1)
     return nearest, square / max(float(square.min()), 1e-6)
 
