@@ -11,7 +11,8 @@ from inhand_tracker.body_reader import Body, BodyReader
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.conversion import Need
 from inhand_tracker.estimate import Estimate
-from inhand_tracker.fusion import FusionTracker, Search
+from inhand_tracker.fusion import FusionTracker
+from inhand_tracker.fusion_search import Search
 from inhand_tracker.image import Image
 from inhand_tracker.likelihood import DEFAULT_TERMS, TERMS
 from inhand_tracker.methods import METHODS, PublishedMethod
