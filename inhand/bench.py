@@ -74,6 +74,21 @@ def frames_table(speed: TrackerSpeed) -> Table:
     return table
 
 
+def fusion_table(speed: TrackerSpeed) -> Table:
+    """What a frame of fusion costs by the size of its training."""
+    table = Table(title="a frame of fusion, by what its prior was learned from")
+    for name in ("labelled frames", "learning, s", "without image, ms", "with image, ms"):
+        table.add_column(name, justify="right")
+    for cost in speed.fusion:
+        table.add_row(
+            f"{cost.frames:,}",
+            f"{cost.learning_s:.1f}",
+            f"{cost.unseen_ms:.1f}",
+            f"{cost.seen_ms:.1f}",
+        )
+    return table
+
+
 def training_table(costs: list[TrainingCost]) -> Table:
     """A column a size; in brackets, how many times the first one's."""
     table = Table("", title="training on simulated people (times the first column's)")
@@ -121,7 +136,7 @@ def _short(value: float) -> str:
 
 def _tracker(_: Path | None) -> tuple[RenderableType, dict[str, Any]]:
     speed = measure_tracker()
-    return Group(tracker_table(speed), frames_table(speed)), asdict(speed)
+    return Group(tracker_table(speed), frames_table(speed), fusion_table(speed)), asdict(speed)
 
 
 def _likelihood(source: Path) -> tuple[RenderableType, dict[str, Any]]:

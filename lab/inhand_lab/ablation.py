@@ -5,7 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from inhand_tracker.anchors import ANCHORS
-from inhand_tracker.fusion import FusionTracker, Search
+from inhand_tracker.fusion import FusionTracker
+from inhand_tracker.fusion_search import Search
 from inhand_tracker.model_file import Model
 from inhand_tracker.prior import Prior
 from inhand_tracker.sight import SIGHT_TERMS, SightTerm

@@ -5,14 +5,12 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 
 import numpy as np
-from inhand_runtime.pixels import encode_colour, encode_depth
-from inhand_schemas.messages import RgbdFrame
 from inhand_tracker import rotations
 from inhand_tracker.body import PARTS, part_bases, pelvis_basis
-from inhand_tracker.conversion import Need, image_of
 from inhand_tracker.image import Image
 from inhand_tracker.learning import LabelledSequence, learn
 from inhand_tracker.likelihood import Likelihood
@@ -23,7 +21,9 @@ from inhand_tracker.sight_frame import Region, prepare
 from inhand_tracker.viewpoints import BOUNDARY_POINTS, Viewpoints, find_viewpoints
 from numpy.typing import NDArray
 
-from inhand_lab.simulated_messages import camera_info, shape_of
+from inhand_lab.benchmark_fusion import SIZES, FusionCost, measure_fusion
+from inhand_lab.rendered_images import rendered_image
+from inhand_lab.simulated_messages import shape_of
 from inhand_lab.workers import usable_cores
 from inhand_lab.world import Simulation, simulate
 
@@ -41,7 +41,6 @@ FRAME_CORES = 2
 HYPOTHESIS_COUNTS = (100, 1_000, 10_000)
 OBJECT_COUNTS = (1, 2, 4)
 REGION_MARGIN = 60.0
-NEEDS: tuple[Need, ...] = ("edges", "depth", "colour")
 
 
 @dataclass(frozen=True)
@@ -63,7 +62,8 @@ class TrackerSpeed:
 
     ``edge_hypotheses_per_second`` weighs poses by the published edges;
     ``full_hypotheses_per_second`` by every term of ``sight``. ``naive_ratio`` is the first over the
-    rate of NumPy called for one hypothesis after the other. ``frames`` is what whole frames cost.
+    rate of NumPy called for one hypothesis after the other. ``frames`` is what whole frames cost,
+    ``fusion`` what its frames cost by the size of training.
     """
 
     edge_hypotheses_per_second: float
@@ -72,14 +72,17 @@ class TrackerSpeed:
     full_hypotheses_per_second: float
     naive_ratio: float
     frames: tuple[FrameCost, ...] = ()
+    fusion: tuple[FusionCost, ...] = ()
 
 
-def measure_tracker(seconds: float = SECONDS) -> TrackerSpeed:
-    """Measure for so many seconds, on one core."""
+def measure_tracker(
+    seconds: float = SECONDS, training_sizes: Sequence[int] = SIZES
+) -> TrackerSpeed:
+    """Measure rates for so many seconds, on one core, and then what is learned of each size."""
     shown = simulate(INTERACTION, PEOPLE, SEED, LEARNED_FRAMES)
-    model, image = _model(), _image(shown)
+    model, image = _model(), rendered_image(shown, SHOWN_FRAME)
     translations, orientations = _poses(model, shown, HYPOTHESES)
-    edges, sight = Likelihood(model), Sight(model)
+    edges, sight = Likelihood(model), _sight(model)
     view = sight.view(prepare(image), sight.start())
 
     def weigh_by_edges() -> Array:
@@ -102,6 +105,7 @@ def measure_tracker(seconds: float = SECONDS) -> TrackerSpeed:
         HYPOTHESES / full_s,
         edge_rate / naive_rate,
         tuple(_frame_costs(model, shown, image, 1e3 / naive_rate, seconds)),
+        measure_fusion(training_sizes),
     )
 
 
@@ -113,26 +117,31 @@ def _frame_costs(
     ``naive_ms`` is what NumPy takes for one hypothesis.
     """
     cores = min(FRAME_CORES, usable_cores())
-    objects = [Sight(model, threads=cores) for _ in range(max(OBJECT_COUNTS))]
+    objects = [_sight(model, cores) for _ in range(max(OBJECT_COUNTS))]
     joints = shown.true_joints_in_camera[SHOWN_FRAME]
     for hypotheses, count in product(HYPOTHESIS_COUNTS, OBJECT_COUNTS):
         poses = _poses(model, shown, hypotheses)
         around = image.camera.project(poses[0])
         low, high = around.min(axis=0) - REGION_MARGIN, around.max(axis=0) + REGION_MARGIN
 
-        def weigh_frame(
-            count: int = count,
-            poses: tuple[Array, Array] = poses,
-            region: Region = (*low.tolist(), *high.tolist()),  # noqa: B008
-        ) -> None:
-            frame = prepare(image, region)
-            for sight in objects[:count]:
-                colours = sight.look_around(sight.start(), frame, poses[0][0], poses[1][0])
-                sight.log_likelihood(*poses, sight.view(frame, colours, joints))
-
+        region = (*low.tolist(), *high.tolist())
+        weigh_frame = partial(_weigh_frame, objects[:count], poses, image, region, joints)
         share = seconds / (len(HYPOTHESIS_COUNTS) * len(OBJECT_COUNTS))
         (took_s,) = _fastest((weigh_frame,), share)
         yield FrameCost(count, hypotheses, cores, 1e3 * took_s, naive_ms * hypotheses * count)
+
+
+def _weigh_frame(
+    objects: Sequence[Sight],
+    poses: tuple[Array, Array],
+    image: Image,
+    region: Region,
+    joints: Array,
+) -> None:
+    frame = prepare(image, region)
+    for sight in objects:
+        colours = sight.look_around(sight.start(), frame, poses[0][0], poses[1][0])
+        sight.log_likelihood(*poses, sight.view(frame, colours, joints))
 
 
 def naive_edge_log_weights(
@@ -174,18 +183,8 @@ def _model() -> Model:
     return Model(INTERACTION, shape, learn(sequences, shape.mirror_normal), find_viewpoints(shape))
 
 
-def _image(shown: Simulation) -> Image:
-    seen = shown.render(SHOWN_FRAME)
-    frame = RgbdFrame(
-        sequence=0,
-        time_ns=0,
-        colour=encode_colour(seen.colour),
-        depth=encode_depth(seen.depth),
-    )
-    image = image_of(frame, camera_info(shown.intrinsics, shown.frame_rate), NEEDS)
-    if image is None:
-        raise ValueError("a simulated frame has colour and depth")
-    return image
+def _sight(model: Model, threads: int = 1) -> Sight:
+    return Sight(model.shape, model.viewpoints, model.appearance, threads=threads)
 
 
 def _poses(model: Model, shown: Simulation, count: int) -> tuple[Array, Array]:

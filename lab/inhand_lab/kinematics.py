@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from inhand_lab.joints import MIRRORED_JOINTS
 from inhand_lab.person import Person, Proportions
-from inhand_lab.solids import rib_cage
+from inhand_lab.solids import belly, rib_cage
 from inhand_lab.transforms import MIRROR, Floats, Transform, normalised, rotation_about
 
 ELBOW_EXTENSION = np.radians(172.0)
@@ -25,10 +25,13 @@ WRIST_LIMIT = np.radians(75.0)
 SWIVELS = np.linspace(-0.4, 1.7, 22)
 STOUT_ELBOWS = 0.30
 """How much further from the trunk stout people carry their elbows, in statures a share of girth."""
-UPPER_ARM = ((0.35, 0.0275), (0.6, 0.0265))
-"""Places along the upper arm that press into the ribs, and its radii there in statures."""
-EASY_SQUEEZE = 0.025
+UPPER_ARM = ((0.35, 0.0275), (0.6, 0.0265), (0.9, 0.0254))
+"""Places along the upper arm that press into the trunk, and its radii there in statures."""
+EASY_SQUEEZE = 0.015
 """How deep, as a share of the chest's radius, an arm is pressed to it with ease."""
+PROTRACTION = np.radians(25.0)
+"""How far a collar bone turns forward for an arm that reaches straight across the chest; it can by
+15 to 30 degrees (Neumann, *Kinesiology of the Musculoskeletal System*)."""
 BALL_HEIGHT = 0.02
 
 
@@ -176,11 +179,22 @@ def _reach(
     """Shoulder, elbow, wrist and hand (T, 3) of a right arm, and the hand as it was reached."""
     body = person.proportions
     wanted = hand.translation - hand.rotation[:, :, 1] * body.palm
+    shoulder = _protract(body, from_chest, shoulder, wanted)
     circle, wrist = _bend(shoulder, wanted, body.upper_arm, body.forearm, ELBOW_EXTENSION)
     elbow = _choose_elbow(person, from_chest, shoulder, wrist, circle, hand)
     rotation = _relieve_wrist(normalised(wrist - elbow), hand.rotation)
     reached = Transform(wrist + rotation[:, :, 1] * body.palm, rotation)
     return [shoulder, elbow, wrist, reached.translation], reached
+
+
+def _protract(body: Proportions, from_chest: Transform, shoulder: Floats, wrist: Floats) -> Floats:
+    """A right shoulder (T, 3) that glides forward round the chest as the wrist goes across it."""
+    to_chest = from_chest.inverse()
+    local = to_chest.apply(shoulder)
+    way = (local - to_chest.apply(wrist))[:, 0] / (body.upper_arm + body.forearm)
+    across = np.clip(way, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(way, 0.0, 1.0))
+    turned = rotation_about("z", PROTRACTION * across)
+    return from_chest.apply(np.einsum("tij,tj->ti", turned, local))
 
 
 def _choose_elbow(
@@ -232,17 +246,16 @@ def _choose_elbow(
 
 
 def _squeeze(person: Person, from_chest: Transform, shoulder: Floats, elbows: Floats) -> Floats:
-    """Cost (T, K) of elbows (T, K, 3) whose upper arms press into the ribs."""
-    centre, radii = rib_cage(person)
+    """Cost (T, K) of elbows (T, K, 3) whose upper arms press into ribs or belly."""
     cost = np.zeros(elbows.shape[:2])
     for share, thickness in UPPER_ARM:
         points = shoulder[:, None] + share * (elbows - shoulder[:, None])
         offset = points - from_chest.translation[:, None]
-        local = np.einsum("tji,tkj->tki", from_chest.rotation, offset) - centre
-        around = radii + thickness * person.height * person.girth
-        cost += (
-            np.clip(1.0 - np.linalg.norm(local / around, axis=2), 0.0, None) / EASY_SQUEEZE
-        ) ** 2
+        local = np.einsum("tji,tkj->tki", from_chest.rotation, offset)
+        for centre, radii in (rib_cage(person), belly(person)):
+            around = radii + thickness * person.height * person.girth
+            level = np.linalg.norm((local - centre) / around, axis=2)
+            cost += (np.clip(1.0 - level, 0.0, None) / EASY_SQUEEZE) ** 2
     return cost
 
 

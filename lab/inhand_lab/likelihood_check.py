@@ -16,7 +16,6 @@ from inhand_tracker import rotations
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.colours import Colours
 from inhand_tracker.image import Image
-from inhand_tracker.model_file import Model
 from inhand_tracker.refine import Prior
 from inhand_tracker.shape import ObjectShape
 from inhand_tracker.sight import Sight, SightView
@@ -98,8 +97,7 @@ def whole_shape(name: str, clip: Clip) -> tuple[ObjectShape, str]:
 
 def _check(clip: Clip, name: str, starts: int, scattered: int, seed: int) -> ObjectCheck:
     shape, kind = whole_shape(name, clip)
-    # The mapping of a model, from bodies to objects, is not asked for here.
-    sight = Sight(Model("none", shape, None, find_viewpoints(shape)))  # type: ignore[arg-type]
+    sight = Sight(shape, find_viewpoints(shape))
     gauge, random = ErrorGauge(shape), np.random.default_rng(seed)
     colours = sight.start()
     followed: Pose | None = None

@@ -1,11 +1,13 @@
 """How a skeleton tracker errs before its filter: from frame to frame and from bone to bone.
 
 A tracker errs by pose: what it takes for the elbow changes as the arm moves, hardly while it
-rests, and is the same again when the arm comes back. On top of that errors wander, with the way
-that a joint goes rather than with time, in calm spells and busy ones; and a joint inherits a part
-of its parent's. Hands and feet, small as they are, are now and then seen turned or cut short, a
-hand flips, and a fast wrist stays behind or leaves the arm. Sizes were found by the realism table
-(docs/simulator.md tells which rows do not come out); none was chosen for what a method makes of it.
+rests, and is the same again when the arm comes back. On top of that errors wander, in calm spells
+and busy ones, as the body is stirred rather than with time: by how a joint moves against its parent
+and by how much is moving at all. They grow in movement and shrink again after it, and a joint
+inherits a part of its parent's. Hands and feet, small as they are, are now and then seen turned or
+cut short, a hand flips, and a fast wrist stays behind or leaves the arm. Sizes were found by the
+realism table (docs/simulator.md tells which rows do not come out); none was chosen for what a
+method makes of it.
 """
 
 from __future__ import annotations
@@ -18,13 +20,13 @@ from inhand_lab.joints import PARENTS, Joint
 from inhand_lab.recursion import leaky_sum
 from inhand_lab.transforms import Floats
 
-_ARM, _LEG = (6, 25, 5, 16), (3.3, 18, 8.8, 5)
-MISTAKES = 1e-3 * np.array([0, 17, 20, 3.1, *_ARM, *_ARM, *_LEG, *_LEG], float)
+_ARM, _LEG = (1.5, 16, 5.4, 15), (0.7, 13, 2.4, 6.5)
+MISTAKES = 1e-3 * np.array([0, 1, 1.2, 0.5, *_ARM, *_ARM, *_LEG, *_LEG], float)
 """Deviation, along each axis and over all poses, of where a joint is taken to be, metres, in the
 order of Joint."""
-_ARM_SIMILAR, _LEG_SIMILAR = (0.108, 0.060, 0.041, 0.047), (0.034, 0.0058, 0.031, 0.047)
+_ARM_SIMILAR, _LEG_SIMILAR = (0.092, 0.051, 0.035, 0.04), (0.029, 0.005, 0.026, 0.04)
 SIMILAR = np.array(
-    [0.1, 0.0095, 0.022, 0.032, *_ARM_SIMILAR, *_ARM_SIMILAR, *_LEG_SIMILAR, *_LEG_SIMILAR]
+    [0.085, 0.008, 0.019, 0.027, *_ARM_SIMILAR, *_ARM_SIMILAR, *_LEG_SIMILAR, *_LEG_SIMILAR]
 )
 """How far, in metres, a joint must go from the hips' point of view to be mistaken otherwise."""
 ACROSS = 0.10
@@ -32,35 +34,36 @@ ACROSS = 0.10
 WAVES = 12
 """Waves that a mistake is made of."""
 
-_ARM_WANDERING, _LEG_WANDERING = (9, 12.5, 16.5, 9.5), (3.2, 19, 12, 10)
+_ARM_WANDERING, _LEG_WANDERING = (1.5, 22, 11.5, 6), (5.3, 22.5, 4.6, 5.1)
 DEVIATIONS = 1e-3 * np.array(
-    [19, 15, 13, 7, *_ARM_WANDERING, *_ARM_WANDERING, *_LEG_WANDERING, *_LEG_WANDERING], float
+    [7.9, 19.5, 17, 8.8, *_ARM_WANDERING, *_ARM_WANDERING, *_LEG_WANDERING, *_LEG_WANDERING], float
 )
 """Deviation of a joint's wandering error along each axis, metres."""
-WAY = 0.33
+AGAINST_PARENT = 0.88
+"""Share of a joint's stirring that is its movement against its parent; the rest is all of it."""
+SHARED = 1.26
+"""How much the mean of all joints' movement stirs each one."""
+MOST_STIRRED = 3.6
+"""Speed, metres a second, that no joint seems to go beyond."""
+AT_REST, IN_MOVEMENT = 0.29, 0.17
+"""Share of the deviation that an error has at rest, and the speed at which it has all of it."""
+WAY = 0.165
 """Way in metres over which a wandering error is forgotten."""
-CREEP = 0.085
+CREEP = 0.048
 """Speed, metres a second, at which the tracker begins to take notice: slower counts for less."""
 _ARM_INHERITED, _LEG_INHERITED = (0.32, 0.38, 0.94, 0.61), (0.65, 0.61, 0.32, 0.95)
 INHERITED = np.array(
     [0.0, 0.6, 0.24, 0.5, *_ARM_INHERITED, *_ARM_INHERITED, *_LEG_INHERITED, *_LEG_INHERITED]
 )
 """Share of its parent's error that a joint has as well."""
-MEMORY_AT_REST = 120.0
+MEMORY_AT_REST = 110.0
 """Seconds in which the error of a joint at rest is forgotten."""
-SPELL = 0.1
+SPELL = 0.056
 """Correlation time of busy spells, seconds."""
-BUSYNESS, BUSIEST = 1.55, 40.0
+BUSYNESS, BUSIEST = 2.33, 40.0
 """Deviation of the logarithm of how busy the error is, and how many times its median at most."""
 TAILS = 3.0
 """Degrees of freedom of Student's t: the errors' steps have long tails."""
-_ARM_TREMBLING, _LEG_TREMBLING = (0.23, 0.19, 0.12, 0.29), (0.17, 0.17, 0.17, 0.17)
-TREMBLING = 1e-3 * np.array(
-    [0.17] * 4 + [*_ARM_TREMBLING, *_ARM_TREMBLING, *_LEG_TREMBLING, *_LEG_TREMBLING]
-)
-"""Deviation, metres, of the error that is new in every frame, at rest; it grows by as much with
-every TREMBLING_SPEED, metres a second, up to the speed TREMBLING_MOST."""
-TREMBLING_SPEED, TREMBLING_MOST = 0.15, 0.3
 
 HANDS, FEET = (Joint.HAND_LEFT, Joint.HAND_RIGHT), (Joint.FOOT_LEFT, Joint.FOOT_RIGHT)
 END_RATE = {"hand": 5.3, "foot": 8.4}
@@ -111,8 +114,18 @@ def mistake(person: int, joints: Floats) -> Floats:
     return np.asarray(mistakes)
 
 
+def stirring(joints: Floats, frame_rate: float) -> Floats:
+    """How much (T, 20) joints (T, 20, 3) disturb the tracker, as a speed in metres a second."""
+    against = joints - joints[:, PARENTS]
+    against[:, 0] = joints[:, 0]
+    own = AGAINST_PARENT * speeds(against, frame_rate)
+    own += (1.0 - AGAINST_PARENT) * speeds(joints, frame_rate)
+    speed = own + SHARED * own.mean(axis=1, keepdims=True)
+    return np.asarray(speed / (1.0 + speed / MOST_STIRRED))
+
+
 def wander(random: np.random.Generator, speed: Floats, frame_rate: float) -> Floats:
-    """Errors (T, 20, 3) in metres of joints that go at speeds (T, 20)."""
+    """Errors (T, 20, 3) in metres of joints that are stirred as by speeds (T, 20)."""
     busy = _busyness(random, speed.shape, frame_rate)
     noticed = speed * (speed / (speed + CREEP)) ** 2
     elapsed = busy * (1.0 / MEMORY_AT_REST + noticed / WAY) / frame_rate
@@ -123,9 +136,8 @@ def wander(random: np.random.Generator, speed: Floats, frame_rate: float) -> Flo
     error = random.normal(size=pushes.shape[1:])
     for frame in range(len(pushes)):
         errors[frame] = error = kept[frame] * error + pushes[frame]
-    errors *= DEVIATIONS[:, None]
-    size = TREMBLING * busy * (1.0 + np.minimum(speed, TREMBLING_MOST) / TREMBLING_SPEED)
-    return errors + size[..., None] * random.normal(size=errors.shape)
+    grown = AT_REST + (1.0 - AT_REST) * np.minimum(speed / IN_MOVEMENT, 1.0)
+    return np.asarray(errors * DEVIATIONS[:, None] * grown[..., None])
 
 
 def inherited(errors: Floats) -> Floats:

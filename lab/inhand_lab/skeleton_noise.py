@@ -24,6 +24,7 @@ from inhand_lab.skeleton_errors import (
     misread_ends,
     mistake,
     speeds,
+    stirring,
     wander,
 )
 from inhand_lab.tracker_filter import smooth
@@ -72,7 +73,9 @@ def read_skeleton(
     speed = speeds(seen, frame_rate)
     guessed = _soften(hidden_joints(person, true_joints), frame_rate)
     widened = 1.0 + (GUESS_FACTOR - 1.0) * guessed
-    error = mistake(person.appearance, seen) + wander(random, speed, frame_rate)
+    error = mistake(person.appearance, seen) + wander(
+        random, stirring(seen, frame_rate), frame_rate
+    )
     raw = seen + widened[..., None] * inherited(error)
     raw = misread_ends(random, raw, frame_rate)
     raw = flip_hands(random, raw, speed, frame_rate)

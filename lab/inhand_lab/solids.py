@@ -11,6 +11,9 @@ CHEST_BREADTH, CHEST_CONSTANCY = 0.76, 0.5
 """Breadth of the ribs over that of the shoulders, and how it goes with girth: in ANSUR II chests
 are 0.29 m broad in men of 1.76 m, and differ by 6 % where waists differ by 10 %."""
 
+BROADEST_CHEST = 0.77
+"""The same in the stoutest: an arm that hangs lies beside the ribs, whatever the girth."""
+
 
 def head_radii(person: Person) -> Floats:
     """Half axes (3,) of the head's ellipsoid about its middle, metres."""
@@ -21,8 +24,8 @@ def head_radii(person: Person) -> Floats:
 def rib_cage(person: Person) -> tuple[Floats, Floats]:
     """Centre and half axes (3,) of an ellipsoid in the chest's frame, metres."""
     size, trunk = person.height * person.girth, person.proportions.chest
-    breadth = CHEST_BREADTH * person.proportions.shoulder_half_width * person.girth**CHEST_CONSTANCY
-    radii = np.array([breadth, 0.066 * size, 0.66 * trunk])
+    share = min(CHEST_BREADTH * person.girth**CHEST_CONSTANCY, BROADEST_CHEST)
+    radii = np.array([share * person.proportions.shoulder_half_width, 0.066 * size, 0.66 * trunk])
     return np.array([0.0, 0.004, -0.45 * trunk]), radii
 
 

@@ -43,7 +43,7 @@ from inhand_lab.transforms import Floats, Transform, normalised, quaternions, ro
 INTERACTIONS: tuple[str, ...] = tuple(PERFORMED)
 """Names of what people can do here."""
 
-VERSION = 3
+VERSION = 4
 """Of the generator: the same version and seed make the same bytes."""
 
 USUAL_SECONDS = 12.0

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inhand_lab import benchmark_tracker
+from inhand_lab.benchmark_fusion import FusionCost, measure_fusion
 from inhand_lab.benchmark_tracker import (
     FrameCost,
     TrackerSpeed,
@@ -40,23 +41,32 @@ def test_the_plain_evaluation_gives_the_same_weights() -> None:
 
 
 def test_the_measurement_says_what_was_measured() -> None:
-    speed = measure_tracker(seconds=0.05)
+    speed = measure_tracker(0.05, [])
     assert (speed.points, speed.cores) == (50, 1)
     assert speed.edge_hypotheses_per_second > speed.full_hypotheses_per_second > 0.0
     assert speed.naive_ratio > 1.0
 
 
 def test_frames_are_measured_for_every_count_of_hypotheses_and_objects() -> None:
-    costs = {(c.objects, c.hypotheses): c for c in measure_tracker(seconds=0.05).frames}
+    costs = {(c.objects, c.hypotheses): c for c in measure_tracker(0.05, []).frames}
     assert set(costs) == {(o, h) for o in (1, 2, 4) for h in (100, 1_000, 10_000)}
     assert costs[4, 10_000].ms > costs[1, 100].ms
     assert costs[2, 1_000].naive_ms == pytest.approx(2.0 * costs[1, 1_000].naive_ms)
     assert costs[1, 10_000].naive_ms > costs[1, 10_000].ms
 
 
+@pytest.mark.long
+def test_a_frame_of_fusion_costs_no_more_for_more_training() -> None:
+    few, many = measure_fusion([1_000, 4_000])
+    assert (few.frames, many.frames) == (1_000, 4_000)
+    assert few.seen_ms > few.unseen_ms > 0.0
+    assert many.learning_s > few.learning_s
+    assert many.unseen_ms < 2.0 * few.unseen_ms
+
+
 def test_the_measurement_gives_all_cores_back() -> None:
     before = benchmark_tracker.os.sched_getaffinity(0)
-    measure_tracker(seconds=0.01)
+    measure_tracker(0.01, [])
     assert benchmark_tracker.os.sched_getaffinity(0) == before
 
 
@@ -64,7 +74,8 @@ def test_the_verb_shows_the_figures_and_writes_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     frames = (FrameCost(1, 100, 2, 3.25, 11.0), FrameCost(4, 100, 2, 9.75, 44.0))
-    speed = TrackerSpeed(1234567.0, 50, 1, 7654.0, 12.34, frames)
+    fusion = (FusionCost(1_000, 0.5, 2.25, 14.0), FusionCost(100_000, 31.0, 2.5, 14.5))
+    speed = TrackerSpeed(1234567.0, 50, 1, 7654.0, 12.34, frames, fusion)
     monkeypatch.setattr(bench, "measure_tracker", lambda: speed)
     assert main(["bench", "tracker", "--json", str(tmp_path / "speed.json")]) == 0
     assert json.loads((tmp_path / "speed.json").read_text()) == json.loads(
@@ -75,6 +86,8 @@ def test_the_verb_shows_the_figures_and_writes_them(
     assert "7,654" in shown
     assert "3.2 (11)" in shown
     assert "4 objects" in shown
+    assert "100,000" in shown
+    assert "31.0" in shown
 
 
 def test_a_subject_that_there_is_not_is_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:

@@ -32,6 +32,8 @@ REINITIALISING = [name for name in ALL if name == FUSION or METHODS[name].reinit
 BEST = "gd-stable-proximate"
 BEGIN, END = 75, 87  # the mug is being drunk from
 RECOVERED_M = 0.04
+CHI_SQUARE_90 = 10.645
+"""Of six degrees of freedom."""
 ALLOWED = dict.fromkeys(ALL, 0) | {"gd-random": 2}
 """Frames to recover; random parts scatter by themselves."""
 
@@ -246,6 +248,21 @@ def test_in_a_toast_the_fallback_keeps_the_mug_by_the_hand_too() -> None:
     fallback = track("gd-fallback", *with_a_toast())
     assert during(fallback) < 0.20
     assert fallback.frames_to_recover(usual("gd-fallback"), END) == 0
+
+
+def test_in_a_toast_fusion_takes_the_mug_along_with_the_hand_and_says_how_unsure_it_is() -> None:
+    toast, (places, turns) = with_a_toast()
+    run = track(FUSION, toast, (places, turns))
+    assert during(run) < 0.25
+    assert max(estimate.confidence for estimate in run.estimates[BEGIN:END]) < 0.2
+    within = []
+    for frame in range(BEGIN, END):
+        told = run.estimates[frame]
+        turn = rotations.multiply(told.rotation, rotations.conjugate(turns[frame]))
+        off = np.concatenate((told.translation - places[frame], rotations.to_vector(turn)))
+        within.append(off @ np.linalg.solve(told.covariance, off) < CHI_SQUARE_90)
+    assert np.mean(within) > 0.6
+    assert run.frames_to_recover(usual(FUSION), END) == 0
 
 
 def test_usual_use_by_a_stranger_hardly_ever_falls_back() -> None:

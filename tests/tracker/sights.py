@@ -8,7 +8,6 @@ import trimesh
 from inhand_tracker.appearance import Appearance, Sample, learn_appearance
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.image import Image
-from inhand_tracker.model_file import Model
 from inhand_tracker.shape import ObjectShape
 from inhand_tracker.sight import SIGHT_TERMS, Sight, SightTerm, SightView
 from inhand_tracker.sight_frame import prepare
@@ -77,9 +76,7 @@ def sight(
     learned: Appearance | None = None,
     threads: int = 1,
 ) -> Sight:
-    # No mapping is asked for.
-    model = Model("hold", box(), None, viewpoints(), learned)  # type: ignore[arg-type]
-    return Sight(model, terms, threads=threads)
+    return Sight(box(), viewpoints(), learned, terms, threads=threads)
 
 
 def view_of(eyes: Sight, image: Image, joints: np.ndarray | None = None) -> SightView:

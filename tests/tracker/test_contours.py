@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 import trimesh
-from inhand_tracker.contours import FARTHEST_M, Contours, find_contours, view_axes
+from inhand_tracker.contours import FARTHEST_M, Contours, find_contours
+from inhand_tracker.parallel_view import view_axes
 from inhand_tracker.shape import ObjectShape
 
 TOWARDS_Z = np.array([[0.0, 0.0, 1.0]])

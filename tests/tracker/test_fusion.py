@@ -9,7 +9,8 @@ import pytest
 from inhand_tracker import body
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.estimate import LOST, Estimate
-from inhand_tracker.fusion import FusionTracker, Search
+from inhand_tracker.fusion import FusionTracker
+from inhand_tracker.fusion_search import Search
 from inhand_tracker.image import Image
 from inhand_tracker.model_file import Model, ModelError
 from people import (

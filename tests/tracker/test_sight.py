@@ -177,3 +177,37 @@ def test_the_information_is_least_where_the_image_tells_least() -> None:
     assert (across > 5.0 * along).all()
     np.testing.assert_allclose(refined.information[0], refined.information[0].T, rtol=1e-9)
     assert np.linalg.eigvalsh(refined.information[0]).min() > -1e-6
+
+
+# --- What is not seen
+
+
+def out_of_view() -> tuple[np.ndarray, np.ndarray]:
+    return PLACE + np.array([50.0, 0.0, 0.0]), TURN
+
+
+def compared(image: Image) -> tuple[np.ndarray, float]:
+    """What a frame says of scattered poses, and of one out of view, half as likely as those."""
+    eyes = sight(learned=appearance())
+    view = view_of(eyes, image)
+    places, turns = scattered(100, 0.05, 20.0)
+    out, turn = out_of_view()
+    half = np.arange(len(places)) % 2 == 1
+    places[half], turns[half] = out, turn
+    said = eyes.log_likelihood(places, turns, eyes.compare_unseen(places, turns, view, 0.4))
+    assert np.ptp(said[half]) == 0.0
+    return said[~half], float(said[half][0])
+
+
+def test_an_object_that_is_not_there_gains_nothing_by_being_out_of_view() -> None:
+    """All that is believed to be in view is as likely as all that is out of it."""
+    empty = draw(out_of_view()[0], TURN)
+    seen, unseen = compared(empty)
+    assert np.exp(0.4 * unseen) == pytest.approx(np.exp(0.4 * seen).mean(), rel=0.1)
+    assert unseen < -1.0
+
+
+def test_what_is_out_of_view_is_as_before_where_the_object_is_seen() -> None:
+    seen, unseen = compared(draw(PLACE, TURN))
+    assert seen[0] > 3.0
+    assert unseen == 0.0

@@ -56,7 +56,7 @@ one, and by how far (in statures) the hips have gone ahead."""
 ARM_PLANE = np.radians(17.0)
 """Lean of the arms' plane from the vertical."""
 STEEPEST = np.radians(68.0)
-OBLIQUE = (np.radians(45.0), np.radians(40.0))
+OBLIQUE = (np.radians(40.0), np.radians(40.0))
 """Of the grip across the right and the left palm; the right one is more in the fingers."""
 HANDS_APART = 0.09
 NECK_TURN = np.radians(65.0)

@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from inhand_tracker.parallel_view import along_curve, evenly, view_along
 from inhand_tracker.raster import nearest_faces
 from inhand_tracker.shape import ObjectShape
 
@@ -60,55 +61,32 @@ def find_contours(shape: ObjectShape, directions: Array) -> Contours:
     return Contours(directions.astype(np.float32), **columns)
 
 
-def view_axes(direction: Array) -> Array:
-    """Rows: right, down and forwards of a viewer who looks at the object from ``direction``."""
-    helper = np.eye(3)[np.argmin(np.abs(direction))]
-    right = np.cross(helper, -direction)
-    right /= np.linalg.norm(right)
-    return np.array([right, np.cross(-direction, right), -direction])
-
-
 @lru_cache(maxsize=1)
 def _along_curve() -> NDArray[np.int64]:
-    """The raster's pixels along Morton's curve: neighbours on it are neighbours in the raster."""
+    """All the raster's pixels along Morton's curve."""
     row, column = np.indices((RASTER, RASTER)).reshape(2, -1)
-    place = np.zeros_like(column)
-    for bit in range(RASTER.bit_length()):
-        place |= ((column >> bit) & 1) << (2 * bit) | ((row >> bit) & 1) << (2 * bit + 1)
-    return np.argsort(place)
+    return along_curve(column, row)
 
 
 def _look(shape: ObjectShape, direction: Array) -> tuple[Array | float, ...]:
     """The fields of ``Contours`` but for the direction."""
-    axes = view_axes(direction)
-    seen = shape.vertices @ axes.T
-    low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
-    scale = (RASTER - 1 - 2 * MARGIN) / max((high - low).max(), 1e-9)
-    pixels = (seen[:, :2] - low) * scale + MARGIN
-    depths, owners = nearest_faces(pixels, seen[:, 2], shape.faces, RASTER)
+    view = view_along(shape, direction, RASTER, MARGIN)
+    depths, owners = nearest_faces(view.pixels, view.depths, shape.faces, RASTER)
     mask = np.isfinite(depths)
-
-    def place(pixel: Array) -> Array:
-        column, row = np.rint(pixel).astype(int).T
-        across = (pixel - MARGIN) / scale + low
-        placed: Array = np.column_stack((across, depths[row, column])) @ axes
-        return placed
-
     outline, flat_normals = _spaced_outline(_without_small_holes(mask))
     inside, outside = _thickness(mask, outline, flat_normals)
     order = _along_curve()
     silhouette = order[mask.ravel()[order]]
-    evenly = ((np.arange(SURFACE_POINTS) + 0.5) * len(silhouette) / SURFACE_POINTS).astype(int)
-    row, column = np.divmod(silhouette[evenly], RASTER)
+    row, column = np.divmod(silhouette[evenly(len(silhouette), SURFACE_POINTS)], RASTER)
     faces = owners[row, column]
     return (
-        place(outline),
-        flat_normals @ axes[:2],
-        np.where(np.isfinite(inside), inside / scale, FARTHEST_M),
-        np.where(np.isfinite(outside), outside / scale, FARTHEST_M),
-        place(np.column_stack((column, row)).astype(float)),
+        view.place(outline, depths),
+        flat_normals @ view.axes[:2],
+        np.where(np.isfinite(inside), inside / view.scale, FARTHEST_M),
+        np.where(np.isfinite(outside), outside / view.scale, FARTHEST_M),
+        view.place(np.column_stack((column, row)).astype(float), depths),
         _face_normals(shape, faces, direction),
-        float(len(silhouette)) / scale**2,
+        float(len(silhouette)) / view.scale**2,
     )
 
 

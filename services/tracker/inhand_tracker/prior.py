@@ -7,6 +7,7 @@ weights of the best linear unbiased combination, and the covariance of what come
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import count
 from typing import Any
 
@@ -30,6 +31,9 @@ FAR = 0.4
 learned from, is stretched to it: far from what was learned the nearest of it is the best guess."""
 MOST_STRETCHED = 3.0
 """So many times is the guess's deviation stretched as well, at the most."""
+NEW = 0.7
+"""A body is new where the kernel is below this at all landmarks, the more so the smaller it is:
+what carries the object along then tells more than where it was usual."""
 BASE = 0.1
 """Share of the covariance over all body poses in that of any."""
 
@@ -56,6 +60,12 @@ class Prior:
     calibration: float
     persistence_s: float
 
+    @cached_property
+    def landmark_targets(self) -> Array:
+        """(L, V A, 12): the object in each anchor at each landmark, as each regression has it."""
+        fitted = [one.predict(one.landmarks) for one in self.regressions]
+        return np.concatenate([one.reshape(len(one), -1, TARGETS) for one in fitted], axis=1)
+
 
 @dataclass(frozen=True)
 class Prediction:
@@ -78,31 +88,52 @@ def predict(
         regression.kernel(description)
         for regression, description in zip(prior.regressions, descriptions, strict=True)
     ]
-    stretches = [FAR / max(float(kernel.max()), TINY) for kernel in kernels]
+    stretches = [max(FAR / max(float(kernel.max()), TINY), 1.0) for kernel in kernels]
     predicted = np.concatenate(
         [
-            (max(stretch, 1.0) * kernel @ regression.coefficients + regression.offset).reshape(
-                -1, TARGETS
-            )
+            (stretch * kernel @ regression.coefficients + regression.offset).reshape(-1, TARGETS)
             for stretch, kernel, regression in zip(
                 stretches, kernels, prior.regressions, strict=True
             )
         ]
     )
     local, nearness = locality(kernels[0])
+    moved, turned = at(local, prior.translation_products), at(local, prior.rotation_products)
+    around = repeated(anchors, len(prior.regressions))
+    turn_weights = weights_of(turned)
     centre, rotation = fuse(
-        predicted[None],
-        repeated(anchors, len(prior.regressions)),
-        height,
-        weights_at(local, prior.translation_products),
-        weights_at(local, prior.rotation_products),
-        prior.spread,
+        predicted[None], around, height, weights_of(moved), turn_weights, prior.spread
     )
     doubt = float(np.clip(stretches[0], 1.0, MOST_STRETCHED)) ** 2
     covariance = doubt * prior.calibration * covariance_at(local, nearness, prior.errors)[0]
     turn = np.kron(np.eye(2), anchors.axes[0])
     scale = np.repeat([height, 1.0], 3)
-    return Prediction(centre[0], rotation[0], turn @ (covariance * scale[:, None] * scale) @ turn.T)
+    covariance = turn @ (covariance * scale[:, None] * scale) @ turn.T
+    novelty = 1.0 - float(kernels[0].max()) / NEW
+    if novelty <= 0.0:
+        return Prediction(centre[0], rotation[0], covariance)
+    nearest, shares = _taken_along(prior, local)
+    predicted = predicted + novelty * (nearest - predicted)
+    worse = 1.0 + novelty * (shares - 1.0)
+    move_weights = weights_of(worse[:, None] * moved * worse)
+    along, turned_along = fuse(
+        predicted[None], around, height, move_weights, turn_weights, prior.spread
+    )
+    apart = np.square([along[0] - centre[0], rotation_error(turned_along, rotation)[0]]).sum(axis=1)
+    covariance = covariance + np.diag(np.repeat(apart, 3))
+    return Prediction(along[0], turned_along[0], covariance)
+
+
+def _taken_along(prior: Prior, local: Array) -> tuple[Array, Array]:
+    """Of a new body: what each anchor has at landmarks that say so much (1, L), (E, 12), and by how
+    many times its usual error that errs, (E,).
+
+    What is nearest to an object takes it along (Darby et al. 2014, section 5.2): an anchor errs by
+    so much more as the object is farther from it.
+    """
+    nearest = np.tensordot(local[0], prior.landmark_targets, axes=1)
+    square = np.square(nearest[:, :3]).sum(axis=1)
+    return nearest, square / max(float(square.min()), 1e-6)
 
 
 def locality(kernel: Array) -> tuple[Array, Array]:
@@ -121,11 +152,19 @@ def weights_at(local: Array, products: Singles) -> Array:
 
     Of their errors' inner products (L, E, E) at landmarks that say so much, ``local`` (T, L).
     """
-    predictions = products.shape[-1]
-    expected = (local @ products.reshape(len(products), -1)).reshape(-1, predictions, predictions)
+    return weights_of(at(local, products))
+
+
+def at(local: Array, products: Singles) -> Array:
+    """The products (T, E, E) that are expected, of those at landmarks (L, E, E)."""
+    return (local @ products.reshape(len(products), -1)).reshape(-1, *products.shape[1:])
+
+
+def weights_of(expected: Array) -> Array:
+    """The weights (T, E) of E predictions whose errors have such inner products (T, E, E)."""
     own = np.einsum("tee->te", expected)
-    expected = expected + np.einsum("te,ef->tef", DISTRUST * own + 1e-12, np.eye(predictions))
-    weights = np.linalg.solve(expected, np.ones((len(local), predictions, 1)))[..., 0]
+    expected = expected + np.einsum("te,ef->tef", DISTRUST * own + 1e-12, np.eye(len(own[0])))
+    weights = np.linalg.solve(expected, np.ones((*own.shape, 1)))[..., 0]
     weights = np.maximum(weights, 0.0)
     return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 

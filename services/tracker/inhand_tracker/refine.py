@@ -16,6 +16,8 @@ from inhand_tracker import rotations
 from inhand_tracker.sight_kernels import (
     IN_FRONT_M,
     NEAREST_M,
+    Outlines,
+    Pixels,
     channel_of,
     depth_noise,
     turned,
@@ -109,161 +111,154 @@ def _add(
 
 @njit(cache=True, nogil=True)
 def gather(
-    translation: Array,
-    rotation: Array,
-    grid: NDArray[np.int16],
-    directions: Floats,
-    points: Floats,
-    normals: Floats,
-    inside: Floats,
-    outside: Floats,
-    surface_points: Floats,
-    surface_normals: Floats,
-    lens: Floats,
-    edges: Bytes,
-    edge_scores: Floats,
-    colour_scores: Floats,
-    limbs: Bytes,
-    depth: Floats,
+    translations: Array,
+    orientations: Array,
+    outlines: Outlines,
+    pixels: Pixels,
     returned: float,
     wanted: NDArray[np.bool_],
     reach_m: float,
     reach_rad: float,
     weights: Array,
     information: Array,
-    gradient: Array,
+    gradients: Array,
 ) -> None:
-    """Add up what a frame says of a pose: ``information`` (6, 6) and ``gradient`` (6,).
+    """Add up what a frame says of each of poses (K, 3), (K, 4): ``information`` (K, 6, 6) and
+    ``gradients`` (K, 6).
 
-    Arguments as those of ``sight_kernels.weigh``; ``wanted`` (3,): edges, colours, depth;
-    ``weights`` (2,): how much a point of the outline and of the surface counts, which are not
-    independent of each other.
+    ``wanted`` (3,): edges, colours, depth; ``weights`` (2,): how much a point of the outline and of
+    the surface counts, which are not independent of each other.
     """
+    grid, directions, points, normals, inside, outside, surface_points, surface_normals, _ = (
+        outlines
+    )
+    lens, edges, edge_scores, colour_scores, limbs, depth = pixels
     height, width = limbs.shape
     fx, fy, cx, cy = lens
-    tx, ty, tz = translation
-    w, x, y, z = rotation
-    r0, r1, r2, r3, r4, r5, r6, r7, r8 = turned(w, x, y, z)
-    view = nearest_view(
-        grid,
-        directions,
-        -(r0 * tx + r3 * ty + r6 * tz),
-        -(r1 * tx + r4 * ty + r7 * tz),
-        -(r2 * tx + r5 * ty + r8 * tz),
-    )
     across, arm = np.empty(3), np.empty(3)
     log_posterior = np.empty(2 * SAMPLES + 1)
     inner, outer = np.empty(2 * SAMPLES + 1), np.empty(2 * SAMPLES + 1)
-    for point in range(points.shape[1]):
-        if not (wanted[0] or wanted[1]):
-            break
-        a, b, c = points[view, point]
-        arm[0] = r0 * a + r1 * b + r2 * c
-        arm[1] = r3 * a + r4 * b + r5 * c
-        arm[2] = r6 * a + r7 * b + r8 * c
-        px, py, pz = arm[0] + tx, arm[1] + ty, arm[2] + tz
-        length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
-        reach = reach_m + reach_rad * length
-        if pz < NEAREST_M:
-            continue
-        u, v = fx * px / pz + cx, fy * py / pz + cy
-        if not (u > -0.5 and v > -0.5 and u < width - 0.5 and v < height - 0.5):
-            continue
-        column, row = int(u + 0.5), int(v + 0.5)
-        measured = depth[row, column]
-        if measured > 0.0 and measured < pz - IN_FRONT_M - 2.0 * depth_noise(pz) - reach:
-            continue
-        a, b, c = normals[view, point]
-        nz = (r6 * a + r7 * b + r8 * c) / pz
-        nx = fx * (r0 * a + r1 * b + r2 * c - nz * px)
-        ny = fy * (r3 * a + r4 * b + r5 * c - nz * py)
-        length = np.sqrt(nx * nx + ny * ny)
-        if length < 1e-9:
-            continue
-        nx, ny = nx / length, ny / length
-        step = max(reach * fx / pz / SAMPLES, LEAST_STEP_PIXELS)
-        within = inside[view, point] * fx / pz
-        beside = outside[view, point] * fx / pz
-        channel = channel_of(nx, ny)
-        for sample in range(2 * SAMPLES + 1):
-            away = (sample - SAMPLES) * step
-            inner[sample] = outer[sample] = log_posterior[sample] = 0.0
-            su, sv = u + away * nx, v + away * ny
-            if not (su > -0.5 and sv > -0.5 and su < width - 0.5 and sv < height - 0.5):
+    for pose in range(len(translations)):
+        tx, ty, tz = translations[pose]
+        w, x, y, z = orientations[pose]
+        r0, r1, r2, r3, r4, r5, r6, r7, r8 = turned(w, x, y, z)
+        view = nearest_view(
+            grid,
+            directions,
+            -(r0 * tx + r3 * ty + r6 * tz),
+            -(r1 * tx + r4 * ty + r7 * tz),
+            -(r2 * tx + r5 * ty + r8 * tz),
+        )
+        for point in range(points.shape[2]):
+            if not (wanted[0] or wanted[1]):
+                break
+            a, b, c = points[view, :, point]
+            arm[0] = r0 * a + r1 * b + r2 * c
+            arm[1] = r3 * a + r4 * b + r5 * c
+            arm[2] = r6 * a + r7 * b + r8 * c
+            px, py, pz = arm[0] + tx, arm[1] + ty, arm[2] + tz
+            length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
+            reach = reach_m + reach_rad * length
+            if pz < NEAREST_M:
                 continue
-            column, row = int(su + 0.5), int(sv + 0.5)
-            if wanted[1] and -away < within and away < beside:
-                inner[sample] = step * colour_scores[row, column, 0]
-                outer[sample] = step * colour_scores[row, column, 1]
-            if wanted[0] and step < WIDEST_EDGE_STEP and not limbs[row, column]:
-                log_posterior[sample] = edge_scores[channel, edges[channel, row, column]]
-        total = 0.0
-        for sample in range(2 * SAMPLES + 1):
-            total += outer[sample]
-        before = 0.0
-        most = -1e30
-        for sample in range(2 * SAMPLES + 1):
-            # Half of the pixel that the outline runs through is on either side.
-            middle = 0.5 * (inner[sample] - outer[sample])
-            log_posterior[sample] += before + middle
-            before += 2.0 * middle
-            most = max(most, log_posterior[sample])
-        mass = mean = square = 0.0
-        for sample in range(2 * SAMPLES + 1):
-            away = (sample - SAMPLES) * step
-            share = np.exp(log_posterior[sample] - most)
-            mass += share
-            mean += share * away
-            square += share * away * away
-        mean /= mass
-        variance = square / mass - mean * mean + 0.5 * step * step + 0.25
-        variance += np.square(CONTOUR_ERROR_M * fx / pz)
-        flat = SAMPLES * (SAMPLES + 1) * step * step / 3.0
-        certainty = 1.0 / variance - 1.0 / flat
-        if certainty <= 0.0:
-            continue
-        # The pixel's displacement along (nx, ny) by a displacement of the point.
-        across[0] = nx * fx / pz
-        across[1] = ny * fy / pz
-        across[2] = -(nx * fx * px + ny * fy * py) / (pz * pz)
-        _add(information, gradient, across, arm, mean, weights[0] * certainty)
-    for point in range(surface_points.shape[1]):
-        if not wanted[2]:
-            break
-        a, b, c = surface_points[view, point]
-        arm[0] = r0 * a + r1 * b + r2 * c
-        arm[1] = r3 * a + r4 * b + r5 * c
-        arm[2] = r6 * a + r7 * b + r8 * c
-        px, py, pz = arm[0] + tx, arm[1] + ty, arm[2] + tz
-        length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
-        reach = reach_m + reach_rad * length
-        if pz < NEAREST_M:
-            continue
-        u, v = fx * px / pz + cx, fy * py / pz + cy
-        if not (u > -0.5 and v > -0.5 and u < width - 0.5 and v < height - 0.5):
-            continue
-        column, row = int(u + 0.5), int(v + 0.5)
-        measured = depth[row, column]
-        if measured <= 0.0:
-            continue
-        error = measured - pz
-        noise = depth_noise(pz)
-        width_m = np.sqrt(noise * noise + reach * reach / 3.0)
-        near = np.exp(-0.5 * error * error / (width_m * width_m)) / (2.5066 * width_m)
-        other = (IN_FRONT_PER_M if error < 0.0 else BEHIND_PER_M) / max(returned, 0.01)
-        if wanted[1]:
-            # A colour of the surroundings rather than of the object's tells whose surface it is.
-            against = colour_scores[row, column, 1] - colour_scores[row, column, 0]
-            other *= np.exp(COLOUR_WEIGHT * against)
-        if limbs[row, column]:
-            other *= LIMB_FACTOR
-        a, b, c = surface_normals[view, point]
-        across[0] = r0 * a + r1 * b + r2 * c
-        across[1] = r3 * a + r4 * b + r5 * c
-        across[2] = r6 * a + r7 * b + r8 * c
-        # The measured point lies on the same ray, ``measured`` away.
-        share = measured / pz - 1.0
-        residual = share * (across[0] * px + across[1] * py + across[2] * pz)
-        spread = width_m * max(abs(across[2]), 0.2)
-        certainty = near / (near + other) / (spread * spread)
-        _add(information, gradient, across, arm, residual, weights[1] * certainty)
+            u, v = fx * px / pz + cx, fy * py / pz + cy
+            if not (u > -0.5 and v > -0.5 and u < width - 0.5 and v < height - 0.5):
+                continue
+            column, row = int(u + 0.5), int(v + 0.5)
+            measured = depth[row, column]
+            if measured > 0.0 and measured < pz - IN_FRONT_M - 2.0 * depth_noise(pz) - reach:
+                continue
+            a, b, c = normals[view, :, point]
+            nz = (r6 * a + r7 * b + r8 * c) / pz
+            nx = fx * (r0 * a + r1 * b + r2 * c - nz * px)
+            ny = fy * (r3 * a + r4 * b + r5 * c - nz * py)
+            length = np.sqrt(nx * nx + ny * ny)
+            if length < 1e-9:
+                continue
+            nx, ny = nx / length, ny / length
+            step = max(reach * fx / pz / SAMPLES, LEAST_STEP_PIXELS)
+            within = inside[view, point] * fx / pz
+            beside = outside[view, point] * fx / pz
+            channel = channel_of(nx, ny)
+            for sample in range(2 * SAMPLES + 1):
+                away = (sample - SAMPLES) * step
+                inner[sample] = outer[sample] = log_posterior[sample] = 0.0
+                su, sv = u + away * nx, v + away * ny
+                if not (su > -0.5 and sv > -0.5 and su < width - 0.5 and sv < height - 0.5):
+                    continue
+                column, row = int(su + 0.5), int(sv + 0.5)
+                if wanted[1] and -away < within and away < beside:
+                    inner[sample] = step * colour_scores[row, column, 0]
+                    outer[sample] = step * colour_scores[row, column, 1]
+                if wanted[0] and step < WIDEST_EDGE_STEP and not limbs[row, column]:
+                    log_posterior[sample] = edge_scores[channel, edges[channel, row, column]]
+            total = 0.0
+            for sample in range(2 * SAMPLES + 1):
+                total += outer[sample]
+            before = 0.0
+            most = -1e30
+            for sample in range(2 * SAMPLES + 1):
+                # Half of the pixel that the outline runs through is on either side.
+                middle = 0.5 * (inner[sample] - outer[sample])
+                log_posterior[sample] += before + middle
+                before += 2.0 * middle
+                most = max(most, log_posterior[sample])
+            mass = mean = square = 0.0
+            for sample in range(2 * SAMPLES + 1):
+                away = (sample - SAMPLES) * step
+                share = np.exp(log_posterior[sample] - most)
+                mass += share
+                mean += share * away
+                square += share * away * away
+            mean /= mass
+            variance = square / mass - mean * mean + 0.5 * step * step + 0.25
+            variance += np.square(CONTOUR_ERROR_M * fx / pz)
+            flat = SAMPLES * (SAMPLES + 1) * step * step / 3.0
+            certainty = 1.0 / variance - 1.0 / flat
+            if certainty <= 0.0:
+                continue
+            # The pixel's displacement along (nx, ny) by a displacement of the point.
+            across[0] = nx * fx / pz
+            across[1] = ny * fy / pz
+            across[2] = -(nx * fx * px + ny * fy * py) / (pz * pz)
+            _add(information[pose], gradients[pose], across, arm, mean, weights[0] * certainty)
+        for point in range(surface_points.shape[2]):
+            if not wanted[2]:
+                break
+            a, b, c = surface_points[view, :, point]
+            arm[0] = r0 * a + r1 * b + r2 * c
+            arm[1] = r3 * a + r4 * b + r5 * c
+            arm[2] = r6 * a + r7 * b + r8 * c
+            px, py, pz = arm[0] + tx, arm[1] + ty, arm[2] + tz
+            length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
+            reach = reach_m + reach_rad * length
+            if pz < NEAREST_M:
+                continue
+            u, v = fx * px / pz + cx, fy * py / pz + cy
+            if not (u > -0.5 and v > -0.5 and u < width - 0.5 and v < height - 0.5):
+                continue
+            column, row = int(u + 0.5), int(v + 0.5)
+            measured = depth[row, column]
+            if measured <= 0.0:
+                continue
+            error = measured - pz
+            noise = depth_noise(pz)
+            width_m = np.sqrt(noise * noise + reach * reach / 3.0)
+            near = np.exp(-0.5 * error * error / (width_m * width_m)) / (2.5066 * width_m)
+            other = (IN_FRONT_PER_M if error < 0.0 else BEHIND_PER_M) / max(returned, 0.01)
+            if wanted[1]:
+                # A colour of the surroundings rather than the object's tells whose surface it is.
+                against = colour_scores[row, column, 1] - colour_scores[row, column, 0]
+                other *= np.exp(COLOUR_WEIGHT * against)
+            if limbs[row, column]:
+                other *= LIMB_FACTOR
+            a, b, c = surface_normals[view, :, point]
+            across[0] = r0 * a + r1 * b + r2 * c
+            across[1] = r3 * a + r4 * b + r5 * c
+            across[2] = r6 * a + r7 * b + r8 * c
+            # The measured point lies on the same ray, ``measured`` away.
+            share = measured / pz - 1.0
+            residual = share * (across[0] * px + across[1] * py + across[2] * pz)
+            spread = width_m * max(abs(across[2]), 0.2)
+            certainty = near / (near + other) / (spread * spread)
+            _add(information[pose], gradients[pose], across, arm, residual, weights[1] * certainty)

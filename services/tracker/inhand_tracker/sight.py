@@ -9,7 +9,7 @@ farther away, which speaks against (a mixture as of Wüthrich et al. 2013).
 from collections.abc import Collection
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
 import cv2
 import numpy as np
@@ -19,6 +19,7 @@ from inhand_tracker import rotations
 from inhand_tracker.appearance import (
     BEHIND,
     RETURNED,
+    Appearance,
     pixels_within,
     region_around,
     silhouette_depths,
@@ -31,10 +32,9 @@ from inhand_tracker.colours import (
     log_odds_by_colour,
     look_up,
 )
-from inhand_tracker.contours import Contours, find_contours
+from inhand_tracker.contours import find_contours
 from inhand_tracker.image import Image
 from inhand_tracker.limbs import limb_mask
-from inhand_tracker.model_file import Model
 from inhand_tracker.refine import (
     DAMPING,
     REACH_M,
@@ -45,9 +45,11 @@ from inhand_tracker.refine import (
     Refined,
     gather,
 )
+from inhand_tracker.shape import ObjectShape
 from inhand_tracker.sight_frame import SightFrame, prepare
-from inhand_tracker.sight_kernels import depth_scores, weigh
+from inhand_tracker.sight_kernels import SEEN, Outlines, Pixels, depth_scores, weigh
 from inhand_tracker.view_grid import view_grid
+from inhand_tracker.viewpoints import Viewpoints
 
 Array = NDArray[np.float64]
 Floats = NDArray[np.float32]
@@ -69,6 +71,9 @@ LIMB_SHARE = 0.25
 """How much of what speaks against the object is believed where a hand may cover it."""
 FEWEST_IN_THREAD = 500
 """Poses for which another thread is worth while."""
+LEAST_SEEN = 0.1
+FEWEST_SEEN = 1.0
+"""Poses that can be seen, with which others can be compared."""
 LEAST_RETURNED = 0.5
 """Depth that is measured of less of an object's surface is rather that of the hand around it."""
 
@@ -76,42 +81,50 @@ LEAST_RETURNED = 0.5
 @dataclass(frozen=True)
 class SightView:
     """A frame with one object's eyes: ``colour_scores`` (H, W, 2), what each pixel's colour says
-    to its being within and beside the object, and ``limbs`` (H, W)."""
+    to its being within and beside the object, and ``limbs`` (H, W). ``unseen`` is the
+    log-likelihood ratio of an object that is out of the frame, or covered: of one that is so for a
+    part, that part of it counts."""
 
     frame: SightFrame
     colour_scores: Floats
     limbs: NDArray[np.uint8]
+    unseen: float = 0.0
 
 
 class Sight:
     """Weighs and refines poses of one object; many poses are weighed in so many threads."""
 
     def __init__(
-        self, model: Model, terms: Collection[SightTerm] = SIGHT_TERMS, *, threads: int = 1
+        self,
+        shape: ObjectShape,
+        viewpoints: Viewpoints,
+        appearance: Appearance | None = None,
+        terms: Collection[SightTerm] = SIGHT_TERMS,
+        *,
+        threads: int = 1,
     ) -> None:
-        self._shape = model.shape
+        self._shape = shape
         self._threads = threads
         self._pool = ThreadPoolExecutor(threads)
-        contours = model.viewpoints.contours
+        contours = viewpoints.contours
         if contours is None:
-            contours = find_contours(model.shape, model.viewpoints.directions)
-        self._contours: Contours = contours
-        self._grid = view_grid(contours.directions)
-        self._model = (
-            self._grid,
+            contours = find_contours(shape, viewpoints.directions)
+        self._outlines = Outlines(
+            view_grid(contours.directions),
             contours.directions,
             _points_last(contours.points),
             _points_last(contours.normals),
             contours.inside,
             contours.outside,
             _points_last(contours.surface_points),
+            _points_last(contours.surface_normals),
             np.sqrt(contours.areas),
         )
         self._wanted = np.array([term in terms for term in SIGHT_TERMS])
-        self._appearance = model.appearance
+        self._appearance = appearance
         returned, behind = RETURNED, BEHIND
-        if model.appearance is not None:
-            returned, behind = model.appearance.returned, model.appearance.behind
+        if appearance is not None:
+            returned, behind = appearance.returned, appearance.behind
         self._returned = returned if returned >= LEAST_RETURNED else 0.0
         self._depth_scores = depth_scores(self._returned, behind)
 
@@ -189,13 +202,34 @@ class Sight:
     def log_likelihood(self, translations: Array, orientations: Array, view: SightView) -> Array:
         """Of poses (P, 3) and (P, 4), (P,): how many times likelier (log) the frame is with the
         object there than with none; 0 where the frame says nothing."""
-        return self._scores(translations, orientations, view) @ TERM_WEIGHTS
+        scores = self._scores(translations, orientations, view)
+        return scores[:, :SEEN] @ TERM_WEIGHTS + (1.0 - scores[:, SEEN]) * view.unseen
+
+    def compare_unseen(
+        self, translations: Array, orientations: Array, view: SightView, trust: float
+    ) -> SightView:
+        """The view in which an object that is not seen is as likely as one that is, of a sample of
+        what is believed, poses (P, 3) and (P, 4).
+
+        Not to be seen is no evidence, but a pose that could be seen is unlikely by a frame without
+        the object: to come off better others need only lie out of it. So they get the mean
+        likelihood of those that can be seen (of their seen part, as if it were all), where that
+        is less than 1. The frame counts by ``trust``.
+        """
+        scores = self._scores(translations, orientations, view)
+        seen = scores[:, SEEN]
+        if seen.sum() < FEWEST_SEEN:
+            return view
+        said = trust * (scores[:, :SEEN] @ TERM_WEIGHTS) / np.maximum(seen, LEAST_SEEN)
+        most = float(said.max())
+        mean = most + float(np.log(seen @ np.exp(said - most) / seen.sum()))
+        return replace(view, unseen=min(mean / trust, 0.0))
 
     def log_likelihoods_by_term(
         self, translations: Array, orientations: Array, view: SightView
     ) -> dict[str, Array]:
         """The parts of ``log_likelihood``, each (P,)."""
-        scores = self._scores(translations, orientations, view) * TERM_WEIGHTS
+        scores = self._scores(translations, orientations, view)[:, :SEEN] * TERM_WEIGHTS
         return dict(zip(SIGHT_TERMS, scores.T, strict=True))
 
     def refine(
@@ -246,39 +280,25 @@ class Sight:
         frame = view.frame
         coloured, deep = frame.bins is not None, frame.depth is not None
         wanted = self._wanted[_REFINED_TERMS] & [coloured, coloured, deep]
-        lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
-        contours = self._contours
+        pixels = self._pixels(view)
         information = np.zeros((len(translations), 6, 6))
         reach_m, reach_rad = (REACH_M, REACH_RAD) if prior is None else prior.reach()
         for share in REACHES:
             information = np.zeros((len(translations), 6, 6))
             gradients = np.zeros((len(translations), 6))
-            for index in range(len(translations)):
-                gather(
-                    translations[index],
-                    orientations[index],
-                    self._grid,
-                    contours.directions,
-                    contours.points,
-                    contours.normals,
-                    contours.inside,
-                    contours.outside,
-                    contours.surface_points,
-                    contours.surface_normals,
-                    lens,
-                    edges,
-                    edge_scores,
-                    colour_scores,
-                    limbs,
-                    depth,
-                    self._returned,
-                    wanted,
-                    share * reach_m,
-                    share * reach_rad,
-                    trust * POINT_WEIGHTS,
-                    information[index],
-                    gradients[index],
-                )
+            gather(
+                translations,
+                orientations,
+                self._outlines,
+                pixels,
+                self._returned,
+                wanted,
+                share * reach_m,
+                share * reach_rad,
+                trust * POINT_WEIGHTS,
+                information,
+                gradients,
+            )
             total, pull = information + np.diag(DAMPING), gradients
             if prior is not None:
                 total, pull = prior.added_to(total, pull, translations, orientations)
@@ -292,21 +312,16 @@ class Sight:
         frame = view.frame
         coloured, deep = frame.bins is not None, frame.depth is not None
         wanted = self._wanted & [coloured, coloured, coloured, deep]
-        lens, edges, edge_scores, colour_scores, limbs, depth = self._arrays(view)
-        scores = np.zeros((len(translations), len(SIGHT_TERMS)), np.float32)
+        pixels = self._pixels(view)
+        scores = np.zeros((len(translations), SEEN + 1), np.float32)
 
         def weigh_some(part: slice) -> None:
             weigh(
                 np.ascontiguousarray(translations[part], np.float32),
                 np.ascontiguousarray(orientations[part], np.float32),
-                *self._model,
-                lens,
-                edges,
-                edge_scores,
-                colour_scores,
-                limbs,
+                self._outlines,
+                pixels,
                 np.float32(LIMB_WEIGHT),
-                depth,
                 self._depth_scores,
                 wanted,
                 scores[part],
@@ -320,12 +335,12 @@ class Sight:
             weigh_some(parts[0])
         return scores.astype(float)
 
-    def _arrays(self, view: SightView) -> tuple[NDArray[Any], ...]:
+    def _pixels(self, view: SightView) -> Pixels:
         """The frame for the kernels; what it does not hold is not read, or says nothing."""
         frame, camera = view.frame, view.frame.camera
         size = (camera.height, camera.width)
         edges, scores, depth = frame.edges, frame.edge_scores, frame.depth
-        return (
+        return Pixels(
             np.array([camera.fx, camera.fy, camera.cx, camera.cy], np.float32),
             np.zeros((4, 1, 1), np.uint8) if edges is None else edges,
             np.zeros((4, 8), np.float32) if scores is None else scores,

@@ -1,6 +1,6 @@
 """Weighing poses by what a frame shows: one pass over the points of each pose's view."""
 
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numba import njit
@@ -13,8 +13,8 @@ Bytes = NDArray[np.uint8]
 Real: TypeAlias = Any
 """float32 or float64, as the caller has it; or an array of it."""
 
-EDGES, REGION, INTERIOR, DEPTH = range(4)
-"""The columns of what ``weigh`` gives."""
+EDGES, REGION, INTERIOR, DEPTH, SEEN = range(5)
+"""The columns of what ``weigh`` gives; the last is no term."""
 
 NEAREST_M = np.float32(0.05)
 IN_FRONT_M = np.float32(0.02)
@@ -84,37 +84,56 @@ def channel_of(x: Real, y: Real) -> int:
     return 1 if x * y > np.float32(0.0) else 3
 
 
+class Outlines(NamedTuple):
+    """``Contours`` for the kernels, the coordinate before the point: (V, 3, B).
+
+    ``grid`` finds the nearest direction (``view_grid``); ``sizes`` (V,) is the square root of the
+    areas.
+    """
+
+    grid: NDArray[np.int16]
+    directions: Floats
+    points: Floats
+    normals: Floats
+    inside: Floats
+    outside: Floats
+    surface_points: Floats
+    surface_normals: Floats
+    sizes: Floats
+
+
+class Pixels(NamedTuple):
+    """A frame for the kernels: ``lens`` (fx, fy, cx, cy), distances to ``edges`` (4, H, W) with
+    ``edge_scores`` (4, 8), ``colour_scores`` (H, W, 2) of a pixel's being within or beside the
+    object, ``limbs`` (H, W) and ``depth`` (H, W)."""
+
+    lens: Floats
+    edges: Bytes
+    edge_scores: Floats
+    colour_scores: Floats
+    limbs: Bytes
+    depth: Floats
+
+
 @njit(cache=True, nogil=True, fastmath={"nsz", "arcp", "contract", "afn", "reassoc"})
 def weigh(
     translations: Floats,
     rotations: Floats,
-    grid: NDArray[np.int16],
-    directions: Floats,
-    points: Floats,
-    normals: Floats,
-    inside: Floats,
-    outside: Floats,
-    surface_points: Floats,
-    sizes: Floats,
-    lens: Floats,
-    edges: Bytes,
-    edge_scores: Floats,
-    colour_scores: Floats,
-    limbs: Bytes,
+    outlines: Outlines,
+    pixels: Pixels,
     limb_weight: Real,
-    depth: Floats,
     depth_scores: Floats,
     wanted: NDArray[np.bool_],
     scores: Floats,
 ) -> None:
-    """Fill ``scores`` (P, 4): the mean over a view's points of what each term says of a pose.
+    """Fill ``scores`` (P, 5): the mean over a view's points of what each term says of a pose, and
+    the share of points that lie in the image with nothing in front.
 
-    The model's arrays are those of ``Contours``, the coordinate before the point: (V, 3, B);
-    ``sizes`` (V,) is the square root of the areas; ``lens`` is (fx, fy, cx, cy); ``edges``
-    (4, H, W) with ``edge_scores`` (4, 8), ``colour_scores`` (H, W, 2) of a pixel's being within
-    or beside the object, ``limbs`` (H, W) and ``depth`` (H, W) with ``depth_scores``. ``wanted``
-    (4,) tells which terms are; what is not wanted is not read.
+    Poses are (P, 3) and (P, 4). ``wanted`` (4,) tells which terms are; what is not wanted is not
+    read.
     """
+    grid, directions, points, normals, inside, outside, surface_points, _, sizes = outlines
+    lens, edges, edge_scores, colour_scores, limbs, depth = pixels
     height, width = limbs.shape
     zero, half, one = np.float32(0.0), np.float32(0.5), np.float32(1.0)
     fx, fy, cx, cy = lens[0], lens[1], lens[2] + half, lens[3] + half
@@ -137,11 +156,13 @@ def weigh(
             -(r2 * tx + r5 * ty + r8 * tz),
         )
         edge_sum, region_sum, interior_sum, depth_sum = zero, zero, zero, zero
+        asked, seen = zero, zero
         size = sizes[view] * fx / max(tz, NEAREST_M)
         reach = min(max(size / np.float32(USUAL_PIXELS), np.float32(0.6)), np.float32(2.5))
         noise = depth_noise(max(tz, NEAREST_M))
         in_front = IN_FRONT_M + np.float32(2.0) * noise
         if wanted[EDGES] or wanted[REGION]:
+            asked += outline_count
             for point in range(outline_count):
                 a, b, c = points[view, 0, point], points[view, 1, point], points[view, 2, point]
                 pz = r6 * a + r7 * b + r8 * c + tz
@@ -166,6 +187,7 @@ def weigh(
                 measured = depth[row, column]
                 if measured > zero and measured < pz - in_front:
                     continue
+                seen += one
                 nx, ny = nu[point], nv[point]
                 if wanted[EDGES]:
                     channel = channel_of(nx, ny)
@@ -185,6 +207,7 @@ def weigh(
                             if zero <= far_u < wide and zero <= far_v < high:
                                 region_sum += colour_scores[int(far_v), int(far_u), 1]
         if wanted[INTERIOR] or wanted[DEPTH]:
+            asked += surface_count
             for point in range(surface_count):
                 a = surface_points[view, 0, point]
                 b = surface_points[view, 1, point]
@@ -207,10 +230,14 @@ def weigh(
                     place = error * columns_per_m + np.float32(DEPTH_COLUMNS // 2)
                     place = min(max(place, zero), np.float32(DEPTH_COLUMNS - 1))
                     depth_sum += depth_scores[depth_row, int(place)]
-                if wanted[INTERIOR] and not (measured > zero and error < -in_front):
+                if measured > zero and error < -in_front:
+                    continue
+                seen += one
+                if wanted[INTERIOR]:
                     interior_sum += colour_scores[row, column, 0] - colour_scores[row, column, 1]
         bulk = min(max(size / np.float32(USUAL_PIXELS), np.float32(0.3)), np.float32(3.0))
         scores[pose, EDGES] = edge_sum * outline_share
         scores[pose, REGION] = region_sum * outline_share
         scores[pose, INTERIOR] = interior_sum * surface_share * bulk
         scores[pose, DEPTH] = depth_sum * surface_share
+        scores[pose, SEEN] = seen / max(asked, one)

@@ -11,7 +11,8 @@ from inhand_tracker.body_reader import Body, BodyReader
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.conversion import Need
 from inhand_tracker.estimate import Estimate
-from inhand_tracker.fusion import FusionTracker, Search
+from inhand_tracker.fusion import FusionTracker
+from inhand_tracker.fusion_search import Search
 from inhand_tracker.image import Image
 from inhand_tracker.likelihood import DEFAULT_TERMS, TERMS
 from inhand_tracker.methods import METHODS, PublishedMethod
@@ -33,11 +34,12 @@ ALL_TERMS: tuple[AnyTerm, ...] = get_args(AnyTerm)
 class ObjectTracker(Protocol):
     """Follows one object of one person through the frames of one camera."""
 
-    support: float | None
-    """How many times likelier (log) the last image is with the object, as trained, than without.
+    @property
+    def support(self) -> float | None:
+        """How many times likelier (log) the last image is with the object than without.
 
-    None where it says nothing.
-    """
+        None where it says nothing.
+        """
 
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""

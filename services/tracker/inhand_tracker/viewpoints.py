@@ -13,7 +13,8 @@ import trimesh
 from numpy.typing import NDArray
 
 from inhand_tracker import rotations
-from inhand_tracker.contours import Contours, find_contours, view_axes
+from inhand_tracker.contours import Contours, find_contours
+from inhand_tracker.parallel_view import ParallelView, along_curve, evenly, view_along
 from inhand_tracker.raster import nearest_depths
 from inhand_tracker.shape import ObjectShape
 from inhand_tracker.view_grid import nearest_views, view_grid
@@ -46,10 +47,10 @@ def find_viewpoints(shape: ObjectShape) -> Viewpoints:
     """The boundaries and surfaces of a shape from 642 directions."""
     directions = np.asarray(trimesh.creation.icosphere(SUBDIVISIONS).vertices, float)
     directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    views = [_view(shape, direction) for direction in directions]
+    views = [_see(shape, direction) for direction in directions]
     return Viewpoints(
         directions,
-        np.array([_boundary(view) for view in views]),
+        np.array([_boundary(shape, view) for view in views]),
         np.array([_surface(view) for view in views]),
         find_contours(shape, directions),
     )
@@ -57,7 +58,7 @@ def find_viewpoints(shape: ObjectShape) -> Viewpoints:
 
 def find_surfaces(shape: ObjectShape, directions: Array) -> Array:
     """``Viewpoints.surfaces`` for given directions (V, 3)."""
-    return np.array([_surface(_view(shape, direction)) for direction in directions])
+    return np.array([_surface(_see(shape, direction)) for direction in directions])
 
 
 class VisiblePoints:
@@ -80,63 +81,40 @@ class VisiblePoints:
 
 
 @dataclass(frozen=True)
-class _View:
-    """A shape seen along one direction from far away, as a raster of ``depths`` (infinite where
-    nothing is seen), and ``surfaces``, with those of the pixels just beside it; ``axes`` are rows
-    right, down and forwards."""
+class _Seen:
+    """A shape from one direction: ``depths`` (R, R), infinite where nothing is seen, and
+    ``surface``, with those of the pixels just beside it."""
 
-    axes: Array
-    low: Array
-    scale: float
+    view: ParallelView
     depths: Array
-    surfaces: Array
-    centre: Array
-
-    def points(self, pixels: Array) -> Array:
-        """The seen points (B, 3) at pixels (B, 2), in the object's frame."""
-        column, row = np.rint(pixels).astype(int).T
-        across = (pixels - MARGIN) / self.scale + self.low
-        placed: Array = np.column_stack((across, self.surfaces[row, column])) @ self.axes
-        return placed
+    surface: Array
 
 
-def _view(shape: ObjectShape, direction: Array) -> _View:
-    axes = view_axes(direction)
-    seen = shape.vertices @ axes.T
-    low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
-    scale = (RASTER - 1 - 2 * MARGIN) / max((high - low).max(), 1e-9)
-    pixels = (seen[:, :2] - low) * scale + MARGIN
-    depths = nearest_depths(pixels, seen[:, 2], shape.faces, RASTER)
+def _see(shape: ObjectShape, direction: Array) -> _Seen:
+    view = view_along(shape, direction, RASTER, MARGIN)
+    depths = nearest_depths(view.pixels, view.depths, shape.faces, RASTER)
     # A point between two pixels of the boundary may round to one beside it.
     beside = np.asarray(cv2.erode(depths, np.ones((3, 3))), np.float64)
-    surfaces = np.where(np.isfinite(depths), depths, beside)
-    return _View(axes, low, scale, depths, surfaces, shape.vertices.mean(axis=0))
+    return _Seen(view, depths, np.where(np.isfinite(depths), depths, beside))
 
 
-def _boundary(view: _View) -> Array:
+def _boundary(shape: ObjectShape, seen: _Seen) -> Array:
     """Equally spaced boundary points (B, 3)."""
-    mask = np.isfinite(view.depths).astype(np.uint8)
+    mask = np.isfinite(seen.depths).astype(np.uint8)
     contours, _ = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     around = [contour[:, 0, :].astype(float) for contour in contours]
     if all(len(contour) == 1 for contour in around):
-        return np.repeat(view.centre[None], BOUNDARY_POINTS, axis=0)
-    return view.points(_equally_spaced(around))
+        return np.repeat(shape.vertices.mean(axis=0)[None], BOUNDARY_POINTS, axis=0)
+    return seen.view.place(_equally_spaced(around), seen.surface)
 
 
-def _surface(view: _View) -> Array:
+def _surface(seen: _Seen) -> Array:
     """Evenly spaced points (S, 3) of what is seen: steps along a curve that fills the raster."""
-    row, column = np.nonzero(np.isfinite(view.depths))
-    along = np.argsort(_z_order(column, row))
-    chosen = along[((np.arange(SURFACE_POINTS) + 0.5) * len(along) / SURFACE_POINTS).astype(int)]
-    return view.points(np.column_stack((column, row))[chosen].astype(float))
-
-
-def _z_order(column: NDArray[np.int64], row: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Places on Morton's curve: neighbours on it are neighbours in the raster."""
-    place = np.zeros_like(column)
-    for bit in range(RASTER.bit_length()):
-        place |= ((column >> bit) & 1) << (2 * bit) | ((row >> bit) & 1) << (2 * bit + 1)
-    return place
+    row, column = np.nonzero(np.isfinite(seen.depths))
+    along = along_curve(column, row)
+    chosen = along[evenly(len(along), SURFACE_POINTS)]
+    pixels = np.column_stack((column, row))[chosen].astype(float)
+    return seen.view.place(pixels, seen.surface)
 
 
 def _equally_spaced(contours: list[Array]) -> Array:
