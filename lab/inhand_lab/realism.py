@@ -7,7 +7,7 @@ does quite the same in both, so that properties are compared at the same pace of
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,8 +18,15 @@ from scipy.ndimage import binary_dilation
 from inhand_lab.dataset import DatasetError
 from inhand_lab.importers import utd_mhad
 from inhand_lab.realism_depth import DepthPair, SeenDepth, measure_depth, observe_depth
-from inhand_lab.realism_skeletons import Figure, Observed, measure_skeletons
+from inhand_lab.realism_skeletons import (
+    FRAME_RATE,
+    GROUPS,
+    Figure,
+    Observed,
+    measure_skeletons,
+)
 from inhand_lab.render import ROOM
+from inhand_lab.repeatability import joints_again, poses_of
 from inhand_lab.transforms import Floats, Transform
 from inhand_lab.world import INTERACTIONS, Simulation, simulate
 
@@ -28,6 +35,9 @@ WITHIN = 1.5
 RESAMPLES, CONFIDENCE = 200, 0.95
 """Draws of the real people, with replacement, and the share of them that an interval holds."""
 PARTICIPANTS = 8
+MIMED = ("armCurl", "knock", "drawX")
+WORKED = ("liftWeights", "hammerNail", "drinkFromMug")
+"""Actions, real and simulated, of arms while the body stands."""
 DEPTH_EVERY = 6
 """Of the real depth every so many frames are measured, and of the simulated one as many."""
 DEPTH_FRAMES, DEPTH_OF_EVERY = tuple(range(24, 355, 30)), 4
@@ -83,10 +93,12 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Recorded:
-    """What was recorded of one person."""
+    """What was recorded of one person; ``again`` (20,) tells how nearly each joint comes back, in
+    body heights, in movements of the arms alone."""
 
     skeletons: list[Observed]
     depth: list[SeenDepth]
+    again: Floats
 
 
 def compare(
@@ -125,8 +137,15 @@ def figures_of(people: list[Recorded]) -> list[Figure]:
     """Every figure of these people together, the same in the same order for any people."""
     return [
         *measure_skeletons([one.skeletons for one in people]),
+        *_returning([one.again for one in people]),
         *measure_depth([pair for one in people for pair in one.depth]),
     ]
+
+
+def _returning(people: list[Floats]) -> Iterator[Figure]:
+    for group, joints in GROUPS.items():
+        value = 1000.0 * float(np.mean(np.array(people)[:, joints]))
+        yield Figure(f"{group}, how near it comes back", "‰ of stature", "arms at work", value)
 
 
 def interval(people: list[Recorded]) -> tuple[Floats, Floats]:
@@ -155,6 +174,7 @@ def _real_people(trials: list[utd_mhad.Trial]) -> list[Recorded]:
         Recorded(
             [Observed.of(trial.joints_in_camera) for trial in own],
             [observe_depth(pair) for trial in own for pair in _real_pairs(trial)],
+            _returns([trial for trial in own if trial.interaction in MIMED]),
         )
         for name in sorted({trial.participant for trial in trials})
         for own in [[trial for trial in trials if trial.participant == name]]
@@ -171,9 +191,28 @@ def _simulated_people(seed: int, participants: int) -> list[Recorded]:
             Recorded(
                 [Observed.of(one.joints_in_camera) for one in done],
                 [observe_depth(pair) for one in shown for pair in _simulated_pairs(one)],
+                _returns([one for one in done if one.interaction in WORKED]),
             )
         )
     return people
+
+
+def _returns(recordings: Sequence[utd_mhad.Trial] | Sequence[Simulation]) -> Floats:
+    """How nearly each joint (20,) of one person comes back in doing the same, in body heights."""
+    actions = sorted({one.interaction for one in recordings})
+    return np.mean(
+        [
+            joints_again(
+                [
+                    poses_of("", FRAME_RATE, "right", one.joints_in_camera)
+                    for one in recordings
+                    if one.interaction == action
+                ]
+            )
+            for action in actions
+        ],
+        axis=0,
+    )
 
 
 def _real_pairs(trial: utd_mhad.Trial) -> Iterator[DepthPair]:

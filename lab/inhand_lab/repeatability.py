@@ -6,7 +6,7 @@ one of five other people: how exact a skeleton tracker is, and how alike people 
 """
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,30 +43,40 @@ class Poses:
     bodies: Array
 
 
-def poses_of(entry: Entry, joints: Array) -> Poses:
-    """The body poses of joints (T, 20, 3); left-handed people are mirrored."""
+def poses_of(participant: str, frame_rate: float, handedness: str, joints: Array) -> Poses:
+    """The body poses of joints (T, 20, 3) in metres; left-handed people are mirrored."""
     known = np.isfinite(joints).all(axis=(1, 2))
     seen = joints[known]
-    if entry.handedness == "left":
+    if handedness == "left":
         seen = mirror_joints(seen)
     bodies = body_pose(seen, pelvis_basis(seen), standing_height(part_lengths(seen)))
-    return Poses(entry.participant, np.flatnonzero(known) / entry.frame_rate, bodies)
+    return Poses(participant, np.flatnonzero(known) / frame_rate, bodies)
 
 
 def again(recordings: Sequence[Poses]) -> float:
     """The median distance to the same person's nearest pose, mean over recordings: in other
     recordings, or later or earlier in this one where there is no other."""
+    return float(np.mean([np.median(np.linalg.norm(one, axis=1)) for one in _returns(recordings)]))
+
+
+def joints_again(recordings: Sequence[Poses]) -> Array:
+    """The same for each joint (20,) by itself, between the poses that are nearest as a whole."""
     medians = []
+    for returned in _returns(recordings):
+        by_joint = np.linalg.norm(returned.reshape(len(returned), -1, 3), axis=2)
+        medians.append(np.median(by_joint, axis=0))
+    return np.asarray(np.mean(medians, axis=0))
+
+
+def _returns(recordings: Sequence[Poses]) -> Iterator[Array]:
+    """For each recording what its poses (T, 60) differ by from the person's nearest other one."""
     for one in recordings:
         rest = [r for r in recordings if r.participant == one.participant and r is not one]
-        if rest:
-            distances = cdist(one.bodies, np.concatenate([r.bodies for r in rest]))
-        else:
-            distances = cdist(one.bodies, one.bodies)
-            apart = np.abs(one.seconds[:, None] - one.seconds)
-            distances[apart < AGAIN_S] = np.inf
-        medians.append(np.median(distances.min(axis=1)))
-    return float(np.mean(medians))
+        others = np.concatenate([r.bodies for r in rest]) if rest else one.bodies
+        distances = cdist(one.bodies, others)
+        if not rest:
+            distances[np.abs(one.seconds[:, None] - one.seconds) < AGAIN_S] = np.inf
+        yield one.bodies - others[distances.argmin(axis=1)]
 
 
 def by_others(recordings: Sequence[Poses]) -> float:
@@ -93,7 +103,10 @@ def main() -> None:
         true = [_true_joints(dataset, entry) for entry in entries]
         for kind, joints in (("measured", measured), ("true", true)):
             if all(np.isfinite(one).all(axis=(1, 2)).any() for one in joints):
-                recordings = [poses_of(*one) for one in zip(entries, joints, strict=True)]
+                recordings = [
+                    poses_of(entry.participant, entry.frame_rate, entry.handedness, one)
+                    for entry, one in zip(entries, joints, strict=True)
+                ]
                 figures = again(recordings), by_others(recordings)
                 table.add_row(name, kind, *(f"{figure:.3f}" for figure in figures))
     Console().print(table)

@@ -3,11 +3,11 @@
 A tracker errs by pose: what it takes for the elbow changes as the arm moves, hardly while it
 rests, and is the same again when the arm comes back. On top of that errors wander, in calm spells
 and busy ones, as the body is stirred rather than with time: by how a joint moves against its parent
-and by how much is moving at all. They grow in movement and shrink again after it, and a joint
-inherits a part of its parent's. Hands and feet, small as they are, are now and then seen turned or
-cut short, a hand flips, and a fast wrist stays behind or leaves the arm. Sizes were found by the
-realism table (docs/simulator.md tells which rows do not come out); none was chosen for what a
-method makes of it.
+and by how much is moving at all. They grow in movement and shrink again after it, joints slide
+along bones rather than off them, and have a part of their parents' errors. Hands and feet, small as
+they are, are now and then seen turned or cut short, a hand flips, and a fast wrist stays behind or
+leaves the arm. Sizes were found by the realism table (docs/simulator.md tells which rows do not
+come out); none was chosen for what a method makes of it.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from inhand_lab.joints import PARENTS, Joint
 from inhand_lab.recursion import leaky_sum
 from inhand_lab.transforms import Floats
 
-_ARM, _LEG = (1.5, 16, 5.4, 15), (0.7, 13, 2.4, 6.5)
-MISTAKES = 1e-3 * np.array([0, 1, 1.2, 0.5, *_ARM, *_ARM, *_LEG, *_LEG], float)
+_ARM, _LEG = (1.1, 20, 1.1, 13), (3.2, 13, 10, 6.3)
+MISTAKES = 1e-3 * np.array([0, 15, 6, 0.5, *_ARM, *_ARM, *_LEG, *_LEG], float)
 """Deviation, along each axis and over all poses, of where a joint is taken to be, metres, in the
 order of Joint."""
 _ARM_SIMILAR, _LEG_SIMILAR = (0.092, 0.051, 0.035, 0.04), (0.029, 0.005, 0.026, 0.04)
@@ -34,34 +34,36 @@ ACROSS = 0.10
 WAVES = 12
 """Waves that a mistake is made of."""
 
-_ARM_WANDERING, _LEG_WANDERING = (1.5, 22, 11.5, 6), (5.3, 22.5, 4.6, 5.1)
+_ARM_WANDERING, _LEG_WANDERING = (16, 20, 5.4, 19.5), (17, 17, 11, 4.9)
 DEVIATIONS = 1e-3 * np.array(
-    [7.9, 19.5, 17, 8.8, *_ARM_WANDERING, *_ARM_WANDERING, *_LEG_WANDERING, *_LEG_WANDERING], float
+    [4.8, 2.5, 5, 13.5, *_ARM_WANDERING, *_ARM_WANDERING, *_LEG_WANDERING, *_LEG_WANDERING], float
 )
 """Deviation of a joint's wandering error along each axis, metres."""
-AGAINST_PARENT = 0.88
-"""Share of a joint's stirring that is its movement against its parent; the rest is all of it."""
-SHARED = 1.26
+SHARED = 0.9
 """How much the mean of all joints' movement stirs each one."""
-MOST_STIRRED = 3.6
+MOST_STIRRED = 1.1
 """Speed, metres a second, that no joint seems to go beyond."""
-AT_REST, IN_MOVEMENT = 0.29, 0.17
+AT_REST, IN_MOVEMENT = 0.03, 0.17
 """Share of the deviation that an error has at rest, and the speed at which it has all of it."""
-WAY = 0.165
+WAY = 2.4
 """Way in metres over which a wandering error is forgotten."""
-CREEP = 0.048
+CREEP = 0.041
 """Speed, metres a second, at which the tracker begins to take notice: slower counts for less."""
-_ARM_INHERITED, _LEG_INHERITED = (0.32, 0.38, 0.94, 0.61), (0.65, 0.61, 0.32, 0.95)
+_ARM_INHERITED, _LEG_INHERITED = (0.13, 0.16, 0.39, 0.25), (0.27, 0.25, 0.13, 0.39)
 INHERITED = np.array(
-    [0.0, 0.6, 0.24, 0.5, *_ARM_INHERITED, *_ARM_INHERITED, *_LEG_INHERITED, *_LEG_INHERITED]
+    [0, 0.25, 0.099, 0.21, *_ARM_INHERITED, *_ARM_INHERITED, *_LEG_INHERITED, *_LEG_INHERITED]
 )
 """Share of its parent's error that a joint has as well."""
-MEMORY_AT_REST = 110.0
+_ARM_ASIDE, _LEG_ASIDE = (0.068, 0.052, 2, 0.57), (0.046, 0.047, 0.39, 0.18)
+ASIDE = np.array([1.0, 0.028, 0.034, 0.16, *_ARM_ASIDE, *_ARM_ASIDE, *_LEG_ASIDE, *_LEG_ASIDE])
+"""How much of an error is left across the bone: joints slide along limbs rather than off them."""
+MEMORY_AT_REST = 10.0
 """Seconds in which the error of a joint at rest is forgotten."""
-SPELL = 0.056
+SPELL = 0.083
 """Correlation time of busy spells, seconds."""
-BUSYNESS, BUSIEST = 2.33, 40.0
-"""Deviation of the logarithm of how busy the error is, and how many times its median at most."""
+BUSYNESS, BUSIEST = 12.0, 40.0
+"""Deviation of the logarithm of how busy the error is, and how many times its median at most: it
+is calm or very busy, and hardly ever in between."""
 TAILS = 3.0
 """Degrees of freedom of Student's t: the errors' steps have long tails."""
 
@@ -118,8 +120,7 @@ def stirring(joints: Floats, frame_rate: float) -> Floats:
     """How much (T, 20) joints (T, 20, 3) disturb the tracker, as a speed in metres a second."""
     against = joints - joints[:, PARENTS]
     against[:, 0] = joints[:, 0]
-    own = AGAINST_PARENT * speeds(against, frame_rate)
-    own += (1.0 - AGAINST_PARENT) * speeds(joints, frame_rate)
+    own = speeds(against, frame_rate)
     speed = own + SHARED * own.mean(axis=1, keepdims=True)
     return np.asarray(speed / (1.0 + speed / MOST_STIRRED))
 
@@ -140,13 +141,18 @@ def wander(random: np.random.Generator, speed: Floats, frame_rate: float) -> Flo
     return np.asarray(errors * DEVIATIONS[:, None] * grown[..., None])
 
 
-def inherited(errors: Floats) -> Floats:
-    """Errors (T, 20, 3) with what each joint has of its parent's."""
-    whole = errors.copy()
+def inherited(errors: Floats, joints: Floats) -> Floats:
+    """Errors (T, 20, 3) of joints (T, 20, 3), less across their bones than along them, with what
+    each joint has of its parent's; without the hip centre's, which are the whole body's."""
+    bones = joints - joints[:, PARENTS]
+    bones /= np.maximum(np.linalg.norm(bones, axis=2, keepdims=True), 1e-6)
+    along = bones * np.sum(errors * bones, axis=2, keepdims=True)
+    whole = along + ASIDE[:, None] * (errors - along)
+    whole[:, 0] = 0.0
     for joint, parent in enumerate(PARENTS):
         if parent >= 0:
             whole[:, joint] += INHERITED[joint] * whole[:, parent]
-    return whole
+    return np.asarray(whole)
 
 
 def misread_ends(random: np.random.Generator, joints: Floats, frame_rate: float) -> Floats:

@@ -39,7 +39,7 @@ SEEN_SHARE = {
     Joint.FOOT_RIGHT: 0.5,
 }
 """Where on its bone a Kinect puts the end: short of the palm, and on the instep."""
-GUESS_FACTOR = 2.0
+GUESS_FACTOR = 3.0
 """How much larger the error of an inferred joint is."""
 HESITATION = 0.08
 """Time constant, seconds, of going over from seeing to guessing."""
@@ -76,7 +76,7 @@ def read_skeleton(
     error = mistake(person.appearance, seen) + wander(
         random, stirring(seen, frame_rate), frame_rate
     )
-    raw = seen + widened[..., None] * inherited(error)
+    raw = seen + error[:, :1] + widened[..., None] * inherited(error, seen)
     raw = misread_ends(random, raw, frame_rate)
     raw = flip_hands(random, raw, speed, frame_rate)
     raw = lose_wrists(random, raw, speed, frame_rate)

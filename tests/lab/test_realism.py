@@ -169,7 +169,7 @@ def people(spread: float) -> list[Recorded]:
     sizes = 0.0005 * np.exp(spread * np.linspace(-1.0, 1.0, 8))
     depth = [observe_depth(pair) for pair in depth_pairs(2.0, 1)[:1]]
     return [
-        Recorded([Observed.of(skeletons(size, seed)[0][:200])], depth)
+        Recorded([Observed.of(skeletons(size, seed)[0][:200])], depth, np.full(20, size))
         for seed, size in enumerate(sizes)
     ]
 

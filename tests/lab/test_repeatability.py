@@ -5,8 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from inhand_lab.dataset import Entry
-from inhand_lab.repeatability import Poses, again, by_others, poses_of
+from inhand_lab.repeatability import Poses, again, by_others, joints_again, poses_of
 from inhand_tracker.body import mirror_joints
 from waving import STANDING, waving, write_dataset
 
@@ -39,18 +38,25 @@ def test_others_are_five_at_the_most_and_never_the_same_person() -> None:
 
 def test_left_handed_people_are_compared_mirrored() -> None:
     joints, _, _ = waving(4, seed=0)
-    right = Entry(file="a", interaction="wave", participant="a", frame_rate=RATE)
-    left = Entry(file="b", interaction="wave", participant="b", frame_rate=RATE, handedness="left")
-    np.testing.assert_allclose(
-        poses_of(left, mirror_joints(joints)).bodies, poses_of(right, joints).bodies, atol=1e-9
-    )
+    left = poses_of("a", RATE, "left", mirror_joints(joints))
+    np.testing.assert_allclose(left.bodies, poses_of("a", RATE, "right", joints).bodies, atol=1e-9)
+
+
+def test_joints_come_back_as_nearly_as_the_whole_body_does() -> None:
+    random = np.random.default_rng(3)
+    wide = np.zeros((4, 60))
+    wide[:, 33:36] = random.normal(size=(4, 3))
+    recordings = [Poses("a", np.arange(4.0), wide + 0.01 * number) for number in range(2)]
+    joints = joints_again(recordings)
+    np.testing.assert_allclose(joints, 0.01 * np.sqrt(3.0), atol=1e-12)
+    assert again(recordings) == pytest.approx(0.01 * np.sqrt(60.0))
 
 
 def test_frames_with_a_missing_joint_are_left_out_and_keep_their_times() -> None:
     joints = np.repeat(STANDING[None], 4, axis=0)
     joints[1, 7] = np.nan
-    entry = Entry(file="a", interaction="wave", participant="a", frame_rate=RATE)
-    np.testing.assert_allclose(poses_of(entry, joints).seconds, np.array([0, 2, 3]) / RATE)
+    seconds = poses_of("a", RATE, "right", joints).seconds
+    np.testing.assert_allclose(seconds, np.array([0, 2, 3]) / RATE)
 
 
 def test_the_command_shows_measured_joints_alone_where_no_others_are_known(
