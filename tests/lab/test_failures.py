@@ -27,6 +27,9 @@ FRAME_RATE = 15.0
 FRAME_NS = 66_666_667
 PEOPLE = range(4)
 STRANGER = 5
+TOASTS = range(4, 8)
+"""Seeds of people who learn and of a stranger who raises the mug: what is told is the median, for
+where somebody reached for the mug with the arm raised, the mug is taken to lie on the table."""
 ALL = [*METHODS, FUSION]
 REINITIALISING = [name for name in ALL if name == FUSION or METHODS[name].reinitialises]
 BEST = "gd-stable-proximate"
@@ -42,8 +45,8 @@ Failure = Callable[[Joints], Joints]
 
 
 @cache
-def drinking(participant: int) -> Simulation:
-    return simulate("drinkFromMug", participant, SEED, 180, FRAME_RATE)
+def drinking(participant: int, seed: int = SEED) -> Simulation:
+    return simulate("drinkFromMug", participant, seed, 180, FRAME_RATE)
 
 
 def skeletons(simulation: Simulation) -> Joints:
@@ -57,8 +60,8 @@ def is_left_handed(simulation: Simulation) -> bool:
 
 
 @cache
-def mug_model() -> Model:
-    people = [drinking(participant) for participant in PEOPLE]
+def mug_model(seed: int) -> Model:
+    people = [drinking(participant, seed) for participant in PEOPLE]
     shape = shape_of(people[0].object_model)
     sequences = [
         LabelledSequence(
@@ -94,10 +97,13 @@ class Run:
 
 
 def track(
-    method: str, joints: Joints | list[Joints | None], truth: tuple[np.ndarray, np.ndarray]
+    method: str,
+    joints: Joints | list[Joints | None],
+    truth: tuple[np.ndarray, np.ndarray],
+    seed: int = SEED,
 ) -> Run:
-    model = mug_model()
-    left_handed = is_left_handed(drinking(STRANGER))
+    model = mug_model(seed)
+    left_handed = is_left_handed(drinking(STRANGER, seed))
     tracker = new_tracker(model, method, left_handed=left_handed, terms=())
     estimates, errors, last = [], [], None
     for frame, body in enumerate(joints):
@@ -110,18 +116,18 @@ def track(
     return Run(estimates, np.array(errors))
 
 
-def true_mug() -> tuple[np.ndarray, np.ndarray]:
-    return drinking(STRANGER).translations, drinking(STRANGER).rotations
+def true_mug(seed: int = SEED) -> tuple[np.ndarray, np.ndarray]:
+    return drinking(STRANGER, seed).translations, drinking(STRANGER, seed).rotations
 
 
 @cache
-def usual(method: str) -> Run:
-    return track(method, skeletons(drinking(STRANGER)), true_mug())
+def usual(method: str, seed: int = SEED) -> Run:
+    return track(method, skeletons(drinking(STRANGER, seed)), true_mug(seed), seed)
 
 
-def hand_joint(name: str) -> int:
+def hand_joint(name: str, seed: int = SEED) -> int:
     """The joint of the arm that drinks."""
-    return JOINT[name + ("Left" if is_left_handed(drinking(STRANGER)) else "Right")]
+    return JOINT[name + ("Left" if is_left_handed(drinking(STRANGER, seed)) else "Right")]
 
 
 def with_flipped_wrist(joints: Joints) -> Joints:
@@ -222,47 +228,57 @@ def test_a_lost_body_s_object_is_predicted_then_lost_and_back_with_the_body(
 # --- Unusual use: a mug raised in a toast
 
 
-def with_a_toast() -> tuple[Joints, tuple[np.ndarray, np.ndarray]]:
+def with_a_toast(seed: int) -> tuple[Joints, tuple[np.ndarray, np.ndarray]]:
     """The arm is raised high instead of to the mouth, and the mug with it, level (section 7)."""
-    joints = skeletons(drinking(STRANGER))
-    places, turns = true_mug()
+    joints = skeletons(drinking(STRANGER, seed))
+    places, turns = true_mug(seed)
     up = rotations.rotate(pelvis_basis(joints[BEGIN:END]).rotations, np.array([0.0, 1.0, 0.0]))
-    hand = joints[BEGIN:END, hand_joint("Hand")].copy()
+    hand = joints[BEGIN:END, hand_joint("Hand", seed)].copy()
     for name, height in (("Elbow", 0.28), ("Wrist", 0.53), ("Hand", 0.61)):
-        joints[BEGIN:END, hand_joint(name)] = (
-            joints[BEGIN:END, hand_joint("Shoulder")] + height * up
+        joints[BEGIN:END, hand_joint(name, seed)] = (
+            joints[BEGIN:END, hand_joint("Shoulder", seed)] + height * up
         )
     places = places.copy()
-    places[BEGIN:END] += joints[BEGIN:END, hand_joint("Hand")] - hand
+    places[BEGIN:END] += joints[BEGIN:END, hand_joint("Hand", seed)] - hand
     return joints, (places, turns)
 
 
+@cache
+def toasts(method: str) -> tuple[Run, ...]:
+    return tuple(track(method, *with_a_toast(seed), seed) for seed in TOASTS)
+
+
+def typical(method: str) -> float:
+    return float(np.median([during(run) for run in toasts(method)]))
+
+
 def test_in_a_toast_the_mug_stays_by_the_hand_and_random_parts_lose_it() -> None:
-    proximate, random = (track(method, *with_a_toast()) for method in (BEST, "gd-random"))
-    assert during(proximate) < 0.20
-    assert during(random) > 2.0 * during(proximate)
-    assert proximate.frames_to_recover(usual(BEST), END) == 0
+    assert typical(BEST) < 0.20
+    assert typical("gd-random") > 2.0 * typical(BEST)
 
 
 def test_in_a_toast_the_fallback_keeps_the_mug_by_the_hand_too() -> None:
-    fallback = track("gd-fallback", *with_a_toast())
-    assert during(fallback) < 0.20
-    assert fallback.frames_to_recover(usual("gd-fallback"), END) == 0
+    assert typical("gd-fallback") < 0.20
+
+
+@pytest.mark.parametrize("method", [BEST, "gd-fallback", FUSION])
+def test_after_a_toast_the_mug_is_back_at_once(method: str) -> None:
+    for seed, run in zip(TOASTS, toasts(method), strict=True):
+        assert run.frames_to_recover(usual(method, seed), END) == 0
 
 
 def test_in_a_toast_fusion_takes_the_mug_along_with_the_hand_and_says_how_unsure_it_is() -> None:
-    toast, (places, turns) = with_a_toast()
-    run = track(FUSION, toast, (places, turns))
-    assert during(run) < 0.25
-    assert max(estimate.confidence for estimate in run.estimates[BEGIN:END]) < 0.2
+    assert typical(FUSION) < 0.25
     within = []
-    for frame in range(BEGIN, END):
-        told = run.estimates[frame]
-        turn = rotations.multiply(told.rotation, rotations.conjugate(turns[frame]))
-        off = np.concatenate((told.translation - places[frame], rotations.to_vector(turn)))
-        within.append(off @ np.linalg.solve(told.covariance, off) < CHI_SQUARE_90)
+    for seed, run in zip(TOASTS, toasts(FUSION), strict=True):
+        places, turns = with_a_toast(seed)[1]
+        told = run.estimates[BEGIN:END]
+        assert np.median([estimate.confidence for estimate in told]) < 0.2
+        for one, place, turn in zip(told, places[BEGIN:END], turns[BEGIN:END], strict=True):
+            turned = rotations.multiply(one.rotation, rotations.conjugate(turn))
+            off = np.concatenate((one.translation - place, rotations.to_vector(turned)))
+            within.append(off @ np.linalg.solve(one.covariance, off) < CHI_SQUARE_90)
     assert np.mean(within) > 0.6
-    assert run.frames_to_recover(usual(FUSION), END) == 0
 
 
 def test_usual_use_by_a_stranger_hardly_ever_falls_back() -> None:

@@ -63,7 +63,7 @@ def test_heads_differ_less_than_statures() -> None:
 
 
 @pytest.mark.parametrize(
-    ("offset", "turn"), [((0.1, 0.35, -0.1), 0.2), ((-0.2, 0.3, 0.1), 1.0), ((0.2, 0.2, -0.3), 0.0)]
+    ("offset", "turn"), [((0.1, 0.35, -0.1), 0.2), ((-0.2, 0.3, 0.1), 0.5), ((0.2, 0.2, -0.3), 0.0)]
 )
 def test_a_hand_reaches_what_is_within_reach(
     offset: tuple[float, float, float], turn: float
@@ -78,10 +78,23 @@ def test_an_arm_stretches_towards_what_is_out_of_reach() -> None:
     person = sample_person(4, 1)
     target, joints = reach(person, np.array([0.0, 2.0, 0.0]), np.eye(3))
     arm = joints[:, Joint.WRIST_RIGHT] - joints[:, Joint.SHOULDER_RIGHT]
-    way = target.translation - joints[:, Joint.SHOULDER_RIGHT]
+    wrist = target.translation - target.rotation[:, :, 1] * person.proportions.palm
+    way = wrist - joints[:, Joint.SHOULDER_RIGHT]
     assert np.abs(np.cross(arm, way)).max() < 1e-9
     elbow = angles_at(joints, Joint.SHOULDER_RIGHT, Joint.ELBOW_RIGHT, Joint.WRIST_RIGHT)
     assert elbow == pytest.approx(172.0)
+
+
+def test_a_shoulder_glides_forward_for_an_arm_across_the_chest_and_keeps_its_bone() -> None:
+    person = sample_person(4, 1)
+    shoulders = []
+    for aside in (0.1, -0.4):
+        _, joints = reach(person, np.array([aside, 0.3, 0.0]), np.eye(3))
+        chest, shoulder = (joints[0, j] for j in (Joint.SHOULDER_CENTER, Joint.SHOULDER_RIGHT))
+        shoulders.append(shoulder - chest)
+    resting, gliding = shoulders
+    assert 0.02 < gliding[1] - resting[1] < 0.10
+    assert np.linalg.norm(gliding) == pytest.approx(np.linalg.norm(resting))
 
 
 def test_a_hand_turns_with_its_forearm_rather_than_break_the_wrist() -> None:

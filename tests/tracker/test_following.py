@@ -16,7 +16,7 @@ def test_the_person_that_is_followed_stays_chosen_when_another_comes_nearer() ->
     assert follower.choose(people, 1) is people[1]
 
 
-def test_nobody_is_chosen_while_the_followed_person_is_away_for_less_than_a_second() -> None:
+def test_nobody_is_chosen_while_the_followed_person_is_away_for_less_than_two_seconds() -> None:
     follower = Follower()
     follower.choose([person(2)], 0)
     assert follower.choose([person(1)], PATIENCE_NS - 1) is None
@@ -25,7 +25,7 @@ def test_nobody_is_chosen_while_the_followed_person_is_away_for_less_than_a_seco
     assert follower.choose([person(1), back], PATIENCE_NS) is back
 
 
-def test_another_person_is_followed_after_a_second_without_the_first() -> None:
+def test_another_person_is_followed_after_two_seconds_without_the_first() -> None:
     follower = Follower()
     follower.choose([person(2)], 0)
     other = person(1)

@@ -12,11 +12,11 @@ from inhand_tracker.identities import Identities
 from inhand_tracker.image import Image
 from inhand_tracker.watching import OnFailure, Seen, Watcher
 
-PATIENCE_NS = 1_000_000_000
+PATIENCE_NS = 2_000_000_000
 
 
 class Follower:
-    """Follows one person by id; when that one is gone for a second, the nearest to the camera."""
+    """Follows one person by id; when that one is gone for two seconds, the nearest one."""
 
     def __init__(self) -> None:
         self.person_id: int | None = None
@@ -43,7 +43,7 @@ class PeopleWatched:
     """Watches so many people at once, each by a watcher of their own.
 
     Of one alone it is the person that ``Follower`` chooses, by the camera's id. Several keep their
-    own numbers (``Identities``), whatever the camera calls them; who is gone for a second makes
+    own numbers (``Identities``), whatever the camera calls them; who is gone for two seconds makes
     room, and the nearest stranger is next.
     """
 

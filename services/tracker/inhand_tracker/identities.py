@@ -17,7 +17,7 @@ from inhand_tracker.conversion import joints_of
 
 Array = NDArray[np.float64]
 
-PATIENCE_NS = 1_000_000_000
+PATIENCE_NS = 2_000_000_000
 """Who is not seen for so long is forgotten."""
 FARTHEST_M = 0.6
 """Nobody is farther than this from where they were expected, and half a metre a second more."""
