@@ -63,7 +63,8 @@ def test_heads_differ_less_than_statures() -> None:
 
 
 @pytest.mark.parametrize(
-    ("offset", "turn"), [((0.1, 0.35, -0.1), 0.2), ((-0.2, 0.3, 0.1), 0.5), ((0.2, 0.2, -0.3), 0.0)]
+    ("offset", "turn"),
+    [((0.1, 0.35, -0.1), 0.2), ((-0.15, 0.4, 0.0), 0.6), ((0.2, 0.2, -0.3), 0.0)],
 )
 def test_a_hand_reaches_what_is_within_reach(
     offset: tuple[float, float, float], turn: float
