@@ -91,7 +91,7 @@ def read_skeleton(
 
 def _opinion(random: np.random.Generator, error: Floats, guessed: Floats) -> Floats:
     """Confidences (T, 20) by a tracker that has an inkling of its errors (T, 20), in metres."""
-    surprise = np.minimum(error / 0.12, 1.0)
+    surprise = np.minimum(error / 0.05, 1.0)
     opinion = 0.95 - 0.40 * guessed - 0.35 * surprise + 0.08 * random.normal(size=error.shape)
     return np.clip(opinion, 0.05, 1.0)
 
