@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -12,6 +13,7 @@ from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.inbox import Inbox, Received
 from inhand_runtime.session import open_session, subscribe
 from inhand_runtime.settings import load_rig_file
+from inhand_runtime.signals import set_on_signals
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import VERSION, Site
 from inhand_schemas.topics import BULK, TOPICS, AnyTopic, topic_of
@@ -27,9 +29,10 @@ OTHER_VERSIONS = tuple(version for version in range(10) if version != VERSION)
 class Look:
     """Samples of one rig as they arrive, without taking part in its work."""
 
-    def __init__(self, session: zenoh.Session, site: Site) -> None:
+    def __init__(self, session: zenoh.Session, site: Site, stop: threading.Event) -> None:
         self.site = site
         self.skipped = 0
+        self._stop = stop
         self._session = session
         self._inbox = Inbox()
         self._subscribers: list[Any] = []
@@ -62,9 +65,15 @@ class Look:
         )
 
     def samples(self, seconds: float | None) -> Iterator[Received | None]:
-        """What arrives within ``seconds`` (None = without end); None when nothing just did."""
+        """What arrives within ``seconds`` (None = without end); None when nothing just did.
+
+        Raises KeyboardInterrupt at Ctrl-C or SIGTERM: here, where no lock is held that Zenoh's
+        threads would wait for.
+        """
         end = None if seconds is None else time.monotonic() + seconds
         while end is None or time.monotonic() < end:
+            if self._stop.is_set():
+                raise KeyboardInterrupt
             yield self._inbox.get(IDLE_S)
 
     def _skip(self, _key: str) -> None:
@@ -75,8 +84,9 @@ class Look:
 def open_look(config: Path | None) -> Iterator[Look]:
     """A look at the rig of a settings file; raises SettingsError or InhandError."""
     rig_file = load_rig_file(config)
-    with open_session(rig_file.zenoh) as session:
-        yield Look(session, Site(rig_file.realm, rig_file.rig))
+    stop = threading.Event()
+    with set_on_signals(stop), open_session(rig_file.zenoh) as session:
+        yield Look(session, Site(rig_file.realm, rig_file.rig), stop)
 
 
 def add_looking_arguments(parser: argparse.ArgumentParser, seconds: float | None) -> None:
