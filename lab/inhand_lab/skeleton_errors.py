@@ -56,7 +56,8 @@ INHERITED = np.array(
 """Share of its parent's error that a joint has as well."""
 _ARM_ASIDE, _LEG_ASIDE = (0.068, 0.052, 2, 0.57), (0.046, 0.047, 0.39, 0.18)
 ASIDE = np.array([1.0, 0.028, 0.034, 0.16, *_ARM_ASIDE, *_ARM_ASIDE, *_LEG_ASIDE, *_LEG_ASIDE])
-"""How much of an error is left across the bone: joints slide along limbs rather than off them."""
+"""How much of an error is left across the bone: joints slide along limbs rather than off them, but
+for wrists."""
 MEMORY_AT_REST = 10.0
 """Seconds in which the error of a joint at rest is forgotten."""
 SPELL = 0.083
