@@ -147,7 +147,7 @@ def test_somebody_else_is_told(tmp_path: Path) -> None:
     people = [first, first, other, other]
     path = write(
         tmp_path / "a.mcap",
-        *(Skeletons(**at(40 * frame), people=(who,)) for frame, who in enumerate(people)),
+        *(Skeletons(**at(80 * frame), people=(who,)) for frame, who in enumerate(people)),
     )
     seen = list(observe(path, load_frames(path, None)))
     assert [one.somebody_else for one in seen] == [True, False, True, False]

@@ -104,5 +104,5 @@ def test_no_more_people_are_watched_than_asked_for_and_who_leaves_makes_room() -
     three = [person(1, -1.0), person(2, 0.0), person(3, 1.0)]
     assert numbers(three, 0.1) == {0, 1}
     assert numbers(three[1:], 0.2) == {0, 1}
-    assert numbers(three[1:], 1.0) == {0, 1}
-    assert numbers(three[1:], 1.2) == {1, 2}
+    assert numbers(three[1:], 2.0) == {0, 1}
+    assert numbers(three[1:], 2.2) == {1, 2}
