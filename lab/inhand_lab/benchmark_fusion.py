@@ -18,7 +18,7 @@ from inhand_tracker.viewpoints import find_viewpoints
 
 from inhand_lab.rendered_images import rendered_image
 from inhand_lab.simulated_messages import shape_of
-from inhand_lab.world import simulate
+from inhand_lab.world import Simulation, simulate
 
 INTERACTION = "drinkFromMug"
 SEED = 0
@@ -43,16 +43,7 @@ class FusionCost:
 def measure_fusion(sizes: Sequence[int] = SIZES) -> tuple[FusionCost, ...]:
     """One object, one person, as many hypotheses as usual."""
     people = [simulate(INTERACTION, person, SEED, FRAMES) for person in range(PEOPLE)]
-    sequences = [
-        LabelledSequence(
-            str(one.participant),
-            one.person.handedness == "left",
-            one.true_joints_in_camera,
-            one.translations,
-            one.rotations,
-        )
-        for one in people
-    ]
+    sequences = [true_sequence(one) for one in people]
     shape = shape_of(people[0].object_model)
     # fusion asks the mapping for what is usual of joints alone: its size costs a frame nothing.
     mapping = learn(sequences, shape.mirror_normal)
@@ -72,6 +63,17 @@ def measure_fusion(sizes: Sequence[int] = SIZES) -> tuple[FusionCost, ...]:
         )
         costs.append(FusionCost(size, learning_s, unseen_ms, seen_ms))
     return tuple(costs)
+
+
+def true_sequence(done: Simulation) -> LabelledSequence:
+    """A performance as it was done, with the true joints."""
+    return LabelledSequence(
+        str(done.participant),
+        done.person.handedness == "left",
+        done.true_joints_in_camera,
+        done.translations,
+        done.rotations,
+    )
 
 
 def _of_size(sequences: Sequence[LabelledSequence], size: int) -> list[LabelledSequence]:

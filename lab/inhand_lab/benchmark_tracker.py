@@ -12,7 +12,7 @@ import numpy as np
 from inhand_tracker import rotations
 from inhand_tracker.body import PARTS, part_bases, pelvis_basis
 from inhand_tracker.image import Image
-from inhand_tracker.learning import LabelledSequence, learn
+from inhand_tracker.learning import learn
 from inhand_tracker.likelihood import Likelihood
 from inhand_tracker.model_file import Model
 from inhand_tracker.particles import Particles
@@ -21,7 +21,7 @@ from inhand_tracker.sight_frame import Region, prepare
 from inhand_tracker.viewpoints import BOUNDARY_POINTS, Viewpoints, find_viewpoints
 from numpy.typing import NDArray
 
-from inhand_lab.benchmark_fusion import SIZES, FusionCost, measure_fusion
+from inhand_lab.benchmark_fusion import SIZES, FusionCost, measure_fusion, true_sequence
 from inhand_lab.rendered_images import rendered_image
 from inhand_lab.simulated_messages import shape_of
 from inhand_lab.workers import usable_cores
@@ -170,16 +170,7 @@ def naive_edge_log_weights(
 def _model() -> Model:
     people = [simulate(INTERACTION, person, SEED, LEARNED_FRAMES) for person in range(PEOPLE)]
     shape = shape_of(people[0].object_model)
-    sequences = [
-        LabelledSequence(
-            str(one.participant),
-            one.person.handedness == "left",
-            one.true_joints_in_camera,
-            one.translations,
-            one.rotations,
-        )
-        for one in people
-    ]
+    sequences = [true_sequence(one) for one in people]
     return Model(INTERACTION, shape, learn(sequences, shape.mirror_normal), find_viewpoints(shape))
 
 

@@ -192,7 +192,8 @@ def _protract(body: Proportions, from_chest: Transform, shoulder: Floats, wrist:
     to_chest = from_chest.inverse()
     local = to_chest.apply(shoulder)
     way = (local - to_chest.apply(wrist))[:, 0] / (body.upper_arm + body.forearm)
-    across = np.clip(way, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(way, 0.0, 1.0))
+    share = np.clip(way, 0.0, 1.0)
+    across = share**2 * (3.0 - 2.0 * share)
     turned = rotation_about("z", PROTRACTION * across)
     return from_chest.apply(np.einsum("tij,tj->ti", turned, local))
 
