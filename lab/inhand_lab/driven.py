@@ -32,7 +32,7 @@ from inhand_lab.transforms import (
     rotation_about,
     rotation_from_axes,
 )
-from inhand_lab.world import MIRRORED_CONTACT, VERSION, Simulation
+from inhand_lab.world import MIRRORED_CONTACT, PEOPLE, Simulation
 
 UNSEEN_TWIST, TWIST_PERIOD = 0.25, 2.0
 """Deviation in radians and period in seconds of the forearm's twist that no joint shows."""
@@ -70,7 +70,7 @@ def drive(
     person = _person_of(joints, recorded, seed)
     times = np.arange(len(joints)) / recorded.frame_rate
     random = np.random.default_rng(
-        [VERSION, seed, recorded.participant, recorded.recording, zlib.crc32(interaction.encode())]
+        [PEOPLE, seed, recorded.participant, recorded.recording, zlib.crc32(interaction.encode())]
     )
     hold = rehearse(interaction, sample_person(seed, recorded.participant), seed)
     seen = seen_frames(joints, recorded.frame_rate)

@@ -1,13 +1,13 @@
 """How a skeleton tracker errs before its filter: from frame to frame and from bone to bone.
 
 A tracker errs by pose: what it takes for the elbow changes as the arm moves, hardly while it
-rests, and is the same again when the arm comes back. On top of that errors wander, in calm spells
-and busy ones, as the body is stirred rather than with time: by how a joint moves against its parent
-and by how much is moving at all. They grow in movement and shrink again after it, joints slide
-along bones rather than off them, and have a part of their parents' errors. Hands and feet, small as
-they are, are now and then seen turned or cut short, a hand flips, and a fast wrist stays behind or
-leaves the arm. Sizes were found by the realism table (docs/simulator.md tells which rows do not
-come out); none was chosen for what a method makes of it.
+rests, and is the same again when the arm comes back. So it is with the trunk, which also depends on
+where the arms are. On top of that errors wander, in calm spells and busy ones, as the body is
+stirred rather than with time: by how a joint moves against its parent and by how much is moving at
+all. They grow in movement and shrink again after it, joints slide along bones rather than off them,
+and have a part of their parents' errors. Hands and feet, small as they are, are now and then seen
+turned or cut short, a hand flips, and a fast wrist stays behind or leaves the arm. Sizes were found
+by the realism table; none was chosen for what a method makes of it.
 """
 
 from __future__ import annotations
@@ -20,41 +20,44 @@ from inhand_lab.joints import PARENTS, Joint
 from inhand_lab.recursion import leaky_sum
 from inhand_lab.transforms import Floats
 
-_ARM, _LEG = (1.1, 20, 1.1, 13), (3.2, 13, 10, 6.3)
-MISTAKES = 1e-3 * np.array([0, 15, 6, 0.5, *_ARM, *_ARM, *_LEG, *_LEG], float)
+_ARM, _LEG = (1.1, 20, 1.1, 13), (7.2, 13, 10, 6.3)
+MISTAKES = 1e-3 * np.array([0, 5, 10, 0.8, *_ARM, *_ARM, *_LEG, *_LEG], float)
 """Deviation, along each axis and over all poses, of where a joint is taken to be, metres, in the
 order of Joint."""
-_ARM_SIMILAR, _LEG_SIMILAR = (0.092, 0.051, 0.035, 0.04), (0.029, 0.005, 0.026, 0.04)
+_ARM_SIMILAR, _LEG_SIMILAR = (0.092, 0.051, 0.035, 0.04), (0.11, 0.005, 0.026, 0.04)
 SIMILAR = np.array(
-    [0.085, 0.008, 0.019, 0.027, *_ARM_SIMILAR, *_ARM_SIMILAR, *_LEG_SIMILAR, *_LEG_SIMILAR]
+    [0.085, 0.096, 0.16, 0.18, *_ARM_SIMILAR, *_ARM_SIMILAR, *_LEG_SIMILAR, *_LEG_SIMILAR]
 )
 """How far, in metres, a joint must go from the hips' point of view to be mistaken otherwise."""
 ACROSS = 0.10
 """A hand is seen too short or too long rather than turned: that share of the mistake is aside."""
+TRUNK = (Joint.SPINE, Joint.SHOULDER_CENTER, Joint.HEAD, Joint.HIP_LEFT, Joint.HIP_RIGHT)
+ARMS = (Joint.ELBOW_LEFT, Joint.WRIST_LEFT, Joint.ELBOW_RIGHT, Joint.WRIST_RIGHT)
+"""What joints of the trunk are taken for depends on where these are too: arms hide and lift it."""
 WAVES = 12
 """Waves that a mistake is made of."""
 
-_ARM_WANDERING, _LEG_WANDERING = (16, 20, 5.4, 19.5), (17, 17, 11, 4.9)
+_ARM_WANDERING, _LEG_WANDERING = (10, 18.5, 6.7, 15.3), (8.3, 19, 10, 2.8)
 DEVIATIONS = 1e-3 * np.array(
-    [4.8, 2.5, 5, 13.5, *_ARM_WANDERING, *_ARM_WANDERING, *_LEG_WANDERING, *_LEG_WANDERING], float
+    [5.5, 5.8, 16.5, 7.5, *_ARM_WANDERING, *_ARM_WANDERING, *_LEG_WANDERING, *_LEG_WANDERING], float
 )
 """Deviation of a joint's wandering error along each axis, metres."""
-SHARED = 0.9
+SHARED = 0.52
 """How much the mean of all joints' movement stirs each one."""
-MOST_STIRRED = 1.1
+MOST_STIRRED = 1.55
 """Speed, metres a second, that no joint seems to go beyond."""
-AT_REST, IN_MOVEMENT = 0.03, 0.17
+AT_REST, IN_MOVEMENT = 0.023, 0.103
 """Share of the deviation that an error has at rest, and the speed at which it has all of it."""
-WAY = 2.4
+WAY = 4.6
 """Way in metres over which a wandering error is forgotten."""
-CREEP = 0.041
+CREEP = 0.043
 """Speed, metres a second, at which the tracker begins to take notice: slower counts for less."""
 _ARM_INHERITED, _LEG_INHERITED = (0.13, 0.16, 0.39, 0.25), (0.27, 0.25, 0.13, 0.39)
 INHERITED = np.array(
-    [0, 0.25, 0.099, 0.21, *_ARM_INHERITED, *_ARM_INHERITED, *_LEG_INHERITED, *_LEG_INHERITED]
+    [0, 0.25, 0.099, 0.33, *_ARM_INHERITED, *_ARM_INHERITED, *_LEG_INHERITED, *_LEG_INHERITED]
 )
 """Share of its parent's error that a joint has as well."""
-_ARM_ASIDE, _LEG_ASIDE = (0.068, 0.052, 2, 0.57), (0.046, 0.047, 0.39, 0.18)
+_ARM_ASIDE, _LEG_ASIDE = (0.068, 0.052, 2, 0.57), (0.042, 0.047, 0.39, 0.18)
 ASIDE = np.array([1.0, 0.028, 0.034, 0.16, *_ARM_ASIDE, *_ARM_ASIDE, *_LEG_ASIDE, *_LEG_ASIDE])
 """How much of an error is left across the bone: joints slide along limbs rather than off them, but
 for wrists."""
@@ -62,7 +65,7 @@ MEMORY_AT_REST = 10.0
 """Seconds in which the error of a joint at rest is forgotten."""
 SPELL = 0.083
 """Correlation time of busy spells, seconds."""
-BUSYNESS, BUSIEST = 12.0, 40.0
+BUSYNESS, BUSIEST = 7.0, 40.0
 """Deviation of the logarithm of how busy the error is, and how many times its median at most: it
 is calm or very busy, and hardly ever in between."""
 TAILS = 3.0
@@ -81,7 +84,7 @@ END_STAY = 0.04
 FLIP_RATE, FLIP_RATE_MOVING, FLIP_STAY = 0.09, 0.28, 0.22
 """Flips of a hand a second, at rest and more for each metre a second."""
 
-FAILURE_RATE, FAILURE_STAY = 2.9, 0.5
+FAILURE_RATE, FAILURE_STAY = 2.4, 0.5
 """Failures of a wrist a second, for each metre a second above CALM and below WILD."""
 CALM, WILD = 0.2, 0.6
 STUCK_SHARE = 0.4
@@ -103,7 +106,9 @@ def mistake(person: int, joints: Floats) -> Floats:
     (Rahimi & Recht, *Random Features for Large-Scale Kernel Machines*, 2007).
     """
     random = np.random.default_rng([0x71AC, person])
-    place = (joints - joints[:, :1]) / SIMILAR[:, None]
+    place = joints - joints[:, :1]
+    place[:, TRUNK] += place[:, ARMS].mean(axis=1, keepdims=True)
+    place /= SIMILAR[:, None]
     waves = random.normal(size=(20, WAVES, 3))
     phases = random.uniform(0.0, 2.0 * np.pi, (20, WAVES, 3))
     angles = np.einsum("tjk,jwk->tjw", place, waves)[..., None] + phases
