@@ -30,7 +30,7 @@ from inhand_lab.workers import in_processes
 
 Array = NDArray[np.float64]
 
-IDLE_PEOPLE = 2
+IDLE_PEOPLE = 1
 """Of each kind, for each unseen participant other ones."""
 NEEDS = needs_of(DEFAULT_METHOD, usual_terms(DEFAULT_METHOD))
 
