@@ -100,7 +100,7 @@ def _leave_person_out(
 
 
 @dataclass(frozen=True)
-class _Cascade:
+class _Learned:
     """What was learned without a support vector machine, which `cascade` does not use."""
 
     body_poses: Array
@@ -123,7 +123,7 @@ class _Lesson:
         taught = [one for one in self.people if one.action != without]
         learned = learn_movements(taught, self.named)
         looks = [look for look in self.seen if look.action != without]
-        told = _Cascade(
+        told = _Learned(
             learned.body_poses,
             learned.movements,
             learned.temper,
