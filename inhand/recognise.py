@@ -7,8 +7,9 @@ from typing import Any
 
 from inhand_lab.adaptive_comparison import Environments
 from inhand_lab.confusion_picture import draw_confusions
-from inhand_lab.dataset import Dataset, load_dataset
-from inhand_lab.false_objects import count_false_objects
+from inhand_lab.dataset import Dataset, has_images, load_dataset
+from inhand_lab.false_objects_by_movement import count_by_movement
+from inhand_lab.false_objects_with_images import count_with_images
 from inhand_lab.recognition_alone import RecognitionAlone, recognise_alone
 from inhand_lab.recognition_evaluation import (
     CASCADES,
@@ -45,7 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument(
         "--false-objects",
         action="store_true",
-        help="people who use nothing, and actions that were left out of training",
+        help="people who use nothing, and actions that were left out of training: with images "
+        "where the dataset has some, else by skeletons alone",
     )
     parser.add_argument(
         "--others",
@@ -145,9 +147,15 @@ def _false_objects(
 ) -> tuple[dict[str, Any], list[Grid]]:
     others = None if arguments.others is None else load_dataset(arguments.others)
     unseen = _unseen(dataset, arguments.unseen)
-    with progress_bar("actions", 1 + len(dataset.interactions())) as advance:
-        found = count_false_objects(dataset, others, unseen, usable_cores(), advance)
+    if has_images(dataset):
+        with progress_bar("participants", len(unseen)) as advance:
+            found = count_with_images(dataset, others, unseen, usable_cores(), advance)
+    else:
+        with progress_bar("actions", 1 + len(dataset.interactions())) as advance:
+            found = count_by_movement(dataset, others, unseen, usable_cores(), advance)
     result = {
+        "images": found.images,
+        "others_images": found.others_images,
         "nothing_in_use": found.idle,
         "others": found.others,
         "never_trained": found.never_trained,

@@ -221,6 +221,13 @@ def iterate_pixels(path: Path, camera: str | None = None) -> Iterator[RgbdFrame]
                 yield message
 
 
+def has_images(dataset: Dataset) -> bool:
+    """Whether any recording has pixels; raises RecordingError."""
+    return any(
+        next(iterate_pixels(dataset.path(entry)), None) is not None for entry in dataset.entries
+    )
+
+
 def labelled_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
     """A recording as training reads it; frames without body or label hold NaN."""
     frames = load_frames(dataset.path(entry), entry.object)

@@ -1,82 +1,23 @@
-"""How often an object is seen where none is in use, or one that nobody taught."""
+"""How often an object is known falsely: where none is in use, or one that nobody taught."""
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from inhand_tracker.recognition import KNOWN
-
-from inhand_lab.dataset import Dataset, DatasetError
-from inhand_lab.idle_people import Idleness, watch_idle
-from inhand_lab.recogniser_training import LearnedMovements, learn_movements
-from inhand_lab.recognition_alone import participants_of, probabilities_over_time
-from inhand_lab.watched_people import UsualPoses, Watched, watch
-from inhand_lab.workers import in_processes
+from inhand_lab.idle_people import Idleness
 
 IDLE_KINDS: tuple[Idleness, ...] = ("stand", "walkOnSpot", "walkAbout", "gesture")
-IDLE_PEOPLE, IDLE_SEED = 10, 900
+IDLE_SEED = 900
 
 
 @dataclass(frozen=True)
 class FalseObjects:
     """The share of frames in which an object is known falsely, of people of each kind: idle ones,
-    those of other datasets, and those whose action was left out of training."""
+    those of other datasets, and those whose action was left out of training.
+
+    ``images`` and ``others_images`` tell whether there were images, of the others apart.
+    """
 
     idle: dict[str, float]
     others: dict[str, float]
     never_trained: dict[str, float]
-
-
-def count_false_objects(
-    dataset: Dataset,
-    others: Dataset | None,
-    unseen: Sequence[str],
-    processes: int,
-    on_progress: Callable[[], None] = lambda: None,
-) -> FalseObjects:
-    """Learn from a dataset, and look at who does nothing of it.
-
-    Each action of the dataset is left out once, and looked at in the ``unseen`` participants, who
-    are left out too. ``on_progress`` is called once an action, and once before. Raises DatasetError
-    or RecordingError.
-    """
-    people = [watch(dataset, entry) for entry in dataset.entries]
-    actions = list(dict.fromkeys(one.action for one in people))
-    unknown = set(unseen) - set(participants_of(people))
-    if unknown:
-        raise DatasetError(f"{dataset.folder} has no participant {min(unknown)!r}")
-    learned = learn_movements(people, str(dataset.folder))
-    idle: dict[str, float] = {
-        kind: _mean_share(
-            learned, [watch_idle(kind, number, IDLE_SEED) for number in range(IDLE_PEOPLE)]
-        )
-        for kind in IDLE_KINDS
-    }
-    strangers: dict[str, list[Watched]] = {}
-    for entry in () if others is None else others.entries:
-        if others is not None:
-            strangers.setdefault(entry.interaction, []).append(watch(others, entry))
-    elsewhere = {name: _mean_share(learned, some) for name, some in strangers.items()}
-    on_progress()
-    tasks = [(tuple(people), action, tuple(unseen)) for action in actions]
-    shares = in_processes(_leave_action_out, tasks, processes, lambda _: on_progress())
-    return FalseObjects(idle, elsewhere, dict(zip(actions, shares, strict=True)))
-
-
-def _leave_action_out(task: tuple[tuple[Watched, ...], str, tuple[str, ...]]) -> float:
-    people, action, unseen = task
-    taught = [one for one in people if one.action != action and one.participant not in unseen]
-    learned = learn_movements(taught)
-    return _mean_share(
-        learned, [one for one in people if one.action == action and one.participant in unseen]
-    )
-
-
-def _mean_share(learned: LearnedMovements, people: Sequence[Watched]) -> float:
-    """The mean share of frames in which an action is known."""
-    usual = UsualPoses(learned.poses)
-    shares = []
-    for one in people:
-        told, _ = probabilities_over_time(learned.movements, learned.temper, usual, one)
-        shares.append((told[:, :-1].max(axis=1) >= KNOWN).mean())
-    return float(np.mean(shares))
+    images: bool
+    others_images: bool

@@ -4,12 +4,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from inhand_runtime.pixels import encode_colour, encode_depth
-from inhand_schemas.messages import Message, RgbdFrame, Skeletons
+from inhand_schemas.messages import Message, Skeletons
 
 from inhand_lab.cameras import KINECT, Camera
 from inhand_lab.dataset import CAMERA, Dataset, DatasetWriter, Entry
-from inhand_lab.simulated_messages import camera_info, label_message, person_message, shape_of
+from inhand_lab.simulated_messages import (
+    camera_info,
+    label_message,
+    person_message,
+    pixels_message,
+    shape_of,
+)
 from inhand_lab.world import VERSION, Simulation, simulate
 
 FRAME_RATE = 30
@@ -110,9 +115,4 @@ def _messages(simulation: Simulation, *, images: bool) -> Iterator[Message]:
             visible_fraction=seen.visible_fraction if seen else simulation.visible_fraction(frame),
         )
         if seen is not None:
-            yield RgbdFrame(
-                sequence=frame,
-                time_ns=time_ns,
-                colour=encode_colour(seen.colour),
-                depth=encode_depth(seen.depth),
-            )
+            yield pixels_message(seen, sequence=frame, time_ns=time_ns)

@@ -12,8 +12,17 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from inhand_lab.cameras import KINECT
+from inhand_lab.interactions import INTERACTIONS
 from inhand_lab.kinematics import Body, Trunk, place_body, place_trunk
-from inhand_lab.motions.performance import Stance, feet_apart, hanging_hands, heading_of, stand
+from inhand_lab.motions.performance import (
+    Contact,
+    Stance,
+    feet_apart,
+    hanging_hands,
+    heading_of,
+    stand,
+)
 from inhand_lab.motions.timeline import Key, drift, follow, minimum_jerk
 from inhand_lab.person import Person, sample_person
 from inhand_lab.skeleton_noise import MISSING, read_skeleton
@@ -25,6 +34,7 @@ from inhand_lab.transforms import (
     rotation_from_axes,
 )
 from inhand_lab.watched_people import Watched
+from inhand_lab.world import Simulation
 
 Idleness = Literal["stand", "gesture", "walkOnSpot", "walkAbout", "fidget"]
 IDLENESS: tuple[Idleness, ...] = get_args(Idleness)
@@ -50,9 +60,13 @@ CADENCE, STRIDE = 1.75, 0.62
 """Steps a second, and a step's length in metres for 1.75 m of stature."""
 CIRCLE = 0.9
 """Radius in metres of the way of who walks about."""
+SPACE_TO_WALK = 0.5
+"""So much farther back, in metres, is the wall of a room to walk about in."""
 SWING = 0.35
 """Radians by which arms swing."""
 CAMERA_HEIGHT, CAMERA_DISTANCE, CAMERA_ASIDE = (1.0, 1.4), (2.9, 3.6), 0.5
+UNUSED = INTERACTIONS["drinkFromMug"]
+"""A simulation has an object: that of these people is behind the camera."""
 
 
 _MoveHands = Callable[
@@ -65,6 +79,18 @@ def watch_idle(
     idleness: Idleness, participant: int, seed: int, frames: int = 360, frame_rate: float = 30.0
 ) -> Watched:
     """What a skeleton tracker makes of somebody idle, for as many frames."""
+    idle = simulate_idle(idleness, participant, seed, frames, frame_rate)
+    missing = idle.joint_states == MISSING
+    seen = np.where(missing[..., None], np.nan, idle.joints_in_camera)
+    times_ns = np.rint(np.arange(frames) / frame_rate * 1e9).astype(np.int64)
+    left_handed = idle.person.handedness == "left"
+    return Watched(idleness, f"p{participant:02}", left_handed, seen, times_ns)
+
+
+def simulate_idle(
+    idleness: Idleness, participant: int, seed: int, frames: int = 360, frame_rate: float = 30.0
+) -> Simulation:
+    """Somebody idle before the camera, for as many frames; the object is out of its sight."""
     person = sample_person(seed, participant)
     random = np.random.default_rng([seed, participant, IDLENESS.index(idleness), 0x1D7E])
     times = np.arange(frames) / frame_rate
@@ -72,11 +98,31 @@ def watch_idle(
         body = _stand(person, times, random, _HANDS[idleness])
     else:
         body = _walk(person, times, random, 0.0 if idleness == "walkOnSpot" else CIRCLE)
-    joints = _camera(random).apply(body.joints)
-    reading = read_skeleton(person, joints, frame_rate, random)
-    seen = np.where((reading.states == MISSING)[..., None], np.nan, reading.joints)
-    times_ns = np.rint(times * 1e9).astype(np.int64)
-    return Watched(idleness, f"p{participant:02}", person.handedness == "left", seen, times_ns)
+    camera_from_world = _camera(random)
+    seen = body.seen_from(camera_from_world)
+    reading = read_skeleton(person, seen.joints, frame_rate, random)
+    viewpoint = camera_from_world.inverse().translation
+    space = SPACE_TO_WALK if idleness == "walkAbout" else 0.0
+    further = -space * normalised(viewpoint * [1.0, 1.0, 0.0])
+    return Simulation(
+        idleness,
+        participant,
+        seed,
+        0,
+        frame_rate,
+        person,
+        UNUSED.object_model(),
+        KINECT,
+        reading.joints,
+        reading.states,
+        reading.confidences,
+        seen,
+        Transform(np.array([0.0, 0.0, -9.0]), np.eye(3)).repeated(frames),
+        np.full(frames, Contact.RESTING, np.uint8),
+        camera_from_world @ Transform(further, np.eye(3)),
+        float(np.arctan2(-viewpoint[0], viewpoint[1])),
+        (),
+    )
 
 
 def _camera(random: np.random.Generator) -> Transform:

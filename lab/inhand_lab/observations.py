@@ -15,7 +15,9 @@ from inhand_tracker.trackers import ObjectTracker
 from numpy.typing import NDArray
 
 from inhand_lab.dataset import Frame, iterate_pixels, load_camera_info
+from inhand_lab.simulated_messages import camera_info, person_message, pixels_message
 from inhand_lab.tracks import Track, empty_track
+from inhand_lab.world import Simulation
 
 Array = NDArray[np.float64]
 
@@ -63,6 +65,20 @@ def observe(
         person = follower.choose(frame.people, frame.time_ns)
         joints = None if person is None else joints_of(person)
         yield Observation(frame.time_ns, joints, image, follower.person_id != before)
+
+
+def observe_simulation(
+    simulation: Simulation, needs: Collection[Need] = ()
+) -> Iterator[Observation]:
+    """The frames of a simulation as if they came from a camera."""
+    info = camera_info(simulation.intrinsics, simulation.frame_rate)
+    for frame in range(simulation.frames):
+        time_ns = round(frame * 1e9 / simulation.frame_rate)
+        image = None
+        if needs:
+            seen = simulation.render(frame)
+            image = image_of(pixels_message(seen, sequence=frame, time_ns=time_ns), info, needs)
+        yield Observation(time_ns, joints_of(person_message(simulation, frame)), image, False)
 
 
 def track_recording(

@@ -4,6 +4,7 @@ Every object is looked for in some frames of every recording, whichever is in us
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from inhand_tracker.model_file import Model
@@ -25,17 +26,48 @@ PRIOR_COUNT = 4.0
 LEAST_SPREAD = 3.0
 
 
+@dataclass(frozen=True)
+class Look:
+    """The ``supports`` of objects, by their actions, where somebody does ``action``.
+
+    Objects of which the image says nothing have none.
+    """
+
+    action: str
+    supports: dict[str, float]
+
+
 def learn_presence(
     dataset: Dataset, entries: Sequence[Entry], actions: Sequence[str], models: Sequence[Model]
 ) -> Presence:
     """Of the objects of ``models``, in the order of their actions; raises RecordingError."""
-    present: list[list[float]] = [[] for _ in actions]
-    absent: list[list[float]] = [[] for _ in actions]
-    for entry in entries:
-        for supports in _looks(dataset, entry, models):
-            for number, support in supports.items():
-                ours = entry.interaction == actions[number]
-                (present if ours else absent)[number].append(support)
+    return presence_of(look_around(dataset, entries, actions, models), actions)
+
+
+def look_around(
+    dataset: Dataset, entries: Sequence[Entry], actions: Sequence[str], models: Sequence[Model]
+) -> list[Look]:
+    """Look for every object at each place in each recording; raises RecordingError."""
+    return [
+        Look(entry.interaction, {actions[number]: support for number, support in told.items()})
+        for entry in entries
+        for told in _looks(dataset, entry, models)
+    ]
+
+
+def presence_of(looks: Sequence[Look], actions: Sequence[str]) -> Presence:
+    """What looks say of the objects of ``actions``."""
+    present, absent = (
+        [
+            [
+                look.supports[action]
+                for look in looks
+                if action in look.supports and (look.action == action) == there
+            ]
+            for action in actions
+        ]
+        for there in (True, False)
+    )
     usual = usual_presence(len(actions))
     spreads = [
         _spread(np.array(there), np.array(not_there), usual.spread[number])

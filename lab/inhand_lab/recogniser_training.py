@@ -56,10 +56,11 @@ def recogniser_of(people: Sequence[Watched], named: str = "the recordings") -> R
     Raises DatasetError.
     """
     learned = learn_movements(people, named)
-    kept = learned.poses[:: max(1, len(learned.poses) // KEPT_POSES)]
     svm = train_svm(learned.poses, learned.labels)
     presence = usual_presence(len(learned.actions))
-    return Recogniser(learned.actions, kept, svm, learned.movements, learned.temper, presence)
+    return Recogniser(
+        learned.actions, learned.body_poses, svm, learned.movements, learned.temper, presence
+    )
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,11 @@ class LearnedMovements:
     temper: float
     poses: Array
     labels: NDArray[np.int64]
+
+    @property
+    def body_poses(self) -> Array:
+        """(M, 60): some of the poses, for a recogniser to keep."""
+        return self.poses[:: max(1, len(self.poses) // KEPT_POSES)]
 
 
 def learn_movements(people: Sequence[Watched], named: str = "the recordings") -> LearnedMovements:

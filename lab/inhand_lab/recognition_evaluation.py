@@ -108,15 +108,22 @@ def learn_from(
     RecordingError.
     """
     recogniser = train_recogniser(dataset, entries)
-    folds = [
-        Fold(action, (), tuple(entry for entry in entries if entry.interaction == action))
-        for action in recogniser.actions
-    ]
-    models = [fold_model(dataset, fold, images=images, fused=True) for fold in folds]
+    models = learn_models(dataset, entries, recogniser.actions, images=images)
     if images:
         presence = learn_presence(dataset, entries, recogniser.actions, models)
         recogniser = replace(recogniser, presence=presence)
     return recogniser, models
+
+
+def learn_models(
+    dataset: Dataset, entries: Sequence[Entry], actions: Sequence[str], *, images: bool = True
+) -> list[Model]:
+    """A model for each of the actions; raises DatasetError or RecordingError."""
+    folds = [
+        Fold(action, (), tuple(entry for entry in entries if entry.interaction == action))
+        for action in actions
+    ]
+    return [fold_model(dataset, fold, images=images, fused=True) for fold in folds]
 
 
 def _try_person(task: tuple[RecognitionProtocol, str]) -> list[RecognitionTrial]:

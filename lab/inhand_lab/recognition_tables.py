@@ -87,15 +87,15 @@ MEASURES = {
 def false_object_grid(found: FalseObjects) -> Grid:
     """Who uses nothing, or does what was not taught."""
     rows = [
-        (f"{kind}: {name}", f"{100.0 * share:.1f}")
-        for kind, shares in (
-            ("nothing in use", found.idle),
-            ("other dataset", found.others),
-            ("left out of training", found.never_trained),
+        (f"{kind}: {name}", "with images" if images else "skeletons alone", f"{100.0 * share:.1f}")
+        for kind, shares, images in (
+            ("nothing in use", found.idle, found.images),
+            ("other dataset", found.others, found.others_images),
+            ("left out of training", found.never_trained, found.images),
         )
         for name, share in shares.items()
     ]
-    return Grid("a false object, % of frames", ("people", "%"), tuple(rows))
+    return Grid("a false object, % of frames", ("people", "seen", "%"), tuple(rows))
 
 
 def _means(trials: Sequence[RecognitionTrial]) -> dict[str, float | None]:

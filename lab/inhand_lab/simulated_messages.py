@@ -1,14 +1,23 @@
 """A simulation told in messages."""
 
 import numpy as np
-from inhand_schemas.messages import CameraInfo, Contact, JointState, ObjectPose, Person, Vector3
+from inhand_runtime.pixels import encode_colour, encode_depth
+from inhand_schemas.messages import (
+    CameraInfo,
+    Contact,
+    JointState,
+    ObjectPose,
+    Person,
+    RgbdFrame,
+    Vector3,
+)
 from inhand_tracker.poses import pose_message
 from inhand_tracker.shape import ObjectShape
 from numpy.typing import NDArray
 
 from inhand_lab.objects.model import ObjectModel
 from inhand_lab.rasteriser import Intrinsics
-from inhand_lab.world import Simulation
+from inhand_lab.world import Frame, Simulation
 
 JOINT_STATES: tuple[JointState, ...] = ("missing", "inferred", "tracked")
 CONTACTS: tuple[Contact, ...] = ("resting", "right_hand", "left_hand", "both_hands", "worn")
@@ -44,6 +53,16 @@ def person_message(simulation: Simulation, frame: int) -> Person:
         ),
         states=states,
         confidences=tuple(simulation.joint_confidences[frame].tolist()),
+    )
+
+
+def pixels_message(seen: Frame, *, sequence: int, time_ns: int) -> RgbdFrame:
+    """A frame as a camera sends it."""
+    return RgbdFrame(
+        sequence=sequence,
+        time_ns=time_ns,
+        colour=encode_colour(seen.colour),
+        depth=encode_depth(seen.depth),
     )
 
 

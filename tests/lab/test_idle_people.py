@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from inhand_lab.idle_people import IDLENESS, watch_idle
+from inhand_lab.idle_people import IDLENESS, Idleness, simulate_idle, watch_idle
 from inhand_lab.joints import PARENTS, Joint
+from inhand_lab.observations import observe_simulation
 
 
 @pytest.mark.parametrize("idleness", IDLENESS)
@@ -44,3 +45,37 @@ def test_only_gestures_and_fidgets_bring_hands_above_the_chest() -> None:
     assert highest("stand") < 0.0
     assert highest("gesture") > 0.0
     assert highest("fidget") > 0.0
+
+
+@pytest.mark.parametrize("idleness", IDLENESS)
+def test_idle_people_are_drawn_where_their_skeletons_are_and_no_object_is(
+    idleness: Idleness,
+) -> None:
+    simulation = simulate_idle(idleness, 1, 7, frames=4)
+    drawing = simulation.draw(3)
+    assert not drawing.object_mask.any()
+    assert simulation.render(3).visible_fraction == 0.0
+    hips = simulation.true_joints_in_camera[3, Joint.HIP_CENTER]
+    camera = simulation.intrinsics
+    column, row = (
+        round(float(focal * along / hips[2] + centre))
+        for focal, along, centre in (
+            (camera.fx, hips[0], camera.cx),
+            (camera.fy, hips[1], camera.cy),
+        )
+    )
+    depth = drawing.canvas.depth_in_millimetres()[row, column] / 1000.0
+    assert hips[2] - 0.3 < depth < hips[2] + 0.05
+
+
+def test_a_drawn_idle_person_is_observed_with_the_watched_skeleton_and_what_is_needed() -> None:
+    watched = watch_idle("gesture", 2, 8, frames=3)
+    simulation = simulate_idle("gesture", 2, 8, frames=3)
+    for number, seen in enumerate(observe_simulation(simulation, ("colour", "depth"))):
+        np.testing.assert_array_equal(seen.joints, watched.joints[number])
+        assert seen.time_ns == watched.times_ns[number]
+        assert seen.image is not None
+        assert seen.image.colour is not None
+        assert seen.image.depth is not None
+        assert seen.image.grey is None
+    assert all(seen.image is None for seen in observe_simulation(simulation))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inhand_lab.generation import generate
-from inhand_lab.presence_training import learn_presence
+from inhand_lab.presence_training import Look, learn_presence, look_around, presence_of
 from inhand_lab.training import train
 from inhand_tracker.model_file import save_model
 from inhand_tracker.presence import usual_presence
@@ -14,11 +14,11 @@ from inhand_tracker.recogniser_file import load_recogniser
 
 from inhand.__main__ import main
 
-pytestmark = [pytest.mark.long, pytest.mark.timeout(900)]
-
 ACTIONS = ("sweepFloor", "drinkFromMug")
 
 
+@pytest.mark.long
+@pytest.mark.timeout(900)
 def test_objects_are_seen_better_where_they_are(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -29,6 +29,8 @@ def test_objects_are_seen_better_where_they_are(
     presence = learn_presence(people, people.entries, ACTIONS, models)
     assert (presence.present > presence.absent + 10.0).all()
     assert not np.allclose(presence.absent, usual_presence(2).absent)
+    again = presence_of(look_around(people, people.entries, ACTIONS, models), ACTIONS)
+    np.testing.assert_array_equal(again.present, presence.present)
     blind = replace(people, entries=())
     untold = learn_presence(blind, (), ACTIONS, models)
     np.testing.assert_allclose(untold.present, usual_presence(2).present)
@@ -43,3 +45,21 @@ def test_objects_are_seen_better_where_they_are(
     capsys.readouterr()
     assert main([*command, str(files[0])]) == 2
     assert "--models has none of 'drinkFromMug'" in capsys.readouterr().err
+
+
+def test_looks_of_one_action_fewer_tell_the_same_of_the_others() -> None:
+    random = np.random.default_rng(4)
+    actions = ("sweep", "drink", "call")
+    looks = [
+        Look(done, {seen: float(random.normal(20.0 * (seen == done), 5.0)) for seen in actions})
+        for done in actions
+        for _ in range(6)
+    ]
+    looks.append(Look("drink", {}))
+    of_all, of_two = presence_of(looks, actions), presence_of(looks, actions[:2])
+    np.testing.assert_array_equal(of_all.present[:2], of_two.present)
+    np.testing.assert_array_equal(of_all.spread[:2], of_two.spread)
+    kept = presence_of([look for look in looks if look.action != "call"], actions[:2])
+    np.testing.assert_array_equal(kept.present, of_two.present)
+    assert (np.abs(kept.absent - of_two.absent) > 1e-6).all()
+    assert (kept.present > kept.absent + 8.0).all()

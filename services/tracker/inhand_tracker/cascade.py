@@ -18,7 +18,7 @@ from inhand_tracker.camera import Intrinsics
 from inhand_tracker.estimate import LOST, Estimate
 from inhand_tracker.image import Image
 from inhand_tracker.presence import Looks
-from inhand_tracker.recogniser import MovementRecogniser, Recogniser
+from inhand_tracker.recogniser import LearnedCascade, MovementRecogniser
 from inhand_tracker.recognition import Recognition, boxes_around, known_action
 from inhand_tracker.trackers import ObjectTracker
 
@@ -45,7 +45,7 @@ class Cascade:
 
     def __init__(
         self,
-        recogniser: Recogniser,
+        recogniser: LearnedCascade,
         trackers: Sequence[ObjectTracker],
         *,
         left_handed: bool = False,

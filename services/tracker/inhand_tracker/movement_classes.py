@@ -21,7 +21,7 @@ CAUTION = 1.0
 """What speaks for none in every frame: a false object is worse than one that is found later."""
 STRANGENESS = 8.0
 """How much a movement at e times the limit speaks against every action."""
-DOUBT, SEEN_DOUBT = 20.0, 5.0
+DOUBT, SEEN_DOUBT = 20.0, 10.0
 """How much a movement at e times an action's reach speaks against that action, without an image,
 and with one, which tells more."""
 UNSEEN_CAUTION = 2.0

@@ -3,7 +3,8 @@
 A tracker looks for its object whether it is there or not, and always finds something that resembles
 it. How well is different for a broom and for glasses: so the support where it was found rightly is
 compared with that in images of other things in use, in each by a normal distribution of one
-variance (linear discriminant analysis).
+variance (linear discriminant analysis). Only things that were taught are among those images: of
+those that nobody taught, some look as the object does.
 """
 
 from collections.abc import Mapping
@@ -16,6 +17,9 @@ Array = NDArray[np.float64]
 
 CERTAIN = 6.0
 """How much the looks of the last moments can say at the most, for or against."""
+ALIKE = 1.0 / 6.0
+"""Of things that nobody taught, the share taken to look as the object does: so an image can say no
+more for an object than log(1 / ALIKE), whatever it says against."""
 LOOKS_S = 0.7
 """Looks of so long ago count for a third as much: one frame errs as the next does."""
 FORGOTTEN_S = 4.0
@@ -34,7 +38,8 @@ class Presence:
         """Log evidence that an object is there which has so much support."""
         apart = (self.present[number] - self.absent[number]) / self.spread[number] ** 2
         middle = 0.5 * (self.present[number] + self.absent[number])
-        return float(np.clip(apart * (support - middle), -CERTAIN, CERTAIN))
+        of_taught = float(np.clip(apart * (support - middle), -CERTAIN, CERTAIN))
+        return of_taught - float(np.log1p(ALIKE * np.expm1(of_taught)))
 
 
 class Looks:

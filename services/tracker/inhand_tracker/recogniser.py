@@ -1,6 +1,7 @@
 """A learned recogniser of actions, and what it makes of one person's movement."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,26 @@ class Recogniser:
     movements: MovementClasses
     temper: float
     presence: Presence
+
+
+class LearnedCascade(Protocol):
+    """What `cascade` needs of a recogniser: all but the support vector machine."""
+
+    @property
+    def body_poses(self) -> Array:
+        """(M, 60), of some of the people learned from."""
+
+    @property
+    def movements(self) -> MovementClasses:
+        """What the last seconds say."""
+
+    @property
+    def temper(self) -> float:
+        """How much of each frame's evidence is new."""
+
+    @property
+    def presence(self) -> Presence:
+        """What images say of the actions' objects."""
 
 
 class MovementRecogniser:
