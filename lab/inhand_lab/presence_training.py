@@ -3,7 +3,7 @@
 Every object is looked for in some frames of every recording, whichever is in use in it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,23 +57,24 @@ def look_around(
 
 def presence_of(looks: Sequence[Look], actions: Sequence[str]) -> Presence:
     """What looks say of the objects of ``actions``."""
-    present, absent = (
-        [
-            [
-                look.supports[action]
-                for look in looks
-                if action in look.supports and (look.action == action) == there
-            ]
-            for action in actions
-        ]
-        for there in (True, False)
-    )
     usual = usual_presence(len(actions))
-    spreads = [
-        _spread(np.array(there), np.array(not_there), usual.spread[number])
-        for number, (there, not_there) in enumerate(zip(present, absent, strict=True))
+    supports, spreads = usual.supports.copy(), usual.spread.copy()
+    for number, action in enumerate(actions):
+        found = {done: _supports(looks, action, done) for done in actions}
+        others = [support for done in actions if done != action for support in found[done]]
+        elsewhere = _mean(others, float(usual.supports[number, number - 1]))
+        for other, done in enumerate(actions):
+            expected = usual.supports[number, number] if done == action else elsewhere
+            supports[number, other] = _mean(found[done], expected)
+        spreads[number] = _spread(found, action, usual.spread[number])
+    return Presence(supports, spreads)
+
+
+def _supports(looks: Sequence[Look], action: str, done: str) -> list[float]:
+    """Those of an action's object where somebody does ``done``."""
+    return [
+        look.supports[action] for look in looks if look.action == done and action in look.supports
     ]
-    return Presence(_means(absent, usual.absent), _means(present, usual.present), np.array(spreads))
 
 
 def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict[int, float]]:
@@ -106,16 +107,20 @@ def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict
     return found
 
 
-def _means(samples: Sequence[Sequence[float]], usual: Array) -> Array:
-    totals = np.array([sum(some) for some in samples]) + PRIOR_COUNT * usual
-    return totals / (np.array([len(some) for some in samples]) + PRIOR_COUNT)
+def _mean(supports: Sequence[float], expected: float) -> float:
+    return (sum(supports) + PRIOR_COUNT * expected) / (len(supports) + PRIOR_COUNT)
 
 
-def _spread(present: Array, absent: Array, usual: float) -> float:
-    """Of both kinds alike, however many there are of each."""
+def _spread(found: Mapping[str, Sequence[float]], action: str, expected: float) -> float:
+    """That within images of one object, as much of the object's own as of all others'."""
+    squares = {
+        done: np.square(np.array(some) - np.mean(some)) for done, some in found.items() if some
+    }
+    own = squares.pop(action, np.empty(0))
+    others = np.concatenate([np.empty(0), *squares.values()])
     variances = [
-        (np.square(some - some.mean()).sum() + PRIOR_COUNT * usual**2) / (len(some) + PRIOR_COUNT)
-        for some in (present, absent)
+        (some.sum() + PRIOR_COUNT * expected**2) / (len(some) + PRIOR_COUNT)
+        for some in (own, others)
         if len(some)
     ]
-    return float(max(np.sqrt(np.mean(variances or [usual**2])), LEAST_SPREAD))
+    return float(max(np.sqrt(np.mean(variances or [expected**2])), LEAST_SPREAD))

@@ -1,25 +1,32 @@
 """What a look at an image says of whether an object is there."""
 
 import numpy as np
-from inhand_tracker.presence import ALIKE, CERTAIN, Looks, Presence
+import pytest
+from inhand_tracker.presence import CERTAIN, Looks, Presence, usual_presence
 
-PRESENCE = Presence(np.array([0.0, 0.0]), np.array([20.0, 10.0]), np.array([5.0, 5.0]))
+PRESENCE = Presence(np.array([[20.0, 0.0], [0.0, 10.0]]), np.array([5.0, 5.0]))
 FRAME_NS = 33_333_333
+TOLD = np.log(2.0 / (1.0 + np.exp(-0.8)))
+"""At 7, N(10, 5²) is exp(0.8) times N(0, 5²): (7² - 3²) / (2 · 25) = 0.8."""
 
 
-TOLD = 0.8 - np.log(1.0 + ALIKE * (np.exp(0.8) - 1.0))
+def test_a_look_says_how_much_likelier_the_object_is_than_things_in_general() -> None:
+    assert PRESENCE.evidence(1, 7.0) == pytest.approx(TOLD)
+    assert PRESENCE.evidence(0, 10.0) == pytest.approx(0.0)
 
 
-def test_a_look_says_what_the_ratio_of_both_distributions_is_where_some_things_look_alike() -> None:
-    # Of N(10, 5²) over N(0, 5²) at 7: (7² - 3²) / (2 · 25) = 0.8.
-    assert abs(PRESENCE.evidence(1, 7.0) - TOLD) < 1e-12
-    assert PRESENCE.evidence(0, 10.0) == 0.0
+def test_a_look_says_the_more_for_an_object_the_fewer_of_the_things_taught_resemble_it() -> None:
+    assert PRESENCE.evidence(0, 100.0) == pytest.approx(np.log(2.0))
+    many = usual_presence(15)
+    assert many.evidence(3, 60.0) == pytest.approx(np.log(15.0), rel=0.01)
+    supports = many.supports.copy()
+    supports[3, 4:9] = supports[3, 3]
+    alike = Presence(supports, many.spread)
+    assert alike.evidence(3, 60.0) == pytest.approx(np.log(15.0 / 6.0), rel=0.01)
 
 
 def test_a_look_can_say_more_against_an_object_than_for_it() -> None:
-    most, least = PRESENCE.evidence(0, 100.0), PRESENCE.evidence(0, -100.0)
-    assert 0.95 * np.log(1.0 / ALIKE) < most < np.log(1.0 / ALIKE)
-    assert -CERTAIN <= least < -0.95 * CERTAIN
+    assert PRESENCE.evidence(0, -100.0) == -CERTAIN
 
 
 def test_what_nobody_looked_for_is_told_neither_way() -> None:

@@ -1,10 +1,10 @@
 """Whether an object is there at all: what an image's support for it says, as learned.
 
 A tracker looks for its object whether it is there or not, and always finds something that resembles
-it. How well is different for a broom and for glasses: so the support where it was found rightly is
-compared with that in images of other things in use, in each by a normal distribution of one
-variance (linear discriminant analysis). Only things that were taught are among those images: of
-those that nobody taught, some look as the object does.
+it. How well is different for a broom and for glasses, and for a broom where there is a golf club:
+so support is compared with that in images of each thing that was taught, by normal distributions of
+one variance (linear discriminant analysis). What nobody taught is as likely to resemble the object
+as each of the things that were: as the object itself does, too.
 """
 
 from collections.abc import Mapping
@@ -16,10 +16,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 CERTAIN = 6.0
-"""How much the looks of the last moments can say at the most, for or against."""
-ALIKE = 1.0 / 6.0
-"""Of things that nobody taught, the share taken to look as the object does: so an image can say no
-more for an object than log(1 / ALIKE), whatever it says against."""
+"""How much the looks of the last moments can say against an object at the most."""
 LOOKS_S = 0.7
 """Looks of so long ago count for a third as much: one frame errs as the next does."""
 FORGOTTEN_S = 4.0
@@ -28,18 +25,23 @@ FORGOTTEN_S = 4.0
 
 @dataclass(frozen=True)
 class Presence:
-    """The mean support (K,) of objects that are ``absent`` and ``present``, and its ``spread``."""
+    """The mean ``supports`` (K, K) of each object in images of each one, of itself on the diagonal,
+    and their ``spread`` (K,)."""
 
-    absent: Array
-    present: Array
+    supports: Array
     spread: Array
 
+    @property
+    def present(self) -> Array:
+        """The mean support (K,) of objects that are there."""
+        return np.diagonal(self.supports)
+
     def evidence(self, number: int, support: float) -> float:
-        """Log evidence that an object is there which has so much support."""
-        apart = (self.present[number] - self.absent[number]) / self.spread[number] ** 2
-        middle = 0.5 * (self.present[number] + self.absent[number])
-        of_taught = float(np.clip(apart * (support - middle), -CERTAIN, CERTAIN))
-        return of_taught - float(np.log1p(ALIKE * np.expm1(of_taught)))
+        """Log evidence that an object is there which has so much support: at the most log K."""
+        logs = -0.5 * np.square((support - self.supports[number]) / self.spread[number])
+        logs -= logs.max()
+        usual = np.log(np.exp(logs).mean())
+        return float(np.maximum(logs[number] - usual, -CERTAIN))
 
 
 class Looks:
@@ -67,7 +69,7 @@ class Looks:
 
     def evidence(self, time_ns: int) -> Array:
         """Log evidence (K + 1,) for each object, and, last, for none; 0 where nobody looked."""
-        evidence = np.zeros(len(self._presence.absent) + 1)
+        evidence = np.zeros(len(self._presence.spread) + 1)
         for number, (mean, _, seen_ns) in self._supports.items():
             age = max(time_ns - seen_ns, 0) / 1e9
             evidence[number] = np.exp(-age / FORGOTTEN_S) * self._presence.evidence(number, mean)
@@ -76,5 +78,4 @@ class Looks:
 
 def usual_presence(objects: int) -> Presence:
     """That of most objects, where none was learned (simulated people of seed 71)."""
-    ones = np.ones(objects)
-    return Presence(6.0 * ones, 24.0 * ones, 8.0 * ones)
+    return Presence(np.where(np.eye(objects) > 0.0, 24.0, 6.0), np.full(objects, 8.0))

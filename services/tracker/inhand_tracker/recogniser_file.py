@@ -19,7 +19,7 @@ from inhand_tracker.presence import Presence
 from inhand_tracker.recogniser import Recogniser
 
 FORMAT = "inhand-recogniser"
-VERSION = 2
+VERSION = 3
 MEND = "make one with `inhand train --recogniser`"
 
 
