@@ -37,8 +37,8 @@ BEGIN, END = 75, 87  # the mug is being drunk from
 RECOVERED_M = 0.04
 CHI_SQUARE_90 = 10.645
 """Of six degrees of freedom."""
-ALLOWED = dict.fromkeys(ALL, 0) | {"gd-random": 2}
-"""Frames to recover; random parts scatter by themselves."""
+ALLOWED = dict.fromkeys(ALL, 0) | {"gd-random": 2, "gd-stable": 1}
+"""Frames to recover; random parts, and stable ones far from the object, scatter by themselves."""
 
 Joints = np.ndarray
 Failure = Callable[[Joints], Joints]
