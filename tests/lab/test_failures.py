@@ -37,8 +37,8 @@ BEGIN, END = 75, 87  # the mug is being drunk from
 RECOVERED_M = 0.04
 CHI_SQUARE_90 = 10.645
 """Of six degrees of freedom."""
-ALLOWED = dict.fromkeys(ALL, 0) | {"gd-random": 2, "gd-stable": 1}
-"""Frames to recover; random parts, and stable ones far from the object, scatter by themselves."""
+ALLOWED = dict.fromkeys(ALL, 0) | {"gd-random": 2}
+"""Frames to recover; random parts scatter by themselves."""
 
 Joints = np.ndarray
 Failure = Callable[[Joints], Joints]
@@ -186,7 +186,9 @@ def test_random_parts_suffer_less_from_a_flipped_wrist_than_the_hand() -> None:
 @pytest.mark.parametrize("failure", [with_flipped_wrist, without_the_arm, collapsed, scattered])
 def test_the_object_is_back_with_the_first_right_skeleton(failure: Failure, method: str) -> None:
     frames = failing(method, failure).frames_to_recover(usual(method), END)
-    assert frames <= ALLOWED[method]
+    # Scattered joints make the person seem 1 % taller; two learned poses are nearly as near here.
+    tied = method == "gd-stable" and failure is scattered
+    assert frames <= ALLOWED[method] + tied
 
 
 @pytest.mark.parametrize("failure", [collapsed, scattered])
