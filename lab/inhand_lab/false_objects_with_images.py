@@ -9,22 +9,17 @@ from inhand_tracker.cascade import Cascade
 from inhand_tracker.model_file import Model
 from inhand_tracker.movement_classes import MovementClasses
 from inhand_tracker.presence import Presence
-from inhand_tracker.trackers import (
-    DEFAULT_METHOD,
-    ObjectTracker,
-    needs_of,
-    new_tracker,
-    usual_terms,
-)
+from inhand_tracker.trackers import DEFAULT_METHOD, ObjectTracker, new_tracker
 from numpy.typing import NDArray
 
 from inhand_lab.dataset import Dataset, Entry, has_images, load_frames
 from inhand_lab.false_objects import IDLE_KINDS, IDLE_SEED, FalseObjects
 from inhand_lab.idle_people import simulate_idle
 from inhand_lab.observations import Observation, observe, observe_simulation
-from inhand_lab.presence_training import Look, look_around, presence_of
+from inhand_lab.presence_training import NEEDS, Look, look_around, presence_of
 from inhand_lab.recogniser_training import learn_movements
-from inhand_lab.recognition_evaluation import labelled_entries, learn_models
+from inhand_lab.recognition_evaluation import answers_together, labelled_entries, learn_models
+from inhand_lab.recognition_scores import UNKNOWN
 from inhand_lab.watched_people import Watched, watch
 from inhand_lab.workers import in_processes
 
@@ -32,7 +27,6 @@ Array = NDArray[np.float64]
 
 IDLE_PEOPLE = 1
 """Of each kind, for each unseen participant other ones."""
-NEEDS = needs_of(DEFAULT_METHOD, usual_terms(DEFAULT_METHOD))
 
 
 @dataclass(frozen=True)
@@ -88,13 +82,13 @@ def _leave_person_out(
     found = list(_idle(cascade, range(number * IDLE_PEOPLE, (number + 1) * IDLE_PEOPLE)))
     if others is not None:
         for entry in others.entries[number :: len(unseen)]:
-            share = _known_share(cascade[entry.handedness], _observe(others, entry))
+            share = _known_on(cascade[entry.handedness], others, entry)
             found.append(_Found("others", entry.interaction, share))
     for action in dict.fromkeys(entry.interaction for entry in entries):
         asked = [e for e in entries if (e.interaction, e.participant) == (action, unseen[number])]
         cascade = lesson.cascades(without=action) if asked else {}
         for entry in asked:
-            share = _known_share(cascade[entry.handedness], _observe(dataset, entry))
+            share = _known_on(cascade[entry.handedness], dataset, entry)
             found.append(_Found("never_trained", action, share))
     return found
 
@@ -163,20 +157,19 @@ def _idle(cascades: Mapping[str, Cascade], numbers: Iterable[int]) -> Iterator[_
         for kind in IDLE_KINDS:
             simulation = simulate_idle(kind, number, IDLE_SEED)
             cascade = cascades[simulation.person.handedness]
-            share = _known_share(cascade, observe_simulation(simulation, NEEDS))
+            seen = observe_simulation(simulation, NEEDS)
+            share = _known_share(cascade, seen, simulation.frames)
             yield _Found("idle", kind, share)
 
 
-def _observe(dataset: Dataset, entry: Entry) -> Iterator[Observation]:
+def _known_on(cascade: Cascade, dataset: Dataset, entry: Entry) -> float:
     path = dataset.path(entry)
-    return observe(path, load_frames(path, entry.object), NEEDS)
+    frames = load_frames(path, entry.object)
+    return _known_share(cascade, observe(path, frames, NEEDS), len(frames))
 
 
-def _known_share(cascade: Cascade, observations: Iterable[Observation]) -> float:
+def _known_share(cascade: Cascade, observations: Iterable[Observation], frames: int) -> float:
+    """Of so many frames the share in which an action is known."""
     cascade.restart()
-    known = []
-    for seen in observations:
-        if seen.somebody_else:
-            cascade.restart()
-        known.append(cascade.step(seen.joints, seen.time_ns, seen.image).known is not None)
-    return float(np.mean(known))
+    (answers,) = answers_together([cascade], observations, frames)
+    return float((answers.known != UNKNOWN).mean())

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from inhand_tracker.model_file import Model
-from inhand_tracker.presence import Presence, usual_presence
+from inhand_tracker.presence import USUAL_SPREAD, USUALLY_ABSENT, USUALLY_PRESENT, Presence
 from inhand_tracker.trackers import DEFAULT_METHOD, needs_of, new_tracker, usual_terms
 from numpy.typing import NDArray
 
@@ -17,6 +17,8 @@ from inhand_lab.observations import observe
 
 Array = NDArray[np.float64]
 
+NEEDS = needs_of(DEFAULT_METHOD, usual_terms(DEFAULT_METHOD))
+"""What of a frame the trackers of objects look at."""
 PLACES = (0.02, 0.35, 0.7)
 """Where in a recording objects are looked for: at first most lie untouched."""
 STEPS = 2
@@ -57,17 +59,15 @@ def look_around(
 
 def presence_of(looks: Sequence[Look], actions: Sequence[str]) -> Presence:
     """What looks say of the objects of ``actions``."""
-    usual = usual_presence(len(actions))
-    supports, spreads = usual.supports.copy(), usual.spread.copy()
-    for number, action in enumerate(actions):
+    supports, spreads = [], []
+    for action in actions:
         found = {done: _supports(looks, action, done) for done in actions}
         others = [support for done in actions if done != action for support in found[done]]
-        elsewhere = _mean(others, float(usual.supports[number, number - 1]))
-        for other, done in enumerate(actions):
-            expected = usual.supports[number, number] if done == action else elsewhere
-            supports[number, other] = _mean(found[done], expected)
-        spreads[number] = _spread(found, action, usual.spread[number])
-    return Presence(supports, spreads)
+        expected = dict.fromkeys(actions, _mean(others, USUALLY_ABSENT))
+        expected[action] = USUALLY_PRESENT
+        supports.append([_mean(found[done], expected[done]) for done in actions])
+        spreads.append(_spread(found, action))
+    return Presence(np.array(supports), np.array(spreads))
 
 
 def _supports(looks: Sequence[Look], action: str, done: str) -> list[float]:
@@ -82,9 +82,8 @@ def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict
     path = dataset.path(entry)
     frames = load_frames(path, entry.object)
     firsts = [int(place * (len(frames) - STEPS)) for place in PLACES]
-    needs = needs_of(DEFAULT_METHOD, usual_terms(DEFAULT_METHOD))
     looked_at = [frames[first + step] for first in firsts for step in range(STEPS)]
-    images = {seen.time_ns: seen.image for seen in observe(path, looked_at, needs)}
+    images = {seen.time_ns: seen.image for seen in observe(path, looked_at, NEEDS)}
     trackers = [
         new_tracker(model, DEFAULT_METHOD, left_handed=entry.handedness == "left")
         for model in models
@@ -111,7 +110,7 @@ def _mean(supports: Sequence[float], expected: float) -> float:
     return (sum(supports) + PRIOR_COUNT * expected) / (len(supports) + PRIOR_COUNT)
 
 
-def _spread(found: Mapping[str, Sequence[float]], action: str, expected: float) -> float:
+def _spread(found: Mapping[str, Sequence[float]], action: str) -> float:
     """That within images of one object, as much of the object's own as of all others'."""
     squares = {
         done: np.square(np.array(some) - np.mean(some)) for done, some in found.items() if some
@@ -119,8 +118,8 @@ def _spread(found: Mapping[str, Sequence[float]], action: str, expected: float) 
     own = squares.pop(action, np.empty(0))
     others = np.concatenate([np.empty(0), *squares.values()])
     variances = [
-        (some.sum() + PRIOR_COUNT * expected**2) / (len(some) + PRIOR_COUNT)
+        (some.sum() + PRIOR_COUNT * USUAL_SPREAD**2) / (len(some) + PRIOR_COUNT)
         for some in (own, others)
         if len(some)
     ]
-    return float(max(np.sqrt(np.mean(variances or [expected**2])), LEAST_SPREAD))
+    return float(max(np.sqrt(np.mean(variances or [USUAL_SPREAD**2])), LEAST_SPREAD))

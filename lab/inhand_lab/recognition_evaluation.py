@@ -175,9 +175,9 @@ def answers_together(
     trackers: Sequence[AnyCascade],
     observations: Iterable[Observation],
     frames: int,
-    camera: Intrinsics,
+    camera: Intrinsics | None = None,
 ) -> list[Answers]:
-    """What several methods answer to the same frames."""
+    """What several methods answer to the same frames; ``camera`` is for boxes without an image."""
     answers = [Answers.empty(frames) for _ in trackers]
     for index, seen in enumerate(observations):
         for tracker, answer in zip(trackers, answers, strict=True):

@@ -102,8 +102,9 @@ def mistake(person: int, joints: Floats) -> Floats:
     """What a tracker takes joints (T, 20, 3) wrongly by, in metres: the same whenever this person,
     told by a number, is in the same pose, and nearly the same in a similar one.
 
-    A Gaussian process over the place of each joint as seen from the hips, made of random waves
-    (Rahimi & Recht, *Random Features for Large-Scale Kernel Machines*, 2007).
+    A Gaussian process over the place of each joint as seen from the hips, to which the arms' is
+    added for the trunk, made of random waves (Rahimi & Recht, *Random Features for Large-Scale
+    Kernel Machines*, 2007).
     """
     random = np.random.default_rng([0x71AC, person])
     place = joints - joints[:, :1]

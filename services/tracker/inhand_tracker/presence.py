@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 CERTAIN = 6.0
 """How much the looks of the last moments can say against an object at the most."""
+USUALLY_PRESENT, USUALLY_ABSENT, USUAL_SPREAD = 24.0, 6.0, 8.0
+"""Support of most objects (simulated people of seed 71)."""
 LOOKS_S = 0.7
 """Looks of so long ago count for a third as much: one frame errs as the next does."""
 FORGOTTEN_S = 4.0
@@ -77,5 +79,8 @@ class Looks:
 
 
 def usual_presence(objects: int) -> Presence:
-    """That of most objects, where none was learned (simulated people of seed 71)."""
-    return Presence(np.where(np.eye(objects) > 0.0, 24.0, 6.0), np.full(objects, 8.0))
+    """That of most objects, where none was learned."""
+    there = np.eye(objects, dtype=bool)
+    return Presence(
+        np.where(there, USUALLY_PRESENT, USUALLY_ABSENT), np.full(objects, USUAL_SPREAD)
+    )
