@@ -8,7 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from inhand_tracker.model_file import Model
-from inhand_tracker.presence import USUAL_SPREAD, USUALLY_ABSENT, USUALLY_PRESENT, Presence
+from inhand_tracker.presence import (
+    USUAL_INTERIOR_SPREAD,
+    USUAL_SPREAD,
+    USUALLY_ABSENT,
+    USUALLY_PRESENT,
+    Presence,
+    Support,
+)
 from inhand_tracker.trackers import DEFAULT_METHOD, needs_of, new_tracker, usual_terms
 from numpy.typing import NDArray
 
@@ -36,7 +43,7 @@ class Look:
     """
 
     action: str
-    supports: dict[str, float]
+    supports: dict[str, Support]
 
 
 def learn_presence(
@@ -59,25 +66,28 @@ def look_around(
 
 def presence_of(looks: Sequence[Look], actions: Sequence[str]) -> Presence:
     """What looks say of the objects of ``actions``."""
-    supports, spreads = [], []
+    supports, spreads, interiors = [], [], []
     for action in actions:
         found = {done: _supports(looks, action, done) for done in actions}
-        others = [support for done in actions if done != action for support in found[done]]
+        told = {done: [one.log_likelihood for one in some] for done, some in found.items()}
+        others = [support for done in actions if done != action for support in told[done]]
         expected = dict.fromkeys(actions, _mean(others, USUALLY_ABSENT))
         expected[action] = USUALLY_PRESENT
-        supports.append([_mean(found[done], expected[done]) for done in actions])
-        spreads.append(_spread(found, action))
-    return Presence(np.array(supports), np.array(spreads))
+        supports.append([_mean(told[done], expected[done]) for done in actions])
+        spreads.append(_spread(told, action))
+        interior = _squares([one.interior for one in found[action]])
+        interiors.append(np.sqrt(_variance(interior, USUAL_INTERIOR_SPREAD)))
+    return Presence(np.array(supports), np.array(spreads), np.array(interiors))
 
 
-def _supports(looks: Sequence[Look], action: str, done: str) -> list[float]:
+def _supports(looks: Sequence[Look], action: str, done: str) -> list[Support]:
     """Those of an action's object where somebody does ``done``."""
     return [
         look.supports[action] for look in looks if look.action == done and action in look.supports
     ]
 
 
-def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict[int, float]]:
+def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict[int, Support]]:
     """The support of each object that says anything, at each place in a recording."""
     path = dataset.path(entry)
     frames = load_frames(path, entry.object)
@@ -89,7 +99,7 @@ def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict
         for model in models
     ]
     reader = trackers[0].new_reader()
-    found: list[dict[int, float]] = []
+    found: list[dict[int, Support]] = []
     for index, seen in enumerate(observe(path, frames)):
         body = None if seen.joints is None else reader.read(seen.joints)
         if body is None:
@@ -112,14 +122,17 @@ def _mean(supports: Sequence[float], expected: float) -> float:
 
 def _spread(found: Mapping[str, Sequence[float]], action: str) -> float:
     """That within images of one object, as much of the object's own as of all others'."""
-    squares = {
-        done: np.square(np.array(some) - np.mean(some)) for done, some in found.items() if some
-    }
-    own = squares.pop(action, np.empty(0))
+    squares = {done: _squares(some) for done, some in found.items()}
+    own = squares.pop(action)
     others = np.concatenate([np.empty(0), *squares.values()])
-    variances = [
-        (some.sum() + PRIOR_COUNT * USUAL_SPREAD**2) / (len(some) + PRIOR_COUNT)
-        for some in (own, others)
-        if len(some)
-    ]
+    variances = [_variance(some, USUAL_SPREAD) for some in (own, others) if len(some)]
     return float(max(np.sqrt(np.mean(variances or [USUAL_SPREAD**2])), LEAST_SPREAD))
+
+
+def _squares(some: Sequence[float]) -> Array:
+    """Of the deviations from their mean."""
+    return np.square(np.array(some) - sum(some) / max(len(some), 1))
+
+
+def _variance(squares: Array, usual_spread: float) -> float:
+    return float((squares.sum() + PRIOR_COUNT * usual_spread**2) / (len(squares) + PRIOR_COUNT))

@@ -9,7 +9,7 @@ from inhand_lab.generation import generate
 from inhand_lab.presence_training import Look, learn_presence, look_around, presence_of
 from inhand_lab.training import train
 from inhand_tracker.model_file import save_model
-from inhand_tracker.presence import usual_presence
+from inhand_tracker.presence import USUAL_INTERIOR_SPREAD, Support, usual_presence
 from inhand_tracker.recogniser_file import load_recogniser
 
 from inhand.__main__ import main
@@ -51,7 +51,13 @@ def test_looks_of_one_action_fewer_tell_the_same_of_the_others() -> None:
     random = np.random.default_rng(4)
     actions = ("sweep", "drink", "call")
     looks = [
-        Look(done, {seen: float(random.normal(20.0 * (seen == done), 5.0)) for seen in actions})
+        Look(
+            done,
+            {
+                seen: Support(*random.normal([20.0 * (seen == done), 1.0, 0.0], [5.0, 0.5, 0.1]))
+                for seen in actions
+            },
+        )
         for done in actions
         for _ in range(6)
     ]
@@ -61,13 +67,17 @@ def test_looks_of_one_action_fewer_tell_the_same_of_the_others() -> None:
     kept = presence_of([look for look in looks if look.action != "call"], actions[:2])
     np.testing.assert_array_equal(kept.supports, of_two.supports)
     np.testing.assert_array_equal(kept.spread, of_two.spread)
+    np.testing.assert_array_equal(kept.interior_spread, of_two.interior_spread)
 
 
 def test_the_object_that_resembles_another_is_told_from_those_that_do_not() -> None:
     actions = ("hammer", "brush", "call")
     resemblance = {("hammer", "brush"): 18.0, ("brush", "hammer"): 16.0}
     looks = [
-        Look(done, {seen: 25.0 * (seen == done) + resemblance.get((seen, done), 0.0)})
+        Look(
+            done,
+            {seen: Support(25.0 * (seen == done) + resemblance.get((seen, done), 0.0), 0.0)},
+        )
         for done in actions
         for seen in actions
         for _ in range(20)
@@ -75,3 +85,12 @@ def test_the_object_that_resembles_another_is_told_from_those_that_do_not() -> N
     supports = presence_of(looks, actions).supports
     expected = [[25.0, 18.0, 0.0], [16.0, 25.0, 0.0], [0.0, 0.0, 25.0]]
     np.testing.assert_allclose(supports, expected, atol=3.5)
+
+
+def test_what_colours_say_of_an_object_spreads_as_it_did_in_its_own_images() -> None:
+    looks = [
+        Look("drink", {"drink": Support(20.0, 5.0 + off), "call": Support(0.0, 50.0 * off)})
+        for off in (-3.0, 3.0) * 100
+    ]
+    spread = presence_of(looks, ("drink", "call")).interior_spread
+    np.testing.assert_allclose(spread, [3.0, USUAL_INTERIOR_SPREAD], rtol=0.05)

@@ -9,7 +9,7 @@ from inhand_tracker.camera import Intrinsics
 from inhand_tracker.cascade import TURN, Cascade
 from inhand_tracker.estimate import LOST, Estimate
 from inhand_tracker.image import Image
-from inhand_tracker.presence import usual_presence
+from inhand_tracker.presence import Support, usual_presence
 from people import FRAME_NS, STANDING, wave_model
 
 CAMERA = Intrinsics(500.0, 500.0, 320.0, 240.0, 640, 480)
@@ -22,7 +22,7 @@ class AtPixel:
     def __init__(self, left: float) -> None:
         self.left = left
         self.confidence = 1.0
-        self.support: float | None = None
+        self.support: Support | None = None
         self.restart()
 
     def restart(self) -> None:
@@ -176,7 +176,7 @@ def test_the_supports_of_the_objects_looked_for_reach_the_recogniser(script, tol
     script += [[0.9, 0.0, 0.0, 0.0]] * 2
     cascade, trackers = new_cascade()
     for tracker in trackers:
-        tracker.support = 100.0
+        tracker.support = Support(100.0, 0.0)
     look(cascade, 1)
     assert told[0][0] > 0.0
     assert told[0][-1] == 0.0
@@ -187,7 +187,7 @@ def test_a_second_without_images_is_told_as_no_image(script, told) -> None:
     script += [[0.9, 0.0, 0.0, 0.0]] * 40
     cascade, trackers = new_cascade()
     for tracker in trackers:
-        tracker.support = 100.0
+        tracker.support = Support(100.0, 0.0)
     look(cascade, 1)
     for tracker in trackers:
         tracker.support = None

@@ -17,7 +17,7 @@ from inhand_tracker.body_reader import BodyReader
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.estimate import LOST, Estimate
 from inhand_tracker.image import Image
-from inhand_tracker.presence import Looks
+from inhand_tracker.presence import Looks, Support
 from inhand_tracker.recogniser import LearnedCascade, MovementRecogniser
 from inhand_tracker.recognition import Recognition, boxes_around, known_action
 from inhand_tracker.trackers import ObjectTracker
@@ -138,7 +138,7 @@ class Cascade:
         others = [action for action in range(len(self._trackers)) if action not in followed]
         return [others[turn % len(others)]] if others else []
 
-    def _seen(self, supports: Mapping[int, float | None], time_ns: int) -> Array | None:
+    def _seen(self, supports: Mapping[int, Support | None], time_ns: int) -> Array | None:
         """What images say, (K + 1,), with the last one's supports; None where none said anything
         for a second."""
         told = {action: support for action, support in supports.items() if support is not None}

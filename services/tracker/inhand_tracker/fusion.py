@@ -22,6 +22,7 @@ from inhand_tracker.fusion_search import DEFAULT_SEARCH, ImageSearch, Search
 from inhand_tracker.image import Image
 from inhand_tracker.model_file import Model, ModelError
 from inhand_tracker.pose_gaussian import PoseGaussian, PoseMixture, lever
+from inhand_tracker.presence import Support
 from inhand_tracker.sight import SIGHT_TERMS, Sight, SightTerm
 from inhand_tracker.viewpoints import VisiblePoints
 
@@ -85,11 +86,8 @@ class FusionTracker:
         return self._followed.step_body(body, time_ns, image)
 
     @property
-    def support(self) -> float | None:
-        """How many times likelier (log) the last image is with the object than without.
-
-        None where it says nothing.
-        """
+    def support(self) -> Support | None:
+        """What the last image says for the object; None where it says nothing."""
         return self._followed.support
 
     def remember(self, body: Body, time_ns: int) -> None:
@@ -138,7 +136,7 @@ class _Followed:
         self._before: Belief | None = None
         self._estimate = LOST
         self._time_ns = 0
-        self.support: float | None = None
+        self.support: Support | None = None
 
     def remember(self, body: Body, time_ns: int) -> None:
         self._window.add(body.joints, time_ns, body.height)

@@ -14,6 +14,7 @@ from inhand_tracker.bounding_sphere import BoundingSphere
 from inhand_tracker.camera import Intrinsics
 from inhand_tracker.image import Image
 from inhand_tracker.pose_gaussian import PoseGaussian, PoseMixture, lever, mixture
+from inhand_tracker.presence import Support
 from inhand_tracker.refine import Prior as RefinementPrior
 from inhand_tracker.sight import Sight, SightView
 from inhand_tracker.sight_frame import Region, prepare
@@ -64,7 +65,7 @@ class ImageSearch:
         self._search = search
         self._random = np.random.default_rng(seed)
         self._colours = sight.start()
-        self.support: float | None = None
+        self.support: Support | None = None
 
     def look(
         self, belief: PoseMixture, image: Image, joints: Array, sharpness: float
@@ -104,14 +105,22 @@ class ImageSearch:
         self.support = self._supported(modes, look, joints)
         return found.moments()
 
-    def _supported(self, modes: list[PoseGaussian], look: "_Look", joints: Array) -> float:
-        """How many times likelier (log) the frame is with the object, in its colours of training,
-        than without: what was learned since may be another thing's."""
+    def _supported(self, modes: list[PoseGaussian], look: "_Look", joints: Array) -> Support:
+        """By the colours of training: what was learned since may be another thing's."""
         trained = replace(self._colours, of_object=self._sight.start().of_object)
         view = self._sight.view(look.view.frame, trained, joints)
         orientations = np.array([mode.rotation for mode in modes])
         origins = self._sphere.origins(np.array([mode.centre for mode in modes]), orientations)
-        return float(self._sight.log_likelihood(origins, orientations, view).max())
+        seen = self._sight.log_likelihood(origins, orientations, view)
+        best = int(np.argmax(seen))
+        pose = origins[best : best + 1], orientations[best : best + 1]
+        interior, now = (
+            float(self._sight.log_likelihoods_by_term(*pose, by)["interior"][0])
+            for by in (view, look.view)
+        )
+        return Support(
+            float(seen[best]), interior, 0.0 if trained.of_object is None else now - interior
+        )
 
     def _open(self, guess: PoseGaussian, image: Image, region: Region, joints: Array) -> SightView:
         """A region of the image, and its surroundings' colours learned."""

@@ -5,10 +5,14 @@ it. How well is different for a broom and for glasses, and for a broom where the
 so support is compared with that in images of each thing that was taught, by normal distributions of
 one variance (linear discriminant analysis). What nobody taught is as likely to resemble the object
 as each of the things that were: as the object itself does, too.
+
+A thing of another colour betrays itself: a tracker that follows it learns its colours, and what
+they say of it is more than the colours of training do.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,31 +23,49 @@ CERTAIN = 6.0
 """How much the looks of the last moments can say against an object at the most."""
 USUALLY_PRESENT, USUALLY_ABSENT, USUAL_SPREAD = 24.0, 6.0, 8.0
 """Support of most objects (simulated people of seed 71)."""
+USUAL_INTERIOR_SPREAD = 0.8
+"""The same of its part that colours have all over an object (simulated people of seed 31)."""
 LOOKS_S = 0.7
 """Looks of so long ago count for a third as much: one frame errs as the next does."""
 FORGOTTEN_S = 4.0
 """What was seen so long ago says a third as much."""
 
 
+class Support(NamedTuple):
+    """What an image says for an object at the likeliest pose."""
+
+    log_likelihood: float
+    """How many times likelier (log) it is with the object, in its colours of training, than
+    without."""
+    interior: float
+    """What colours all over the object say of that."""
+    recoloured: float = 0.0
+    """How much more they say with the colours that were learned since."""
+
+
 @dataclass(frozen=True)
 class Presence:
     """The mean ``supports`` (K, K) of each object in images of each one, of itself on the diagonal,
-    and their ``spread`` (K,)."""
+    their ``spread`` (K,), and the spread of their part from colours all over an object that is
+    there, ``interior_spread`` (K,)."""
 
     supports: Array
     spread: Array
+    interior_spread: Array
 
     @property
     def present(self) -> Array:
         """The mean support (K,) of objects that are there."""
         return np.diagonal(self.supports)
 
-    def evidence(self, number: int, support: float) -> float:
-        """Log evidence that an object is there which has so much support: at the most log K."""
-        logs = -0.5 * np.square((support - self.supports[number]) / self.spread[number])
+    def evidence(self, number: int, support: Support) -> float:
+        """Log evidence that an object is there which has such support: at the most log K."""
+        apart = (support.log_likelihood - self.supports[number]) / self.spread[number]
+        logs = -0.5 * np.square(apart)
         logs -= logs.max()
         usual = np.log(np.exp(logs).mean())
-        return float(np.maximum(logs[number] - usual, -CERTAIN))
+        recoloured = max(support.recoloured, 0.0) / self.interior_spread[number]
+        return float(np.maximum(logs[number] - usual - 0.5 * recoloured**2, -CERTAIN))
 
 
 class Looks:
@@ -56,15 +78,15 @@ class Looks:
 
     def restart(self) -> None:
         """Another scene."""
-        self._supports: dict[int, tuple[float, float, int]] = {}
+        self._supports: dict[int, tuple[Array, float, int]] = {}
 
-    def add(self, time_ns: int, supports: Mapping[int, float]) -> None:
+    def add(self, time_ns: int, supports: Mapping[int, Support]) -> None:
         """Take the supports of those objects that were looked for in a frame."""
         for number, support in supports.items():
-            mean, count, before_ns = self._supports.get(number, (0.0, 0.0, time_ns))
+            mean, count, before_ns = self._supports.get(number, (np.zeros(3), 0.0, time_ns))
             kept = count * np.exp(-max(time_ns - before_ns, 0) / 1e9 / LOOKS_S)
             self._supports[number] = (
-                (kept * mean + support) / (kept + 1.0),
+                (kept * mean + np.array(support)) / (kept + 1.0),
                 kept + 1.0,
                 time_ns,
             )
@@ -74,7 +96,8 @@ class Looks:
         evidence = np.zeros(len(self._presence.spread) + 1)
         for number, (mean, _, seen_ns) in self._supports.items():
             age = max(time_ns - seen_ns, 0) / 1e9
-            evidence[number] = np.exp(-age / FORGOTTEN_S) * self._presence.evidence(number, mean)
+            told = self._presence.evidence(number, Support(*mean))
+            evidence[number] = np.exp(-age / FORGOTTEN_S) * told
         return evidence
 
 
@@ -82,5 +105,7 @@ def usual_presence(objects: int) -> Presence:
     """That of most objects, where none was learned."""
     there = np.eye(objects, dtype=bool)
     return Presence(
-        np.where(there, USUALLY_PRESENT, USUALLY_ABSENT), np.full(objects, USUAL_SPREAD)
+        np.where(there, USUALLY_PRESENT, USUALLY_ABSENT),
+        np.full(objects, USUAL_SPREAD),
+        np.full(objects, USUAL_INTERIOR_SPREAD),
     )

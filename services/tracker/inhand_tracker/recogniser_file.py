@@ -19,7 +19,7 @@ from inhand_tracker.presence import Presence
 from inhand_tracker.recogniser import Recogniser
 
 FORMAT = "inhand-recogniser"
-VERSION = 3
+VERSION = 4
 MEND = "make one with `inhand train --recogniser`"
 
 

@@ -17,6 +17,7 @@ from inhand_tracker.image import Image
 from inhand_tracker.likelihood import DEFAULT_TERMS, TERMS
 from inhand_tracker.methods import METHODS, PublishedMethod
 from inhand_tracker.model_file import Model
+from inhand_tracker.presence import Support
 from inhand_tracker.sight import SIGHT_TERMS
 from inhand_tracker.tracking import PARTICLES, Tracker
 
@@ -35,11 +36,8 @@ class ObjectTracker(Protocol):
     """Follows one object of one person through the frames of one camera."""
 
     @property
-    def support(self) -> float | None:
-        """How many times likelier (log) the last image is with the object than without.
-
-        None where it says nothing.
-        """
+    def support(self) -> Support | None:
+        """What the last image says for the object; None where it says nothing."""
 
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""

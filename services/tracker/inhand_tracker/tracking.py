@@ -25,6 +25,7 @@ from inhand_tracker.particles import (
     redraw,
     systematic_resample,
 )
+from inhand_tracker.presence import Support
 from inhand_tracker.viewpoints import VisiblePoints
 
 Array = NDArray[np.float64]
@@ -68,7 +69,7 @@ class Tracker:
         self._weights = np.full(self._count, 1.0 / self._count)
         self._estimate = LOST
         self._time_ns = 0
-        self.support: float | None = None
+        self.support: Support | None = None
 
     def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
         """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
