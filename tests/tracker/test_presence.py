@@ -2,13 +2,21 @@
 
 import numpy as np
 import pytest
-from inhand_tracker.presence import CERTAIN, Looks, Presence, Support, usual_presence
+from inhand_tracker.presence import (
+    CERTAIN,
+    RECOLOURED,
+    TRUSTED,
+    Looks,
+    Presence,
+    Support,
+    usual_presence,
+)
 
 PRESENCE = Presence(
     np.array([[20.0, 0.0], [0.0, 10.0]]), np.array([5.0, 5.0]), np.array([0.5, 2.0])
 )
 FRAME_NS = 33_333_333
-TOLD = np.log(2.0 / (1.0 + np.exp(-0.8)))
+TOLD = TRUSTED + np.log(2.0 / (1.0 + np.exp(-0.8)))
 """At 7, N(10, 5²) is exp(0.8) times N(0, 5²): (7² - 3²) / (2 · 25) = 0.8."""
 
 
@@ -18,17 +26,19 @@ def so_likely(log_likelihood: float) -> Support:
 
 def test_a_look_says_how_much_likelier_the_object_is_than_things_in_general() -> None:
     assert PRESENCE.evidence(1, so_likely(7.0)) == pytest.approx(TOLD)
-    assert PRESENCE.evidence(0, so_likely(10.0)) == pytest.approx(0.0)
+    assert PRESENCE.evidence(0, so_likely(10.0)) == pytest.approx(TRUSTED)
 
 
 def test_a_look_says_the_more_for_an_object_the_fewer_of_the_things_taught_resemble_it() -> None:
-    assert PRESENCE.evidence(0, so_likely(100.0)) == pytest.approx(np.log(2.0))
+    assert PRESENCE.evidence(0, so_likely(100.0)) == pytest.approx(TRUSTED + np.log(2.0))
     many = usual_presence(15)
-    assert many.evidence(3, so_likely(60.0)) == pytest.approx(np.log(15.0), rel=0.01)
+    assert many.evidence(3, so_likely(60.0)) == pytest.approx(TRUSTED + np.log(15.0), rel=0.01)
     supports = many.supports.copy()
     supports[3, 4:9] = supports[3, 3]
     alike = Presence(supports, many.spread, many.interior_spread)
-    assert alike.evidence(3, so_likely(60.0)) == pytest.approx(np.log(15.0 / 6.0), rel=0.01)
+    assert alike.evidence(3, so_likely(60.0)) == pytest.approx(
+        TRUSTED + np.log(15.0 / 6.0), rel=0.01
+    )
 
 
 def test_a_look_can_say_more_against_an_object_than_for_it() -> None:
@@ -37,12 +47,13 @@ def test_a_look_can_say_more_against_an_object_than_for_it() -> None:
 
 def test_colours_that_had_to_be_learned_anew_speak_against_an_object() -> None:
     own = PRESENCE.evidence(0, Support(20.0, 1.0))
-    assert PRESENCE.evidence(0, Support(20.0, 1.0, 1.0)) == pytest.approx(own - 2.0)
-    assert PRESENCE.evidence(0, Support(20.0, 1.0, -1.0)) == own
+    one_spread = 0.5 * RECOLOURED
+    assert PRESENCE.evidence(0, Support(20.0, 1.0, one_spread)) == pytest.approx(own - 0.5)
+    assert PRESENCE.evidence(0, Support(20.0, 1.0, -one_spread)) == own
     looks = Looks(PRESENCE)
-    for frame, recoloured in enumerate((0.0, 1.0) * 50):
+    for frame, recoloured in enumerate((0.0, 2.0 * one_spread) * 50):
         looks.add(frame * FRAME_NS, {0: Support(20.0, 1.0, recoloured)})
-    assert looks.evidence(99 * FRAME_NS)[0] == pytest.approx(own - 0.5, abs=0.1)
+    assert looks.evidence(99 * FRAME_NS)[0] == pytest.approx(own - 0.5, abs=0.05)
 
 
 def test_what_nobody_looked_for_is_told_neither_way() -> None:

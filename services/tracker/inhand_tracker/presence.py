@@ -23,9 +23,14 @@ CERTAIN = 6.0
 """How much the looks of the last moments can say against an object at the most."""
 USUALLY_PRESENT, USUALLY_ABSENT, USUAL_SPREAD = 24.0, 6.0, 8.0
 """Support of most objects (simulated people of seed 71)."""
-USUAL_INTERIOR_SPREAD = 0.8
+USUAL_INTERIOR_SPREAD = 1.0
 """The same of its part that colours have all over an object (simulated people of seed 31)."""
-LOOKS_S = 0.7
+RECOLOURED = 0.7
+"""By so much of that an object's own colours may be learned anew, as the same people's were."""
+TRUSTED = 0.5
+"""So much images say for an object beforehand: those of one that is there are seldom its best ones
+(the same people)."""
+LOOKS_S = 2.0
 """Looks of so long ago count for a third as much: one frame errs as the next does."""
 FORGOTTEN_S = 4.0
 """What was seen so long ago says a third as much."""
@@ -59,13 +64,15 @@ class Presence:
         return np.diagonal(self.supports)
 
     def evidence(self, number: int, support: Support) -> float:
-        """Log evidence that an object is there which has such support: at the most log K."""
+        """Log evidence that an object is there which has such support: at the most log K, and what
+        images are trusted."""
         apart = (support.log_likelihood - self.supports[number]) / self.spread[number]
         logs = -0.5 * np.square(apart)
         logs -= logs.max()
         usual = np.log(np.exp(logs).mean())
-        recoloured = max(support.recoloured, 0.0) / self.interior_spread[number]
-        return float(np.maximum(logs[number] - usual - 0.5 * recoloured**2, -CERTAIN))
+        recoloured = max(support.recoloured, 0.0) / (RECOLOURED * self.interior_spread[number])
+        told = TRUSTED + logs[number] - usual - 0.5 * recoloured**2
+        return float(np.maximum(told, -CERTAIN))
 
 
 class Looks:
