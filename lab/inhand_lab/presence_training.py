@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from inhand_tracker.model_file import Model
 from inhand_tracker.presence import (
-    USUAL_INTERIOR_SPREAD,
+    PARTS,
+    USUAL_PART_SPREADS,
     USUAL_SPREAD,
     USUALLY_ABSENT,
     USUALLY_PRESENT,
@@ -32,6 +33,8 @@ STEPS = 2
 """Frames one after the other: the second look finds more."""
 PRIOR_COUNT = 4.0
 """So many looks are taken to have shown the usual support beforehand."""
+PARTS_PRIOR_COUNT = 15.0
+"""The same of the spreads of its parts."""
 LEAST_SPREAD = 3.0
 
 
@@ -66,7 +69,7 @@ def look_around(
 
 def presence_of(looks: Sequence[Look], actions: Sequence[str]) -> Presence:
     """What looks say of the objects of ``actions``."""
-    supports, spreads, interiors = [], [], []
+    supports, spreads, parts, part_spreads = [], [], [], []
     for action in actions:
         found = {done: _supports(looks, action, done) for done in actions}
         told = {done: [one.log_likelihood for one in some] for done, some in found.items()}
@@ -75,9 +78,10 @@ def presence_of(looks: Sequence[Look], actions: Sequence[str]) -> Presence:
         expected[action] = USUALLY_PRESENT
         supports.append([_mean(told[done], expected[done]) for done in actions])
         spreads.append(_spread(told, action))
-        interior = _squares([one.interior for one in found[action]])
-        interiors.append(np.sqrt(_variance(interior, USUAL_INTERIOR_SPREAD)))
-    return Presence(np.array(supports), np.array(spreads), np.array(interiors))
+        own = np.array([one.parts for one in found[action]]).reshape(-1, PARTS)
+        parts.append(own.mean(axis=0) if len(own) else np.full(PARTS, -np.inf))
+        part_spreads.append(_part_spreads(own))
+    return Presence(*map(np.array, (supports, spreads, parts, part_spreads)))
 
 
 def _supports(looks: Sequence[Look], action: str, done: str) -> list[Support]:
@@ -122,17 +126,21 @@ def _mean(supports: Sequence[float], expected: float) -> float:
 
 def _spread(found: Mapping[str, Sequence[float]], action: str) -> float:
     """That within images of one object, as much of the object's own as of all others'."""
-    squares = {done: _squares(some) for done, some in found.items()}
-    own = squares.pop(action)
+    squares = {
+        done: np.square(np.array(some) - np.mean(some)) for done, some in found.items() if some
+    }
+    own = squares.pop(action, np.empty(0))
     others = np.concatenate([np.empty(0), *squares.values()])
-    variances = [_variance(some, USUAL_SPREAD) for some in (own, others) if len(some)]
+    variances = [
+        (some.sum() + PRIOR_COUNT * USUAL_SPREAD**2) / (len(some) + PRIOR_COUNT)
+        for some in (own, others)
+        if len(some)
+    ]
     return float(max(np.sqrt(np.mean(variances or [USUAL_SPREAD**2])), LEAST_SPREAD))
 
 
-def _squares(some: Sequence[float]) -> Array:
-    """Of the deviations from their mean."""
-    return np.square(np.array(some) - sum(some) / max(len(some), 1))
-
-
-def _variance(squares: Array, usual_spread: float) -> float:
-    return float((squares.sum() + PRIOR_COUNT * usual_spread**2) / (len(squares) + PRIOR_COUNT))
+def _part_spreads(own: Array) -> Array:
+    """(4,), of an object's own looks (N, 4)."""
+    usual = PARTS_PRIOR_COUNT * np.square(USUAL_PART_SPREADS)
+    squares = np.square(own - own.sum(axis=0) / max(len(own), 1)).sum(axis=0)
+    return np.asarray(np.sqrt((squares + usual) / (len(own) + PARTS_PRIOR_COUNT)))

@@ -9,7 +9,7 @@ from inhand_lab.generation import generate
 from inhand_lab.presence_training import Look, learn_presence, look_around, presence_of
 from inhand_lab.training import train
 from inhand_tracker.model_file import save_model
-from inhand_tracker.presence import USUAL_INTERIOR_SPREAD, Support, usual_presence
+from inhand_tracker.presence import Support, usual_presence
 from inhand_tracker.recogniser_file import load_recogniser
 
 from inhand.__main__ import main
@@ -54,7 +54,9 @@ def test_looks_of_one_action_fewer_tell_the_same_of_the_others() -> None:
         Look(
             done,
             {
-                seen: Support(*random.normal([20.0 * (seen == done), 1.0, 0.0], [5.0, 0.5, 0.1]))
+                seen: Support(
+                    *random.normal([1.0, 10.0 * (seen == done), 1.0, 9.0 * (seen == done)], 2.0)
+                )
                 for seen in actions
             },
         )
@@ -67,7 +69,8 @@ def test_looks_of_one_action_fewer_tell_the_same_of_the_others() -> None:
     kept = presence_of([look for look in looks if look.action != "call"], actions[:2])
     np.testing.assert_array_equal(kept.supports, of_two.supports)
     np.testing.assert_array_equal(kept.spread, of_two.spread)
-    np.testing.assert_array_equal(kept.interior_spread, of_two.interior_spread)
+    np.testing.assert_array_equal(kept.parts, of_two.parts)
+    np.testing.assert_array_equal(kept.part_spreads, of_two.part_spreads)
 
 
 def test_the_object_that_resembles_another_is_told_from_those_that_do_not() -> None:
@@ -76,7 +79,11 @@ def test_the_object_that_resembles_another_is_told_from_those_that_do_not() -> N
     looks = [
         Look(
             done,
-            {seen: Support(25.0 * (seen == done) + resemblance.get((seen, done), 0.0), 0.0)},
+            {
+                seen: Support(
+                    0.0, 25.0 * (seen == done) + resemblance.get((seen, done), 0.0), 0.0, 0.0
+                )
+            },
         )
         for done in actions
         for seen in actions
@@ -87,10 +94,18 @@ def test_the_object_that_resembles_another_is_told_from_those_that_do_not() -> N
     np.testing.assert_allclose(supports, expected, atol=3.5)
 
 
-def test_what_colours_say_of_an_object_spreads_as_it_did_in_its_own_images() -> None:
+def test_the_parts_of_an_objects_support_are_those_in_images_of_itself() -> None:
     looks = [
-        Look("drink", {"drink": Support(20.0, 5.0 + off), "call": Support(0.0, 50.0 * off)})
-        for off in (-3.0, 3.0) * 100
+        Look(
+            "drink",
+            {
+                "drink": Support(4.0, 12.0 + off, 2.0, 9.0),
+                "call": Support(0.0, 90.0 * off, 0.0, 0.0),
+            },
+        )
+        for off in (-6.0, 6.0) * 200
     ]
-    spread = presence_of(looks, ("drink", "call")).interior_spread
-    np.testing.assert_allclose(spread, [3.0, USUAL_INTERIOR_SPREAD], rtol=0.05)
+    told = presence_of(looks, ("drink", "call"))
+    np.testing.assert_allclose(told.parts, [[4.0, 12.0, 2.0, 9.0], [-np.inf] * 4])
+    assert told.part_spreads[0, 1] == pytest.approx(6.0, rel=0.05)
+    np.testing.assert_allclose(told.part_spreads[1], usual_presence(1).part_spreads[0])

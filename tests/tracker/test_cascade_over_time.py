@@ -176,7 +176,7 @@ def test_the_supports_of_the_objects_looked_for_reach_the_recogniser(script, tol
     script += [[0.9, 0.0, 0.0, 0.0]] * 2
     cascade, trackers = new_cascade()
     for tracker in trackers:
-        tracker.support = Support(100.0, 0.0)
+        tracker.support = Support(0.0, 0.0, 0.0, 100.0)
     look(cascade, 1)
     assert told[0][0] > 0.0
     assert told[0][-1] == 0.0
@@ -187,7 +187,7 @@ def test_a_second_without_images_is_told_as_no_image(script, told) -> None:
     script += [[0.9, 0.0, 0.0, 0.0]] * 40
     cascade, trackers = new_cascade()
     for tracker in trackers:
-        tracker.support = Support(100.0, 0.0)
+        tracker.support = Support(0.0, 0.0, 0.0, 100.0)
     look(cascade, 1)
     for tracker in trackers:
         tracker.support = None

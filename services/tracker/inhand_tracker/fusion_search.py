@@ -114,13 +114,15 @@ class ImageSearch:
         seen = self._sight.log_likelihood(origins, orientations, view)
         best = int(np.argmax(seen))
         pose = origins[best : best + 1], orientations[best : best + 1]
-        interior, now = (
-            float(self._sight.log_likelihoods_by_term(*pose, by)["interior"][0])
+        then, now = (
+            {
+                term: float(told[0])
+                for term, told in self._sight.log_likelihoods_by_term(*pose, by).items()
+            }
             for by in (view, look.view)
         )
-        return Support(
-            float(seen[best]), interior, 0.0 if trained.of_object is None else now - interior
-        )
+        untaught = trained.of_object is None
+        return Support(**then, recoloured=0.0 if untaught else now["interior"] - then["interior"])
 
     def _open(self, guess: PoseGaussian, image: Image, region: Region, joints: Array) -> SightView:
         """A region of the image, and its surroundings' colours learned."""

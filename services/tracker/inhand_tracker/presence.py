@@ -6,8 +6,10 @@ so support is compared with that in images of each thing that was taught, by nor
 one variance (linear discriminant analysis). What nobody taught is as likely to resemble the object
 as each of the things that were: as the object itself does, too.
 
-A thing of another colour betrays itself: a tracker that follows it learns its colours, and what
-they say of it is more than the colours of training do.
+What resembles the object in one way seldom does in all: each part of the support may fall short of
+that in the object's own images only as far as it does among these. And a thing of another colour
+betrays itself: a tracker that follows it learns its colours, and what they say of it is more than
+the colours of training do.
 """
 
 from collections.abc import Mapping
@@ -23,13 +25,16 @@ CERTAIN = 6.0
 """How much the looks of the last moments can say against an object at the most."""
 USUALLY_PRESENT, USUALLY_ABSENT, USUAL_SPREAD = 24.0, 6.0, 8.0
 """Support of most objects (simulated people of seed 71)."""
-USUAL_INTERIOR_SPREAD = 1.0
-"""The same of its part that colours have all over an object (simulated people of seed 31)."""
+USUAL_PART_SPREADS = (2.4, 4.6, 0.7, 1.5)
+"""The same of the parts of an object's own support (simulated people of seed 31)."""
+TOGETHER = 0.5
+"""Parts fall short together: so much of what each says by that counts."""
 RECOLOURED = 0.7
-"""By so much of that an object's own colours may be learned anew, as the same people's were."""
-TRUSTED = 0.5
-"""So much images say for an object beforehand: those of one that is there are seldom its best ones
-(the same people)."""
+"""How much colours of the object itself are learned anew, in spreads of what they say of it (the
+same people)."""
+TRUSTED = 1.0
+"""So much images say for an object beforehand: most of them fall short of those of training (the
+same people)."""
 LOOKS_S = 2.0
 """Looks of so long ago count for a third as much: one frame errs as the next does."""
 FORGOTTEN_S = 4.0
@@ -37,26 +42,39 @@ FORGOTTEN_S = 4.0
 
 
 class Support(NamedTuple):
-    """What an image says for an object at the likeliest pose."""
+    """How many times likelier (log) an image is with the object, at the likeliest pose and in its
+    colours of training, than without: the parts of which that is the sum."""
 
-    log_likelihood: float
-    """How many times likelier (log) it is with the object, in its colours of training, than
-    without."""
+    edges: float
+    region: float
     interior: float
-    """What colours all over the object say of that."""
+    depth: float
     recoloured: float = 0.0
-    """How much more they say with the colours that were learned since."""
+    """How much more of the object's interior speak the colours that were learned since."""
+
+    @property
+    def parts(self) -> tuple[float, ...]:
+        return self[:PARTS]
+
+    @property
+    def log_likelihood(self) -> float:
+        return sum(self.parts)
+
+
+PARTS = 4
+INTERIOR = Support._fields.index("interior")
 
 
 @dataclass(frozen=True)
 class Presence:
     """The mean ``supports`` (K, K) of each object in images of each one, of itself on the diagonal,
-    their ``spread`` (K,), and the spread of their part from colours all over an object that is
-    there, ``interior_spread`` (K,)."""
+    and their ``spread`` (K,); the mean ``parts`` (K, 4) of each object's support in images of
+    itself and their spreads, ``part_spreads`` (K, 4). What was never seen has parts of -∞."""
 
     supports: Array
     spread: Array
-    interior_spread: Array
+    parts: Array
+    part_spreads: Array
 
     @property
     def present(self) -> Array:
@@ -70,8 +88,10 @@ class Presence:
         logs = -0.5 * np.square(apart)
         logs -= logs.max()
         usual = np.log(np.exp(logs).mean())
-        recoloured = max(support.recoloured, 0.0) / (RECOLOURED * self.interior_spread[number])
-        told = TRUSTED + logs[number] - usual - 0.5 * recoloured**2
+        spreads = self.part_spreads[number]
+        short = np.maximum(self.parts[number] - support.parts, 0.0) / spreads
+        recoloured = max(support.recoloured, 0.0) / (RECOLOURED * spreads[INTERIOR])
+        told = logs[number] - usual - 0.5 * (TOGETHER * short @ short + recoloured**2) + TRUSTED
         return float(np.maximum(told, -CERTAIN))
 
 
@@ -90,7 +110,7 @@ class Looks:
     def add(self, time_ns: int, supports: Mapping[int, Support]) -> None:
         """Take the supports of those objects that were looked for in a frame."""
         for number, support in supports.items():
-            mean, count, before_ns = self._supports.get(number, (np.zeros(3), 0.0, time_ns))
+            mean, count, before_ns = self._supports.get(number, (np.zeros(PARTS + 1), 0.0, time_ns))
             kept = count * np.exp(-max(time_ns - before_ns, 0) / 1e9 / LOOKS_S)
             self._supports[number] = (
                 (kept * mean + np.array(support)) / (kept + 1.0),
@@ -114,5 +134,6 @@ def usual_presence(objects: int) -> Presence:
     return Presence(
         np.where(there, USUALLY_PRESENT, USUALLY_ABSENT),
         np.full(objects, USUAL_SPREAD),
-        np.full(objects, USUAL_INTERIOR_SPREAD),
+        np.full((objects, PARTS), -np.inf),
+        np.tile(USUAL_PART_SPREADS, (objects, 1)),
     )
