@@ -18,7 +18,7 @@ from inhand_tracker.presence import (
     Support,
 )
 from inhand_tracker.trackers import DEFAULT_METHOD, needs_of, new_tracker, usual_terms
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from inhand_lab.dataset import Dataset, Entry, load_frames
 from inhand_lab.observations import observe
@@ -78,9 +78,9 @@ def presence_of(looks: Sequence[Look], actions: Sequence[str]) -> Presence:
         expected[action] = USUALLY_PRESENT
         supports.append([_mean(told[done], expected[done]) for done in actions])
         spreads.append(_spread(told, action))
-        own = np.array([one.parts for one in found[action]]).reshape(-1, PARTS)
-        parts.append(own.mean(axis=0) if len(own) else np.full(PARTS, -np.inf))
-        part_spreads.append(_part_spreads(own))
+        means, deviations = _parts(found[action])
+        parts.append(means)
+        part_spreads.append(deviations)
     return Presence(*map(np.array, (supports, spreads, parts, part_spreads)))
 
 
@@ -131,16 +131,21 @@ def _spread(found: Mapping[str, Sequence[float]], action: str) -> float:
     }
     own = squares.pop(action, np.empty(0))
     others = np.concatenate([np.empty(0), *squares.values()])
-    variances = [
-        (some.sum() + PRIOR_COUNT * USUAL_SPREAD**2) / (len(some) + PRIOR_COUNT)
-        for some in (own, others)
-        if len(some)
-    ]
-    return float(max(np.sqrt(np.mean(variances or [USUAL_SPREAD**2])), LEAST_SPREAD))
+    variances = [_variance(some, USUAL_SPREAD, PRIOR_COUNT) for some in (own, others) if len(some)]
+    variance = np.mean(variances) if variances else USUAL_SPREAD**2
+    return float(max(np.sqrt(variance), LEAST_SPREAD))
 
 
-def _part_spreads(own: Array) -> Array:
-    """(4,), of an object's own looks (N, 4)."""
-    usual = PARTS_PRIOR_COUNT * np.square(USUAL_PART_SPREADS)
-    squares = np.square(own - own.sum(axis=0) / max(len(own), 1)).sum(axis=0)
-    return np.asarray(np.sqrt((squares + usual) / (len(own) + PARTS_PRIOR_COUNT)))
+def _parts(own: Sequence[Support]) -> tuple[Array, Array]:
+    """The means and spreads (4,) of the parts of an object's own supports."""
+    if not own:
+        return np.full(PARTS, -np.inf), np.array(USUAL_PART_SPREADS)
+    told = np.array([one.parts for one in own])
+    means = told.mean(axis=0)
+    return means, np.sqrt(_variance(np.square(told - means), USUAL_PART_SPREADS, PARTS_PRIOR_COUNT))
+
+
+def _variance(squares: Array, usual_spreads: ArrayLike, prior_count: float) -> Array:
+    """Of squared deviations (N, ...), as if so many had shown the usual spreads (...)."""
+    usual = prior_count * np.square(usual_spreads)
+    return np.asarray((squares.sum(axis=0) + usual) / (len(squares) + prior_count))

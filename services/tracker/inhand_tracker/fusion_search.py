@@ -111,18 +111,14 @@ class ImageSearch:
         view = self._sight.view(look.view.frame, trained, joints)
         orientations = np.array([mode.rotation for mode in modes])
         origins = self._sphere.origins(np.array([mode.centre for mode in modes]), orientations)
-        seen = self._sight.log_likelihood(origins, orientations, view)
-        best = int(np.argmax(seen))
+        terms = self._sight.log_likelihoods_by_term(origins, orientations, view)
+        best = int(np.argmax(sum(terms.values())))
+        then = {term: float(told[best]) for term, told in terms.items()}
+        if trained.of_object is None:
+            return Support(**then)
         pose = origins[best : best + 1], orientations[best : best + 1]
-        then, now = (
-            {
-                term: float(told[0])
-                for term, told in self._sight.log_likelihoods_by_term(*pose, by).items()
-            }
-            for by in (view, look.view)
-        )
-        untaught = trained.of_object is None
-        return Support(**then, recoloured=0.0 if untaught else now["interior"] - then["interior"])
+        now = self._sight.log_likelihoods_by_term(*pose, look.view)
+        return Support(**then, recoloured=float(now["interior"][0]) - then["interior"])
 
     def _open(self, guess: PoseGaussian, image: Image, region: Region, joints: Array) -> SightView:
         """A region of the image, and its surroundings' colours learned."""
