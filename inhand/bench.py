@@ -6,12 +6,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from inhand_lab.ablation import Worth, ablate
-from inhand_lab.benchmark_tracker import TrackerSpeed, measure_tracker
-from inhand_lab.benchmark_training import SIZES, TrainingCost, benchmark_training, steps
-from inhand_lab.dataset import load_dataset
-from inhand_lab.folds import leave_one_out
-from inhand_lab.likelihood_check import ObjectCheck, check_likelihood
+from inhand_lab.benchmarks.ablation import Worth, ablate
+from inhand_lab.benchmarks.likelihood import ObjectCheck, check_likelihood
+from inhand_lab.benchmarks.tracker_speed import TrackerSpeed, measure_tracker
+from inhand_lab.benchmarks.training_cost import SIZES, TrainingCost, benchmark_training, steps
+from inhand_lab.datasets.dataset import load_dataset
+from inhand_lab.evaluation.folds import leave_one_out
 from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
 from rich.console import Console, Group, RenderableType

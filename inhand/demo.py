@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from inhand_lab.demonstration import (
+from inhand_lab.demonstration.demonstration import (
     TRAINED_PARTICIPANTS,
     draw_picture,
     train_demonstration,
     write_rig_file,
 )
-from inhand_lab.review import Review, review
-from inhand_lab.world import INTERACTIONS
+from inhand_lab.demonstration.review import Review, review
+from inhand_lab.world.simulation import INTERACTIONS
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_schemas.topics import POSE
 from rich.console import Console

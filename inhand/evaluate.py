@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from inhand_lab.dataset import load_dataset
-from inhand_lab.evaluation import Protocol, Terms, Trial, evaluate
-from inhand_lab.folds import leave_one_out, train_on_one_test_on_other
-from inhand_lab.report import prepare_folder, write_report
-from inhand_lab.summary import summarise, terms_name, with_terms, worth
-from inhand_lab.tables import shown_grids
+from inhand_lab.datasets.dataset import load_dataset
+from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
+from inhand_lab.evaluation.protocol import Protocol, Terms, Trial, evaluate
+from inhand_lab.evaluation.summary import summarise, terms_name, with_terms, worth
+from inhand_lab.report.folder import prepare_folder, write_report
+from inhand_lab.report.tables import shown_grids
 from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
-from inhand_tracker.methods import TABLE_1
-from inhand_tracker.trackers import ALL_METHODS, ALL_TERMS, FUSION, MethodName, terms_of
+from inhand_tracker.methods.darby2014.variants import TABLE_1
+from inhand_tracker.methods.registry import ALL_TERMS, FUSION, METHODS, MethodName
 from rich.console import Console
 
 from inhand.progress import progress_bar
@@ -71,12 +71,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _protocol(arguments: argparse.Namespace) -> Protocol:
     methods = arguments.methods.split(",")
-    unknown = [name for name in methods if name not in ALL_METHODS]
+    unknown = [name for name in methods if name not in METHODS]
     if unknown:
-        raise SettingsError(f"no method {unknown[0]!r}; there are: {', '.join(ALL_METHODS)}")
+        raise SettingsError(f"no method {unknown[0]!r}; there are: {', '.join(METHODS)}")
     if arguments.seeds < 1:
         raise SettingsError("--seeds is 1 or more")
-    methods = tuple(name for name in ALL_METHODS if name in methods)
+    methods = tuple(name for name in METHODS if name in methods)
     terms = "none" if arguments.no_images else arguments.terms
     chosen = tuple(dict.fromkeys(_terms(name, methods) for name in terms.split(",")))
     trained = load_dataset(arguments.dataset)
@@ -105,9 +105,10 @@ def _terms(name: str, methods: Sequence[MethodName]) -> Terms:
     if unknown := [term for term in named if term not in ALL_TERMS]:
         raise SettingsError(f"no term {unknown[0]!r}; there are: own, none, {', '.join(ALL_TERMS)}")
     for method in methods:
-        if unknown := [term for term in named if term not in terms_of(method)]:
+        if unknown := [term for term in named if term not in METHODS[method].terms]:
             raise SettingsError(
-                f"{method} does not weigh {unknown[0]!r}; it knows: {', '.join(terms_of(method))}"
+                f"{method} does not weigh {unknown[0]!r}; "
+                f"it knows: {', '.join(METHODS[method].terms)}"
             )
     return tuple(term for term in ALL_TERMS if term in named)
 

@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from inhand_lab.realism import CONFIDENCE, LEFT_OUT, STAGES, WITHIN, Comparison, compare
-from inhand_lab.world import VERSION
+from inhand_lab.realism.comparison import CONFIDENCE, LEFT_OUT, STAGES, WITHIN, Comparison, compare
+from inhand_lab.world.simulation import VERSION
 from inhand_runtime.errors import SettingsError
 from rich.console import Console
 from rich.table import Table

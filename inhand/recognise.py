@@ -5,29 +5,29 @@ import time
 from pathlib import Path
 from typing import Any
 
-from inhand_lab.adaptive_comparison import Environments
-from inhand_lab.confusion_picture import draw_confusions
-from inhand_lab.dataset import Dataset, has_images, load_dataset
-from inhand_lab.false_objects_by_movement import count_by_movement
-from inhand_lab.false_objects_with_images import count_with_images
-from inhand_lab.recognition_alone import RecognitionAlone, recognise_alone
-from inhand_lab.recognition_evaluation import (
+from inhand_lab.datasets.dataset import Dataset, has_images, load_dataset
+from inhand_lab.recognition.adaptive_comparison import Environments
+from inhand_lab.recognition.confusion_picture import draw_confusions
+from inhand_lab.recognition.false_objects_by_movement import count_by_movement
+from inhand_lab.recognition.false_objects_with_images import count_with_images
+from inhand_lab.recognition.movement_alone import RecognitionAlone, recognise_alone
+from inhand_lab.recognition.protocol import (
     CASCADES,
     TRACKING,
     RecognitionProtocol,
     evaluate_recognition,
     labelled_entries,
 )
-from inhand_lab.recognition_tables import (
+from inhand_lab.recognition.tables import (
     false_object_grid,
     recognition_grids,
     summarise_recognition,
 )
-from inhand_lab.report import prepare_folder
-from inhand_lab.tables import Grid
+from inhand_lab.report.folder import prepare_folder
+from inhand_lab.report.tables import Grid
 from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
-from inhand_tracker.trackers import ALL_METHODS
+from inhand_tracker.methods.registry import METHODS
 from rich.console import Console
 
 from inhand.progress import progress_bar
@@ -62,7 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--tracking",
         default=TRACKING,
         metavar="M",
-        choices=ALL_METHODS,
+        choices=METHODS,
         help=f"under cascade (default: {TRACKING})",
     )
     parser.add_argument(

@@ -4,12 +4,12 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from inhand_lab.cameras import CAMERAS, KINECT
-from inhand_lab.dataset import Dataset, load_dataset
-from inhand_lab.driven_dataset import generate_driven, pairs_for
-from inhand_lab.generation import generate
-from inhand_lab.sheet import write_sheet
-from inhand_lab.world import INTERACTIONS
+from inhand_lab.datasets.dataset import Dataset, load_dataset
+from inhand_lab.datasets.generation import generate
+from inhand_lab.driven.dataset import generate_driven, pairs_for
+from inhand_lab.sensing.cameras import CAMERAS, KINECT
+from inhand_lab.world.sheet import write_sheet
+from inhand_lab.world.simulation import INTERACTIONS
 from inhand_runtime.errors import SettingsError
 from rich.console import Console
 

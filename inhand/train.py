@@ -5,15 +5,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from inhand_lab.dataset import Dataset, load_dataset
-from inhand_lab.learned import learned_by
-from inhand_lab.presence_training import learn_presence
-from inhand_lab.recogniser_training import stages as recogniser_stages
-from inhand_lab.recogniser_training import train_recogniser
-from inhand_lab.training import entries_for, stages, train
+from inhand_lab.datasets.dataset import Dataset, load_dataset
+from inhand_lab.training.learned import learned_by
+from inhand_lab.training.model_training import entries_for, stages, train
+from inhand_lab.training.presence_training import learn_presence
+from inhand_lab.training.recogniser_training import stages as recogniser_stages
+from inhand_lab.training.recogniser_training import train_recogniser
 from inhand_runtime.errors import SettingsError
-from inhand_tracker.model_file import Model, load_model, save_model
-from inhand_tracker.recogniser_file import save_recogniser
+from inhand_tracker.model.model_file import Model, load_model, save_model
+from inhand_tracker.recognition.recogniser_file import save_recogniser
 from rich.console import Console
 from rich.table import Table
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-PLUGIN = Path(__file__).with_name("scripted_source.py")
+PLUGIN = Path(__file__).parents[1] / "scenes" / "scripted_source.py"
 
 
 @pytest.fixture

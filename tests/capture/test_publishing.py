@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from inhand_capture.publishing import CameraPublisher
 from inhand_runtime.pixels import decode_depth
-from inhand_runtime.source import Captured, Pixels
+from inhand_runtime.source import Captured
 from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, Message, RgbdFrame
 from inhand_schemas.topics import AnyTopic
+from inhand_tracker.geometry.arrays import Bytes
 from msgspec import structs
 from scripted_source import FIRST_NS, PERSON, moment
 
@@ -44,7 +45,7 @@ class FakeOutlet:
         return self.stream in self.outlets.wanted_streams
 
 
-def _forbidden() -> Pixels:
+def _forbidden() -> Bytes:
     pytest.fail("rendered although nobody listens")
 
 
@@ -96,11 +97,11 @@ def test_raw_pixels_are_encoded() -> None:
 
 def test_encoded_pixels_pass_untouched() -> None:
     outlets = FakeOutlets({"rgbd"})
-    pixels = Pixels(ColourImage("jpeg", 2, 1, b"any"), DepthImage("z16-zstd", 2, 1, b"bytes"))
+    pixels = Bytes(ColourImage("jpeg", 2, 1, b"any"), DepthImage("z16-zstd", 2, 1, b"bytes"))
     CameraPublisher(outlets, "front").publish(Captured(1, 0, lambda: pixels, None))
     frame = outlets.sent[0][1]
     assert isinstance(frame, RgbdFrame)
-    assert Pixels(frame.colour, frame.depth) == pixels
+    assert Bytes(frame.colour, frame.depth) == pixels
 
 
 def test_every_introduction_is_sent_with_a_sequence_of_its_own() -> None:

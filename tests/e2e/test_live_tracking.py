@@ -7,20 +7,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.dataset import Dataset, Entry, load_dataset, load_frames
-from inhand_lab.observations import track_recording
-from inhand_lab.training import train
+from inhand_lab.datasets.dataset import Dataset, Entry, load_dataset, load_frames
+from inhand_lab.datasets.observations import track_recording
+from inhand_lab.training.model_training import train
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import ObjectPose
 from inhand_schemas.topics import POSE, RGBD, SKELETONS
-from inhand_tracker.model_file import Model, load_model, save_model
-from inhand_tracker.trackers import DEFAULT_METHOD, needs_of, new_tracker, usual_terms
+from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS, new_tracker
+from inhand_tracker.model.model_file import Model, load_model, save_model
+from real_data import DATA
 from running_rig import RunningRig, eventually
 
 from inhand.__main__ import main
 
-DATA = Path(__file__).parents[3] / "shared" / "data"
 SEED = 5
 
 needs_data = pytest.mark.skipif(
@@ -82,7 +82,7 @@ def assert_live_equals_offline(
     frames = load_frames(dataset.path(tested), tested.object)
     for name, model in models.items():
         tracker = new_tracker(model, DEFAULT_METHOD, left_handed=left_handed, seed=SEED)
-        needs = needs_of(DEFAULT_METHOD, usual_terms(DEFAULT_METHOD))
+        needs = METHODS[DEFAULT_METHOD].needs(METHODS[DEFAULT_METHOD].usual_terms)
         offline = list(track_recording(tracker, dataset.path(tested), frames, needs))
         poses = [pose for pose in live if pose.object == name]
         assert [pose.time_ns for pose in poses] == [frame.time_ns for frame in frames]
@@ -122,12 +122,12 @@ def test_images_that_come_live_weigh_as_they_do_offline(rig: RunningRig, tmp_pat
                     new_tracker(model, DEFAULT_METHOD, seed=SEED),
                     dataset.path(tested),
                     frames,
-                    needs_of(DEFAULT_METHOD, terms),
+                    METHODS[DEFAULT_METHOD].needs(terms),
                 ),
                 strict=True,
             )
         }
-        for terms in (usual_terms(DEFAULT_METHOD), ())
+        for terms in (METHODS[DEFAULT_METHOD].usual_terms, ())
     )
     times = [pose.time_ns for pose in live]
     told = np.array([pose.camera_from_object.translation for pose in live])

@@ -6,7 +6,7 @@ import time
 
 import cv2
 import pytest
-from inhand_lab.dataset import DatasetError
+from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.workers import in_processes, usable_cores
 from inhand_runtime.errors import InhandError
 

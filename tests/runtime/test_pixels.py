@@ -14,11 +14,12 @@ from inhand_runtime.pixels import (
 )
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import ColourImage, DepthImage
+from inhand_tracker.geometry.arrays import Bytes
 from numpy.typing import NDArray
 
 
 @pytest.fixture
-def colour() -> NDArray[np.uint8]:
+def colour() -> Bytes:
     """(48, 64, 3): red grows to the right, green downward."""
     picture = np.zeros((48, 64, 3), np.uint8)
     picture[..., 0] = np.arange(64) * 4
@@ -45,38 +46,36 @@ def test_plain_depth_is_read_too(depth: NDArray[np.uint16]) -> None:
     np.testing.assert_array_equal(decode_depth(plain), depth)
 
 
-def test_colour_survives_nearly(colour: NDArray[np.uint8]) -> None:
+def test_colour_survives_nearly(colour: Bytes) -> None:
     decoded = decode_colour(encode_colour(colour))
     assert decoded.shape == colour.shape
     assert np.abs(decoded.astype(int) - colour).mean() < 4
 
 
-def test_colour_in_any_memory_layout_is_encoded(colour: NDArray[np.uint8]) -> None:
+def test_colour_in_any_memory_layout_is_encoded(colour: Bytes) -> None:
     assert encode_colour(colour[:, ::-1]) == encode_colour(colour[:, ::-1].copy())
 
 
-def test_plain_colour_is_read_too(colour: NDArray[np.uint8]) -> None:
+def test_plain_colour_is_read_too(colour: Bytes) -> None:
     plain = ColourImage("rgb8", 64, 48, colour.tobytes())
     np.testing.assert_array_equal(decode_colour(plain), colour)
 
 
-def test_grey_is_the_luminance_in_either_codec(colour: NDArray[np.uint8]) -> None:
+def test_grey_is_the_luminance_in_either_codec(colour: Bytes) -> None:
     luminance = colour @ (0.299, 0.587, 0.114)
     for image in (encode_colour(colour), ColourImage("rgb8", 64, 48, colour.tobytes())):
         assert np.abs(decode_grey(image) - luminance).mean() < 3
 
 
 @pytest.mark.parametrize("decode", [decode_colour, decode_grey])
-def test_a_damaged_jpeg_is_refused(
-    colour: NDArray[np.uint8], decode: Callable[[ColourImage], NDArray[np.uint8]]
-) -> None:
+def test_a_damaged_jpeg_is_refused(colour: Bytes, decode: Callable[[ColourImage], Bytes]) -> None:
     data = encode_colour(colour).data
     for damaged in (b"", b"no jpeg", data[: len(data) // 2]):
         with pytest.raises(MessageError, match="damaged JPEG"):
             decode(ColourImage("jpeg", 64, 48, damaged))
 
 
-def test_a_jpeg_of_another_size_is_refused(colour: NDArray[np.uint8]) -> None:
+def test_a_jpeg_of_another_size_is_refused(colour: Bytes) -> None:
     data = encode_colour(colour).data
     with pytest.raises(MessageError, match="it is 64 × 48, and the message says 640 × 480"):
         decode_colour(ColourImage("jpeg", 640, 480, data))

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from inhand_lab.dataset import DatasetError
+from inhand_lab.datasets.dataset import DatasetError
 
 
 def read_image(path: Path, flags: int) -> NDArray[Any]:

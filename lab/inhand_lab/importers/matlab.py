@@ -7,7 +7,7 @@ import numpy as np
 import scipy.io
 from numpy.typing import NDArray
 
-from inhand_lab.dataset import DatasetError
+from inhand_lab.datasets.dataset import DatasetError
 
 
 def read_mat(path: Path, *names: str) -> list[NDArray[Any]]:

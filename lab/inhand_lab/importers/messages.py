@@ -2,12 +2,10 @@
 
 import numpy as np
 from inhand_schemas.messages import ObjectPose, Person, Skeletons
-from inhand_tracker.poses import pose_message
-from numpy.typing import NDArray
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.wire.poses import pose_message
 
-from inhand_lab.dataset import CAMERA
-
-Array = NDArray[np.float64]
+from inhand_lab.datasets.dataset import CAMERA
 
 PERSON = 0
 

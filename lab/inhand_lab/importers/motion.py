@@ -5,19 +5,17 @@ from pathlib import Path
 
 import numpy as np
 from inhand_schemas.messages import CameraInfo, Message
-from inhand_tracker import rotations
-from inhand_tracker.body import Bases, has_pelvis, pelvis_basis
-from inhand_tracker.shape import ObjectShape
-from numpy.typing import NDArray
+from inhand_tracker.body.skeleton import Bases, has_pelvis, pelvis_basis
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.shape.shape import ObjectShape
 
-from inhand_lab.dataset import Dataset, DatasetError, DatasetWriter, Entry
+from inhand_lab.datasets.dataset import Dataset, DatasetError, DatasetWriter, Entry
 from inhand_lab.importers.messages import PERSON, label_message, skeletons_message
 from inhand_lab.importers.motion_archive import Motion, read_motion
 from inhand_lab.importers.shapes import shape_of_mesh, shape_of_points
 from inhand_lab.importers.sources import find_files
 from inhand_lab.importers.timing import FRAME_RATE, Timing, thin
-
-Array = NDArray[np.float64]
 
 DISTANCE_M = 3.0
 SAME_POINT_M = 0.01

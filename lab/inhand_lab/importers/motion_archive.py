@@ -12,13 +12,12 @@ from typing import Any, Literal
 
 import numpy as np
 from inhand_schemas.messages import JOINT_NAMES
-from inhand_tracker.body import PARTS, has_pelvis, part_lengths
+from inhand_tracker.body.skeleton import PARTS, has_pelvis, part_lengths
+from inhand_tracker.geometry.arrays import Array
 from numpy.typing import NDArray
 
-from inhand_lab.dataset import DatasetError
+from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.importers.shapes import object_name
-
-Array = NDArray[np.float64]
 
 LONGEST_PART_M = 0.75
 """Longer than anybody's shank, thigh or trunk."""

@@ -12,12 +12,10 @@ import numpy as np
 import trimesh
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import require_name
-from inhand_tracker.shape import ObjectShape
-from numpy.typing import NDArray
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.shape.shape import ObjectShape
 
-from inhand_lab.dataset import DatasetError
-
-Array = NDArray[np.float64]
+from inhand_lab.datasets.dataset import DatasetError
 
 THINNEST_M = 0.01
 MIRROR_NORMAL = np.array([1.0, 0.0, 0.0])

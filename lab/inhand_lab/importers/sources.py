@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from inhand_lab.dataset import DatasetError
+from inhand_lab.datasets.dataset import DatasetError
 
 
 def find_files(sources: Iterable[Path], suffix: str) -> list[Path]:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-from inhand_lab.dataset import DatasetError
+from inhand_lab.datasets.dataset import DatasetError
 
 START_NS = 1_000_000_000_000_000_000
 """The first frame of every recording, since the data do not tell the day (9 September 2001)."""

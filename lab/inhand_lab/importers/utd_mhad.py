@@ -13,15 +13,14 @@ from pathlib import Path
 import numpy as np
 from inhand_runtime.pixels import encode_depth
 from inhand_schemas.messages import JOINT_NAMES, CameraInfo, Message, RgbdFrame
+from inhand_tracker.geometry.arrays import Array
 from numpy.typing import NDArray
 
-from inhand_lab.dataset import Dataset, DatasetError, DatasetWriter, Entry
+from inhand_lab.datasets.dataset import Dataset, DatasetError, DatasetWriter, Entry
 from inhand_lab.importers.matlab import read_mat
 from inhand_lab.importers.messages import skeletons_message
 from inhand_lab.importers.sources import find_files
 from inhand_lab.importers.timing import FRAME_RATE, Timing, thin
-
-Array = NDArray[np.float64]
 
 SKELETON_SUFFIX = "_skeleton.mat"
 DEPTH_SUFFIX = "_depth.mat"

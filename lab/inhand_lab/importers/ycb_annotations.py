@@ -7,13 +7,11 @@ from typing import Any
 
 import msgspec
 import numpy as np
-from inhand_tracker import rotations
-from numpy.typing import NDArray
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.dataset import DatasetError
+from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.importers.matlab import read_mat
-
-Array = NDArray[np.float64]
 
 META_SUFFIX = "-meta.mat"
 POSES_FILE = "poses.json"

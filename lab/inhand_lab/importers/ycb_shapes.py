@@ -5,8 +5,8 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from inhand_tracker.shape import ObjectShape
-from numpy.typing import NDArray
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.shape.shape import ObjectShape
 
 from inhand_lab.importers.images import read_image
 from inhand_lab.importers.matlab import read_mat
@@ -40,7 +40,7 @@ def model_shape(name: str, root: Path) -> ObjectShape | None:
     return None
 
 
-def seen_points(name: str, frames: Sequence[Path]) -> NDArray[np.float64] | None:
+def seen_points(name: str, frames: Sequence[Path]) -> Array | None:
     """The surface (N, 3) that the first frame that tells it shows; raises DatasetError."""
     for frame in frames:
         points = _visible_surface(name, frame)
@@ -49,7 +49,7 @@ def seen_points(name: str, frames: Sequence[Path]) -> NDArray[np.float64] | None
     return None
 
 
-def _visible_surface(name: str, frame: Path) -> NDArray[np.float64]:
+def _visible_surface(name: str, frame: Path) -> Array:
     meta = frame.with_name(frame.name + META_SUFFIX)
     labels = frame.with_name(frame.name + LABEL_SUFFIX)
     if not (meta.is_file() and labels.is_file()):

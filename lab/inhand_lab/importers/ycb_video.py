@@ -14,7 +14,7 @@ import numpy as np
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_schemas.messages import CameraInfo, Message, RgbdFrame
 
-from inhand_lab.dataset import Dataset, DatasetError, DatasetWriter, Entry
+from inhand_lab.datasets.dataset import Dataset, DatasetError, DatasetWriter, Entry
 from inhand_lab.importers.images import read_image
 from inhand_lab.importers.messages import label_message
 from inhand_lab.importers.timing import FRAME_RATE, Timing, thin

@@ -5,10 +5,11 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT
-from inhand_lab.kinematics import Trunk, place_trunk
+from inhand_lab.geometry.transforms import Transform, normalised, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT
 from inhand_lab.motions.performance import (
     Contact,
     Performance,
@@ -22,15 +23,9 @@ from inhand_lab.motions.performance import (
 from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, named
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.phone import PHONE_LENGTH, PHONE_THICKNESS
-from inhand_lab.person import Person
-from inhand_lab.solids import head_radii
-from inhand_lab.transforms import (
-    Floats,
-    Transform,
-    normalised,
-    rotation_about,
-    rotation_from_axes,
-)
+from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.person import Person
+from inhand_lab.people.solids import head_radii
 
 OPENING = (*TAKE, Movement("fetch", 0.9), Pause("read", 0.6))
 USE = (
@@ -66,7 +61,7 @@ PLUGGED = 0.006
 """How deep the phone stands in its dock."""
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Answering a phone at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, PUT_BACK)
     sides = _sides(random, stages)
@@ -109,7 +104,7 @@ def _changes(stages: list[Stage], sides: list[float]) -> list[tuple[Stage, float
 
 
 def _stance(
-    times: Floats, random: np.random.Generator, stages: list[Stage], sides: list[float]
+    times: Array, random: np.random.Generator, stages: list[Stage], sides: list[float]
 ) -> Stance:
     """A look at the dock and at the screen; small movements of the head in talking."""
     count = len(times)
@@ -145,7 +140,7 @@ def _dock(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...],
     return (*side_table(x + 0.10, y + 0.12, top), dock), docked
 
 
-def _slant(times: Floats, stages: list[Stage]) -> Floats:
+def _slant(times: Array, stages: list[Stage]) -> Array:
     """The turn (T,) of the fingers up the phone's back, radians."""
     ends = {"fetch": "eyes", "raise": "ear", "lower": "eyes", "return": "dock"}
     keys = [(0.0, SLANTS["dock"])]
@@ -156,7 +151,7 @@ def _slant(times: Floats, stages: list[Stage]) -> Floats:
 
 
 def _grip(
-    person: Person, times: Floats, random: np.random.Generator, slant: Floats, up: Floats
+    person: Person, times: Array, random: np.random.Generator, slant: Array, up: Array
 ) -> Transform:
     """The phone in the fingers, its back to the palm, object_from_hand (T).
 
@@ -173,7 +168,7 @@ def _grip(
 
 def _carry(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     trunk: Trunk,
     docked: Transform,
@@ -225,7 +220,7 @@ def _at_right_ear(person: Person, random: np.random.Generator) -> Transform:
     return Transform(touched + gap * outwards - EAR_UP * rotation[:, 2], rotation)
 
 
-def _changing(times: Floats, stages: list[Stage], sides: list[float]) -> Floats:
+def _changing(times: Array, stages: list[Stage], sides: list[float]) -> Array:
     """How far (T,), 0 to 1, hands make room for each other on the phone."""
     share = np.zeros(len(times))
     for look, _ in _changes(stages, sides):

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.kinematics import Trunk
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform
+from inhand_lab.geometry.transforms import Transform
+from inhand_lab.people.kinematics import Trunk
+from inhand_lab.people.person import Person
 
 STRETCH = 0.99
 """Furthest distance of shoulder and wrist as a share of the arm's length."""
 ROUNDS = 8
 
 
-def overreach(person: Person, shoulder: Floats, hand: Transform) -> Floats:
+def overreach(person: Person, shoulder: Array, hand: Transform) -> Array:
     """How (T, 3), in metres, a hand (T) must move for its wrist to come within reach."""
     body = person.proportions
     wrist = hand.translation - hand.rotation[:, :, 1] * body.palm

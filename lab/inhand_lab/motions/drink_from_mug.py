@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import hold_bar
-from inhand_lab.kinematics import Trunk, place_trunk
+from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
     Contact,
     Performance,
@@ -29,8 +30,8 @@ from inhand_lab.motions.timeline import (
     track,
 )
 from inhand_lab.objects.mug import MUG_HANDLE_REACH, MUG_HEIGHT, MUG_RADIUS
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, rotation_about
+from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (
     Pause("wait", 0.5),
@@ -59,7 +60,7 @@ FINGERS_AT_TABLE, FINGERS_CARRIED, FINGERS_AT_MOUTH = 0.25, 0.80, 1.40
 """Where the fingers point, as turns to the left from straight ahead, radians."""
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Drinking at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     posture = stand(person, times, random, _stance(person, times, random, stages))
@@ -92,7 +93,7 @@ def perform(person: Person, times: Floats, random: np.random.Generator) -> Perfo
 
 
 def _stance(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
+    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Stance:
     """A look and a twist to the table, and the head back while drinking."""
     count = len(times)
@@ -111,7 +112,7 @@ def _stance(
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Floats]:
+def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
     """A small table at the right hand, of a height that suits, and the mug's place on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.31, 0.30]) * size + random.normal(0.0, 0.015, 2)
@@ -120,7 +121,7 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
     return side_table(x + 0.08, y + 0.10, top), spot
 
 
-def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transform:
+def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
     """A fist around the handle, the cup ahead of it and to its left: object_from_hand (T)."""
     handle = np.array([0.0, MUG_RADIUS + MUG_HANDLE_REACH, 0.0])
     square = rotation_about("z", FIST_TURN + person.manner.grip_turn)
@@ -129,10 +130,10 @@ def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transfo
 
 def _carry(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     trunk: Trunk,
-    spot: Floats,
+    spot: Array,
     stages: list[Stage],
 ) -> Transform:
     """The mug's way, world_from_object (T).
@@ -143,7 +144,7 @@ def _carry(
     count = len(times)
     fist = FIST_TURN + person.manner.grip_turn
 
-    def turned(fingers_to_left: float) -> Floats:
+    def turned(fingers_to_left: float) -> Array:
         return rotation_about("z", fingers_to_left - fist)
 
     on_table = Transform(spot, turned(FINGERS_AT_TABLE + random.normal(0.0, 0.1))).repeated(count)
@@ -172,11 +173,11 @@ def _carry(
 
 def _sipping(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     trunk: Trunk,
     stages: list[Stage],
-    turn: Floats,
+    turn: Array,
 ) -> Transform:
     """The mug's rim at the lips, world_from_object (T), tilted further as it empties."""
     tilt = np.full(len(times), 0.2)

@@ -23,10 +23,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.motions.timeline import Stage, flow
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats
+from inhand_lab.people.person import Person
 
 DOWNSWING = (-0.267, 0.14)
 DOWNSWING_RATE = (0.95, 1.4)
@@ -77,20 +77,20 @@ FREE_WRIST = 35.0
 class Swing:
     """The swing over T frames, each (T,), as in MOMENTS, angles in radians; club from hanging."""
 
-    pelvis: Floats
-    chest: Floats
-    arms: Floats
-    club: Floats
-    reach: Floats
-    inside: Floats
-    lean: Floats
-    slide: Floats
-    heel: Floats
-    gaze: Floats
+    pelvis: Array
+    chest: Array
+    arms: Array
+    club: Array
+    reach: Array
+    inside: Array
+    lean: Array
+    slide: Array
+    heel: Array
+    gaze: Array
 
 
 def plan_swings(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
+    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Swing:
     """The stages "reach", "take", "waggle", "swing", "recover", "return" and "withdraw"."""
     wrist = 1.0 + 0.2 * person.manner.grip_slide
@@ -120,16 +120,14 @@ def plan_swings(
     return Swing(*values.T)
 
 
-def _apart(knots: list[tuple[float, Floats]]) -> list[tuple[float, Floats]]:
+def _apart(knots: list[tuple[float, Array]]) -> list[tuple[float, Array]]:
     """The knots without those that repeat a time."""
     return [
         knot for number, knot in enumerate(knots) if number == 0 or knot[0] > knots[number - 1][0]
     ]
 
 
-def _waggle(
-    stage: Stage, address: Floats, random: np.random.Generator
-) -> list[tuple[float, Floats]]:
+def _waggle(stage: Stage, address: Array, random: np.random.Generator) -> list[tuple[float, Array]]:
     """The club drawn back from the ball by the wrists once or twice, and set behind it again."""
     swings = int(random.integers(1, 3))
     knots = [(stage.start, address)]
@@ -143,7 +141,7 @@ def _waggle(
 
 def _swing(
     person: Person, stage: Stage, wrist: float, random: np.random.Generator
-) -> list[tuple[float, Floats]]:
+) -> list[tuple[float, Array]]:
     """One swing; its size, its wrist and its backswing are the person's and vary a little."""
     size = np.clip(person.manner.amplitude * (1.0 + 0.03 * random.normal()), 0.75, 1.05)
     cock = wrist + 0.06 * random.normal()

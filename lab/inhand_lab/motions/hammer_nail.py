@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import hold_bar, pinch
-from inhand_lab.kinematics import Trunk, place_trunk
+from inhand_lab.geometry.transforms import MIRROR, Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.grips import hold_bar, pinch
 from inhand_lab.motions.performance import (
     Performance,
     Stance,
@@ -37,8 +38,8 @@ from inhand_lab.motions.timeline import (
     track,
 )
 from inhand_lab.objects.hammer import FACE_REACH, HAMMER_HALF_LENGTH, HEAD_HEIGHT
-from inhand_lab.person import Person
-from inhand_lab.transforms import MIRROR, Floats, Transform, rotation_about, rotation_from_axes
+from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (
     *TAKE,
@@ -98,11 +99,11 @@ class Bench:
     """A bench with the hammer and a block; the nail stands in the block's top at base (3,)."""
 
     furniture: tuple[Box, ...]
-    spot: Floats
-    base: Floats
+    spot: Array
+    base: Array
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Hammering at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     strokes = list(_strokes(person, random, stages))
@@ -149,8 +150,8 @@ def _strokes(person: Person, random: np.random.Generator, stages: list[Stage]) -
 
 
 def _swung(
-    times: Floats, random: np.random.Generator, stages: list[Stage], strokes: list[Stroke]
-) -> Floats:
+    times: Array, random: np.random.Generator, stages: list[Stage], strokes: list[Stroke]
+) -> Array:
     """How far (T,) the hammer is swung back from the nail, radians."""
     swung = HOVERING * (1.0 + drift(times, random, 0.2, 2.0))
     for name in STROKES:
@@ -165,7 +166,7 @@ def _swung(
     return np.asarray(swung)
 
 
-def _standing(times: Floats, strokes: list[Stroke]) -> Floats:
+def _standing(times: Array, strokes: list[Stroke]) -> Array:
     """Height (T,) of the nail's head above the block: each stroke drives it as far as it swings."""
     work = np.cumsum([stroke.swing for stroke in strokes])
     depths = NAIL_STANDING + (NAIL_DRIVEN - NAIL_STANDING) * work / work[-1]
@@ -175,7 +176,7 @@ def _standing(times: Floats, strokes: list[Stroke]) -> Floats:
     return track(times, keys)
 
 
-def _stance(times: Floats, stages: list[Stage], swung: Floats) -> Stance:
+def _stance(times: Array, stages: list[Stage], swung: Array) -> Stance:
     """Leaning over the nail, most to hold it, and the trunk going a little with the strokes."""
     count = len(times)
     lift, back = named(stages, "lift"), named(stages, "return")
@@ -193,7 +194,7 @@ def _stance(times: Floats, stages: list[Stage], swung: Floats) -> Stance:
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _bending(times: Floats, stages: list[Stage]) -> Floats:
+def _bending(times: Array, stages: list[Stage]) -> Array:
     """How much (T,), 0 to 1, somebody bends over to where the hammer lies."""
     bent = np.zeros(len(times))
     for there, away in (("reach", "lift"), ("return", "withdraw")):
@@ -226,7 +227,7 @@ def _bench(person: Person, random: np.random.Generator) -> Bench:
     )
 
 
-def _lying(random: np.random.Generator, spot: Floats) -> Transform:
+def _lying(random: np.random.Generator, spot: Array) -> Transform:
     """The hammer on its side, its head ahead and to the left, world_from_object."""
     turned = rotation_about("z", 0.6 + random.normal(0.0, 0.08))
     on_side = rotation_from_axes([1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
@@ -234,7 +235,7 @@ def _lying(random: np.random.Generator, spot: Floats) -> Transform:
     return Transform(spot + aside, turned @ on_side)
 
 
-def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transform:
+def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
     """A fist near the handle's end, object_from_hand (T)."""
     point = np.array([0.0, 0.0, GRIP_HEIGHT + 0.03 * max(person.manner.grip_slide, -0.3)])
     turned = rotation_about("xz", OBLIQUE, 0.4 * person.manner.grip_turn)
@@ -243,11 +244,11 @@ def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transfo
 
 def _strike(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     trunk: Trunk,
-    nail: Floats,
-    swung: Floats,
+    nail: Array,
+    swung: Array,
 ) -> Transform:
     """The hammer's way, world_from_object (T): swung about the elbow and, further, the wrist."""
     sideways = rotation_about("z", HANDLE_TO_LEFT + drift(times, random, 0.04, 3.0))
@@ -269,10 +270,10 @@ def _strike(
 
 
 def _hold_nail(
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     rest: Transform,
-    base: Floats,
+    base: Array,
     stages: list[Stage],
 ) -> Transform:
     """The left hand, world_from_hand (T): on the bench, but at the nail until that stands."""

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 from scipy.spatial.transform import Rotation
 
-from inhand_lab.grips import hold_bar
-from inhand_lab.kinematics import BALL_HEIGHT, Posture, Trunk, place_trunk
+from inhand_lab.geometry.transforms import Transform, normalised, rotation_about
 from inhand_lab.motions.arms import within_both_reaches
 from inhand_lab.motions.furniture import WOOD, Box
 from inhand_lab.motions.golf_swing import Swing, plan_swings
+from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
     TOES_OUT,
     Contact,
@@ -25,8 +26,8 @@ from inhand_lab.motions.performance import (
 from inhand_lab.motions.reaching import named
 from inhand_lab.motions.timeline import Key, Movement, Pause, drift, follow, schedule
 from inhand_lab.objects.golf_club import SOLE, golf_club
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, normalised, rotation_about
+from inhand_lab.people.kinematics import BALL_HEIGHT, Posture, Trunk, place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (
     Pause("wait", 0.3),
@@ -72,7 +73,7 @@ LEAN, ROLL = np.radians((30.0, -45.0))
 RACK_HEIGHT, RACK_DEPTH = 0.45, 0.11
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Golf at these times, in seconds from the start; the target is at the left."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     swing = plan_swings(person, times, random, stages)
@@ -126,7 +127,7 @@ def perform(person: Person, times: Floats, random: np.random.Generator) -> Perfo
     return Performance(posture, right_hand, left_hand, carried, contacts(times, changes), rack)
 
 
-def _posture(person: Person, times: Floats, random: np.random.Generator, swing: Swing) -> Posture:
+def _posture(person: Person, times: Array, random: np.random.Generator, swing: Swing) -> Posture:
     """Hips and shoulders turning about a spine that leans to the ball; eyes on the ball.
 
     The right heel comes off the floor as the weight goes to the left foot.
@@ -156,13 +157,13 @@ def _posture(person: Person, times: Floats, random: np.random.Generator, swing: 
     )
 
 
-def _angles(world_from_one: Floats, world_from_other: Floats) -> Floats:
+def _angles(world_from_one: Array, world_from_other: Array) -> Array:
     """The other's turns (T, 3) about the one's x, y and z axes."""
     between = np.swapaxes(world_from_one, 1, 2) @ world_from_other
     return Rotation.from_matrix(between).as_euler("yxz")[:, [1, 0, 2]]
 
 
-def _pivot(person: Person, sole: Floats, heel: Floats) -> Transform:
+def _pivot(person: Person, sole: Array, heel: Array) -> Transform:
     """The right foot, world_from_foot (T), its heel lifted by an angle (T,) over the ball."""
     ball = np.array([0.0, person.proportions.foot, BALL_HEIGHT])
     flat = rotation_about("z", -TOES_OUT)
@@ -184,7 +185,7 @@ def _lean_on_rack(random: np.random.Generator) -> tuple[tuple[Box, ...], Transfo
 
 
 def _grips(
-    person: Person, times: Floats, random: np.random.Generator
+    person: Person, times: Array, random: np.random.Generator
 ) -> tuple[Transform, Transform]:
     """The right and the left hand, object_from_hand (T): thumbs down the shaft, left hand above."""
     right, left = (
@@ -221,7 +222,7 @@ def _swing_club(person: Person, trunk: Trunk, swing: Swing, address: int) -> Tra
     return Transform(hands, np.stack([np.cross(across, shaft), -across, -shaft], axis=2))
 
 
-def _in_plane(angle: Floats, steepness: float) -> Floats:
+def _in_plane(angle: Array, steepness: float) -> Array:
     """Directions (T, 3) in a plane that rises towards the player, from down to the right."""
     up = np.array([0.0, -np.cos(steepness), np.sin(steepness)])
     return np.sin(angle)[:, None] * np.array([1.0, 0.0, 0.0]) - np.cos(angle)[:, None] * up

@@ -7,11 +7,12 @@ person's own and differs between strokes: the skeleton hardly shows it.
 from __future__ import annotations
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import hold_bar
-from inhand_lab.kinematics import Trunk, place_trunk
+from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.arms import overreach
 from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
     Performance,
     Stance,
@@ -30,8 +31,8 @@ from inhand_lab.motions.reaching import (
 )
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, flow, follow, schedule, track
 from inhand_lab.objects.racket import HANDLE_RADIUS
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, rotation_about, rotation_from_axes
+from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (*TAKE, Movement("lift", 0.9))
 USE = (Pause("ready", 0.4), Movement("stroke", 1.35), Movement("recover", 0.7))
@@ -66,7 +67,7 @@ STEP = 0.13
 """Of the left foot into the ball, in statures."""
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Tennis at these times, in seconds from the start; the ball comes from ahead."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     figures = _figures(person, times, random, stages)
@@ -103,8 +104,8 @@ def perform(person: Person, times: Floats, random: np.random.Generator) -> Perfo
 
 
 def _figures(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
-) -> Floats:
+    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+) -> Array:
     """The figures of STROKE over time (T, 12), angles in radians, the wrist in the racket's."""
     knots = [(0.0, READY)]
     for stage in stages:
@@ -118,9 +119,7 @@ def _figures(
     return figures
 
 
-def _stroke(
-    person: Person, stage: Stage, random: np.random.Generator
-) -> list[tuple[float, Floats]]:
+def _stroke(person: Person, stage: Stage, random: np.random.Generator) -> list[tuple[float, Array]]:
     """One stroke, of the person's size and wrist with some variation, at a ball of its own."""
     usual, range_ = LAID_BACK
     wrist = usual + range_ * (0.7 * person.manner.grip_slide + 0.3 * random.normal())
@@ -139,10 +138,10 @@ def _stroke(
 
 def _stance(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     stages: list[Stage],
-    figures: Floats,
+    figures: Array,
 ) -> Stance:
     """Knees bent, eyes ahead, the left foot stepping into some of the balls and back."""
     count = len(times)
@@ -178,19 +177,19 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
     return side_table(float(head[0]) - 0.02, float(head[1]), float(top)), Transform(place, lying)
 
 
-def _pointing(to_left: Floats, up: Floats, roll: Floats) -> Floats:
+def _pointing(to_left: Array, up: Array, roll: Array) -> Array:
     """The racket's rotations (T, 3, 3) that point it in those directions (T,), radians."""
     return rotation_about("xz", up, to_left) @ POINTING_AHEAD @ rotation_about("z", roll)
 
 
-def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transform:
+def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
     """A fist whose palm is behind the strings, object_from_hand (T)."""
     square = rotation_about("z", -0.5 * np.pi + 0.5 * person.manner.grip_turn)
     point = np.array([0.0, 0.0, 0.02 * person.manner.grip_slide])
     return hold_bar(person, times, random, point, square @ rotation_about("x", OBLIQUE))
 
 
-def _play(person: Person, trunk: Trunk, figures: Floats, grip: Transform) -> Transform:
+def _play(person: Person, trunk: Trunk, figures: Array, grip: Transform) -> Transform:
     """The racket at play, world_from_object (T), where the arm can reach."""
     centre = trunk.world_from_chest.translation
     hand = centre + figures[:, HAND] * (person.height / 1.75)
@@ -200,7 +199,7 @@ def _play(person: Person, trunk: Trunk, figures: Floats, grip: Transform) -> Tra
     return Transform(racket.translation + shift, rotation)
 
 
-def _balancing_hand(person: Person, trunk: Trunk, figures: Floats) -> Transform:
+def _balancing_hand(person: Person, trunk: Trunk, figures: Array) -> Transform:
     """The left hand, world_from_hand (T): by the racket's throat, ahead, and at the side."""
     centre = trunk.world_from_chest.translation
     place = centre + figures[:, LEFT_HAND] * (person.height / 1.75)

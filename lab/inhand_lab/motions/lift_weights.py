@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import BAR_IN_PALM, hold_bar
-from inhand_lab.kinematics import Trunk, place_trunk
+from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import WOOD, Box
+from inhand_lab.motions.grips import BAR_IN_PALM, hold_bar
 from inhand_lab.motions.performance import (
     Contact,
     Performance,
@@ -23,8 +24,8 @@ from inhand_lab.motions.reaching import named
 from inhand_lab.motions.steps import Turn, turn_on_the_spot
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.barbell import BAR_RADIUS
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, rotation_about, rotation_from_axes
+from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (
     Pause("wait", 0.4),
@@ -94,7 +95,7 @@ class Stool:
         )
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Lifting weights at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     stool = _stool(person, random)
@@ -142,7 +143,7 @@ def _stool(person: Person, random: np.random.Generator) -> Stool:
     return Stool(heading, ahead, float(random.normal(0.50, 0.02)))
 
 
-def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transform:
+def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
     """The right fist around the bar from below, object_from_hand (T)."""
     wide = max(person.proportions.shoulder_half_width + 0.035, 0.125 * person.height * person.girth)
     aside = wide + 0.02 * person.manner.grip_slide
@@ -151,7 +152,7 @@ def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transfo
 
 
 def _stance(
-    person: Person, times: Floats, stages: list[Stage], stool: Stool, curled: Floats
+    person: Person, times: Array, stages: list[Stage], stool: Stool, curled: Array
 ) -> Stance:
     """Turning and stooping to the stool at both ends; leaning back a little with the weight."""
     stoop, rise = named(stages, "stoop"), named(stages, "rise")
@@ -225,7 +226,7 @@ def _arm_length(person: Person) -> float:
     return body.upper_arm + body.forearm + body.palm + float(BAR_IN_PALM[1])
 
 
-def _curls(times: Floats, random: np.random.Generator, stages: list[Stage]) -> Floats:
+def _curls(times: Array, random: np.random.Generator, stages: list[Stage]) -> Array:
     """How far (T,) the bar is lifted from hanging, 0, to the chest, about 1."""
     keys = [(0.0, 0.0)]
     for stage in stages:
@@ -239,12 +240,12 @@ def _curls(times: Floats, random: np.random.Generator, stages: list[Stage]) -> F
 
 def _carry(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     trunk: Trunk,
     stages: list[Stage],
     stool: Stool,
-    curled: Floats,
+    curled: Array,
 ) -> Transform:
     """The bar's way, world_from_object (T): it turns with the forearms."""
     body = person.proportions

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import hold_bar
-from inhand_lab.kinematics import place_trunk
+from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import Performance, Stance, feet_apart, hanging_hands, stand
 from inhand_lab.motions.reaching import (
     PUT_BACK,
@@ -19,8 +20,8 @@ from inhand_lab.motions.reaching import (
 )
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.magnifier import HANDLE_END, HANDLE_TOP, RIM_RADIUS
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, rotation_about, rotation_from_axes
+from inhand_lab.people.kinematics import place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (*TAKE, Movement("lift", 1.0), Pause("focus", 0.4))
 USE = (Movement("line", 1.5), Pause("study", 0.4), Movement("next line", 0.8), Pause("focus", 0.3))
@@ -42,7 +43,7 @@ LINE_ENDS = (-0.085, 0.085)
 """Where lines begin and end from the middle of the book."""
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Reading at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, PUT_BACK)
     lens = _read(person, times, random, stages)
@@ -64,9 +65,7 @@ def perform(person: Person, times: Floats, random: np.random.Generator) -> Perfo
     )
 
 
-def _read(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
-) -> Floats:
+def _read(person: Person, times: Array, random: np.random.Generator, stages: list[Stage]) -> Array:
     """The lens (T, 3) from the middle of the page: along a line, up the page and above it."""
 
     def height() -> float:
@@ -91,7 +90,7 @@ def _read(
     )
 
 
-def _stance(times: Floats, stages: list[Stage], lens: Floats) -> Stance:
+def _stance(times: Array, stages: list[Stage], lens: Array) -> Stance:
     """A look at the glass; bent over the page while reading, the head with the line."""
     count = len(times)
     looked = attention(times, stages)[:, None]
@@ -106,7 +105,7 @@ def _stance(times: Floats, stages: list[Stage], lens: Floats) -> Stance:
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _desk(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Floats]:
+def _desk(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
     """A high table with an open book at its right edge, and the middle of its pages (3,)."""
     ahead = 0.45 * person.height / 1.75 + 0.15 * (person.girth - 1.0) + random.normal(0.0, 0.015)
     across = random.normal(0.09, 0.015)
@@ -128,11 +127,11 @@ def _desk(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...],
 
 
 def _carry(
-    times: Floats, random: np.random.Generator, page: Floats, lens: Floats, stages: list[Stage]
+    times: Array, random: np.random.Generator, page: Array, lens: Array, stages: list[Stage]
 ) -> Transform:
     """The glass's way, world_from_object (T): its handle overhangs the book where it lies."""
 
-    def flat() -> Floats:
+    def flat() -> Array:
         right = HANDLE_TO_RIGHT + random.normal(0.0, 0.08)
         return rotation_from_axes([0.0, 0.0, 1.0], [-np.sin(right), np.cos(right), 0.0])
 
@@ -154,10 +153,10 @@ def _carry(
 
 
 def _hold_page(
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     rest: Transform,
-    page: Floats,
+    page: Array,
     stages: list[Stage],
 ) -> Transform:
     """The left hand, world_from_hand (T), flat on the book while reading."""

@@ -9,10 +9,11 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import DRIFT_PERIOD, pinch
-from inhand_lab.kinematics import place_trunk
+from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.grips import DRIFT_PERIOD, pinch
 from inhand_lab.motions.performance import (
     Performance,
     Stance,
@@ -39,8 +40,8 @@ from inhand_lab.motions.timeline import (
     track,
 )
 from inhand_lab.objects.paint_brush import BRISTLES_BELOW, FERRULE_HALF_THICKNESS, paint_brush
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, rotation_about
+from inhand_lab.people.kinematics import place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = TAKE
 USE = (
@@ -84,7 +85,7 @@ TO_THUMB, TO_PALM = 0.20, 0.25
 """How far the bristles lean to thumb and palm of a usual hand, radians."""
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Painting at these times, in seconds from the start; the board is at the right."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     size = person.height / 1.75
@@ -102,9 +103,7 @@ def perform(person: Person, times: Floats, random: np.random.Generator) -> Perfo
     return Performance(posture, right_hand, left_hand, carried, contact, furniture)
 
 
-def _path(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
-) -> Floats:
+def _path(person: Person, times: Array, random: np.random.Generator, stages: list[Stage]) -> Array:
     """The bristles on the board (T, 4): ahead and up, metres, and where they point, radians."""
     manner = person.manner
     usual = PAINTING + np.array([0.4 * manner.grip_tilt, 0.3 * manner.grip_turn])
@@ -131,7 +130,7 @@ def _path(
     return path
 
 
-def _stance(person: Person, times: Floats, stages: list[Stage], path: Floats) -> Stance:
+def _stance(person: Person, times: Array, stages: list[Stage], path: Array) -> Stance:
     """Turned to the board, the eyes on the brush."""
     count = len(times)
     painting = np.zeros(count)
@@ -162,9 +161,7 @@ def _board(x: float) -> Box:
     return Box((x + 0.5 * deep, 0.10, 0.5 * high), BOARD_SIZE, BOARD_COLOUR)
 
 
-def _table(
-    person: Person, random: np.random.Generator
-) -> tuple[tuple[Box, ...], Transform, Floats]:
+def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Transform, Array]:
     """A table with a pot; the brush in it, world_from_object; the middle of the pot's floor (3,).
 
     The bristles are on the floor of the pot, the handle is on its near edge.
@@ -192,12 +189,12 @@ def _table(
     return (*side_table(float(x), float(y), float(top)), *walls, floor), standing, pot
 
 
-def _pointing(to_left: Floats, up: Floats) -> Floats:
+def _pointing(to_left: Array, up: Array) -> Array:
     """The brush's rotations (T, 3, 3) that point the bristles in those directions (T,), radians."""
     return rotation_about("xz", up, to_left) @ POINTING_AHEAD
 
 
-def _on_board(path: Floats, board: float) -> Transform:
+def _on_board(path: Array, board: float) -> Transform:
     """The brush, world_from_object (T), with its bristles just on the board."""
     rotation = _pointing(path[:, 2], path[:, 3])
     tips = np.einsum("tij,j->ti", rotation, np.array([0.0, 0.0, -BRISTLES_BELOW]))
@@ -206,7 +203,7 @@ def _on_board(path: Floats, board: float) -> Transform:
     return Transform(place, rotation)
 
 
-def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transform:
+def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
     """Fingers and thumb on the flat sides above the ferrule, object_from_hand (T)."""
     leaning = TO_THUMB + person.manner.grip_tilt
     turned = rotation_about("zx", -TO_PALM + 0.5 * person.manner.grip_turn, leaning)
@@ -215,7 +212,7 @@ def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transfo
 
 
 def _carry(
-    times: Floats, stages: list[Stage], painting: Transform, standing: Transform, pot: Floats
+    times: Array, stages: list[Stage], painting: Transform, standing: Transform, pot: Array
 ) -> Transform:
     """The brush's way, world_from_object (T): from the pot to the board and back."""
     count = len(times)

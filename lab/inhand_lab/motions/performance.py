@@ -6,20 +6,19 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numpy.typing import NDArray
+from inhand_tracker.geometry.arrays import Array, Bytes
 
-from inhand_lab.kinematics import Posture, Trunk
-from inhand_lab.motions.furniture import Box
-from inhand_lab.motions.timeline import drift, minimum_jerk
-from inhand_lab.person import Person, hip_height
-from inhand_lab.transforms import (
+from inhand_lab.geometry.transforms import (
     MIRROR,
-    Floats,
     Transform,
     normalised,
     rotation_about,
     rotation_from_axes,
 )
+from inhand_lab.motions.furniture import Box
+from inhand_lab.motions.timeline import drift, minimum_jerk
+from inhand_lab.people.kinematics import Posture, Trunk
+from inhand_lab.people.person import Person, hip_height
 
 
 class Contact(IntEnum):
@@ -43,7 +42,7 @@ class Performance:
     right_hand: Transform
     left_hand: Transform
     world_from_object: Transform
-    contact: NDArray[np.uint8]
+    contact: Bytes
     furniture: tuple[Box, ...]
 
 
@@ -57,13 +56,13 @@ class Stance:
     where they differ from the heading.
     """
 
-    right_foot: Floats
-    left_foot: Floats
-    heading: Floats
-    shift: Floats
-    trunk_angles: Floats
-    head_angles: Floats
-    foot_turns: Floats | None = None
+    right_foot: Array
+    left_foot: Array
+    heading: Array
+    shift: Array
+    trunk_angles: Array
+    head_angles: Array
+    foot_turns: Array | None = None
 
 
 STANCE_HALF_WIDTH = 0.09
@@ -72,27 +71,27 @@ EASY_KNEES = 0.985
 """Straightness of the legs in easy standing, as a share of their length."""
 
 
-def feet_apart(count: int, half_width: float = STANCE_HALF_WIDTH) -> tuple[Floats, Floats]:
+def feet_apart(count: int, half_width: float = STANCE_HALF_WIDTH) -> tuple[Array, Array]:
     """Right and left soles (T, 3) side by side on the floor."""
     right = np.tile([half_width, 0.0, 0.0], (count, 1))
     return right, right * MIRROR
 
 
-def step(times: Floats, start: float, end: float, way: Floats) -> Floats:
+def step(times: Array, start: float, end: float, way: Array) -> Array:
     """One foot's displacement (T, 3) by a step of way (2,) metres over the floor."""
     share = minimum_jerk((times - start) / (end - start))
     lift = 0.6 * float(np.linalg.norm(way)) * 4.0 * share * (1.0 - share)
     return np.concatenate([share[:, None] * way, lift[:, None]], axis=1)
 
 
-def contacts(times: Floats, changes: list[tuple[float, Contact]]) -> NDArray[np.uint8]:
+def contacts(times: Array, changes: list[tuple[float, Contact]]) -> Bytes:
     """What carries the object (T,): from each time, in order, on."""
     starts = [start for start, _ in changes]
     values = np.array([contact for _, contact in changes], np.uint8)
     return np.asarray(values[np.searchsorted(starts, times, side="right") - 1])
 
 
-def stand(person: Person, times: Floats, random: np.random.Generator, stance: Stance) -> Posture:
+def stand(person: Person, times: Array, random: np.random.Generator, stance: Stance) -> Posture:
     """A posture on those feet: hips within the legs' reach, with the person's stoop and sway.
 
     A lean is shared between hips and back, and the hips go back to keep the balance.
@@ -120,7 +119,7 @@ def stand(person: Person, times: Floats, random: np.random.Generator, stance: St
     )
 
 
-def _hip_reach(person: Person, hips: Floats, heading: Floats, stance: Stance) -> Floats:
+def _hip_reach(person: Person, hips: Array, heading: Array, stance: Stance) -> Array:
     """Height (T,) of the hip joints above the floor at which the first leg is nearly straight."""
     body = person.proportions
     length = EASY_KNEES * (hip_height(body) - body.ankle)
@@ -143,7 +142,7 @@ def hanging_hands(
 
 
 def _hang(
-    person: Person, shoulder: Floats, heading: Floats, random: np.random.Generator
+    person: Person, shoulder: Array, heading: Array, random: np.random.Generator
 ) -> Transform:
     body = person.proportions
     reach = 0.965 * (body.upper_arm + body.forearm) + body.palm
@@ -154,13 +153,13 @@ def _hang(
     return Transform(shoulder + upright @ (downwards * reach), upright @ hand)
 
 
-def heading_of(frame: Transform) -> Floats:
+def heading_of(frame: Transform) -> Array:
     """Turn (T,) to the left of a frame's y axis, radians."""
     forward = frame.rotation[:, :, 1]
     return np.asarray(np.arctan2(-forward[:, 0], forward[:, 1]))
 
 
-def mouth(person: Person, trunk: Trunk) -> Floats:
+def mouth(person: Person, trunk: Trunk) -> Array:
     """The lips (T, 3) in the world."""
     body = person.proportions
     point = np.array([0.0, 0.93 * body.head_half_depth, -0.54 * body.head_half_height])

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import hold_bar
-from inhand_lab.kinematics import place_trunk
+from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
     Performance,
     Stance,
@@ -25,8 +26,8 @@ from inhand_lab.motions.reaching import (
 )
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.jug import JUG_BELLY, JUG_HANDLE_REACH, JUG_HEIGHT, SPOUT
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, rotation_about, rotation_from_axes
+from inhand_lab.people.kinematics import place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (*TAKE, Movement("lift", 1.0))
 USE = (
@@ -53,7 +54,7 @@ CUP_WIDTH, CUP_HEIGHT = 0.084, 0.066
 CUP_COLOUR, COFFEE = (224, 222, 216), (72, 44, 26)
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Pouring at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     posture = stand(person, times, random, _stance(times, stages))
@@ -74,7 +75,7 @@ def perform(person: Person, times: Floats, random: np.random.Generator) -> Perfo
     )
 
 
-def _stance(times: Floats, stages: list[Stage]) -> Stance:
+def _stance(times: Array, stages: list[Stage]) -> Stance:
     """A look at the jug, and down at the cup while pouring."""
     count = len(times)
     looked = attention(times, stages)[:, None]
@@ -87,7 +88,7 @@ def _stance(times: Floats, stages: list[Stage]) -> Stance:
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Floats, Floats]:
+def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array, Array]:
     """A table ahead, the jug's place on it (3,) and the middle of the cup's rim (3,)."""
     size = person.height / 1.75
     top = 0.53 * person.height + random.normal(0.0, 0.015)
@@ -113,10 +114,10 @@ def _cup(x: float, y: float, top: float) -> tuple[Box, ...]:
 
 def _carry(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
-    spot: Floats,
-    cup: Floats,
+    spot: Array,
+    cup: Array,
     stages: list[Stage],
 ) -> Transform:
     """The jug's way, world_from_object (T): at the cup it tips about its spout."""
@@ -147,7 +148,7 @@ def _carry(
     )
 
 
-def _tip(times: Floats, random: np.random.Generator, stages: list[Stage]) -> tuple[Floats, Floats]:
+def _tip(times: Array, random: np.random.Generator, stages: list[Stage]) -> tuple[Array, Array]:
     """The jug's tilt (T,), radians, and how far (T,), 0 to 1, it is lowered to the cup."""
     tilts, lowers = [(0.0, 0.06)], [(0.0, 0.0)]
     for stage in stages:
@@ -163,10 +164,10 @@ def _tip(times: Floats, random: np.random.Generator, stages: list[Stage]) -> tup
 
 
 def _steady_cup(
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     rest: Transform,
-    cup: Floats,
+    cup: Array,
     stages: list[Stage],
 ) -> Transform:
     """The left hand, world_from_hand (T): some steady the cup with it, others let it hang."""

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import pinch
-from inhand_lab.kinematics import Trunk, place_trunk
+from inhand_lab.geometry.transforms import Transform, blend, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.grips import pinch
 from inhand_lab.motions.performance import (
     Contact,
     Performance,
@@ -19,8 +20,8 @@ from inhand_lab.motions.performance import (
 )
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, follow, schedule, track
 from inhand_lab.objects.glasses import EAR_DROP, TEMPLE_OFFSET
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, blend, rotation_about, rotation_from_axes
+from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (
     Pause("wait", 0.4),
@@ -54,7 +55,7 @@ RAISED = Transform(
 """Where the right hand passes on its way between thigh and face, from the upright chest."""
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Putting on glasses at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     posture = stand(person, times, random, _stance(times, random, stages))
@@ -129,7 +130,7 @@ def _changes(stages: list[Stage]) -> list[tuple[float, Contact]]:
     return changes
 
 
-def _stance(times: Floats, random: np.random.Generator, stages: list[Stage]) -> Stance:
+def _stance(times: Array, random: np.random.Generator, stages: list[Stage]) -> Stance:
     """A look at the table and at the glasses; a look about while wearing them."""
     count = len(times)
     trunk, head = np.zeros((count, 3)), np.zeros((count, 3))
@@ -153,7 +154,7 @@ def _stance(times: Floats, random: np.random.Generator, stages: list[Stage]) -> 
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Floats]:
+def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
     """A small table at the right hand, and where the glasses' bridge is as they lie on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.24, 0.37]) * size + random.normal(0.0, 0.015, 2)
@@ -162,7 +163,7 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
 
 
 def _grip(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
+    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Transform:
     """Thumb and fingers at a hinge, object_from_hand (T); they are shifted on the way to the face.
 
@@ -184,10 +185,10 @@ def _grip(
 
 def _carry(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     trunk: Trunk,
-    spot: Floats,
+    spot: Array,
     stages: list[Stage],
 ) -> Transform:
     """The glasses' way, world_from_object (T)."""

@@ -7,10 +7,11 @@ with the foot and is worn.
 from __future__ import annotations
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import pinch
-from inhand_lab.kinematics import Posture
+from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import WOOD, Box
+from inhand_lab.motions.grips import pinch
 from inhand_lab.motions.performance import (
     STANCE_HALF_WIDTH,
     TOES_OUT,
@@ -29,8 +30,8 @@ from inhand_lab.motions.timeline import (
     schedule,
 )
 from inhand_lab.objects.shoe import HEEL_BEHIND
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, rotation_about, rotation_from_axes
+from inhand_lab.people.kinematics import Posture
+from inhand_lab.people.person import Person
 
 OPENING = (
     Pause("wait", 0.4),
@@ -80,7 +81,7 @@ BESIDE_SHANK = rotation_from_axes([0.0, 0.25, -1.0], [0.0, 1.0, 0.25])
 """A right hand's rotation on the thigh and at the outer side of the lower leg, in the world."""
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Putting on a shoe at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     right_foot = _right_foot(person, times, random, stages)
@@ -108,7 +109,7 @@ def _changes(stages: list[Stage]) -> list[tuple[float, Contact]]:
 
 
 def _right_foot(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
+    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Transform:
     """The right foot, world_from_foot (T): raised to the hands; on its heel, the toes tapping."""
     raised = [(0.0, (0.0,))]
@@ -138,7 +139,7 @@ def _feet_ahead(person: Person) -> float:
 
 def _sit(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     stages: list[Stage],
     right_foot: Transform,
@@ -193,7 +194,7 @@ def _hands_on_knees(
     return hands[0], hands[1].mirrored()
 
 
-def _left_hand_on_leg(person: Person, times: Floats) -> Transform:
+def _left_hand_on_leg(person: Person, times: Array) -> Transform:
     """The left hand, world_from_hand (T), at the outer side of the left lower leg."""
     body = person.proportions
     aside = 0.028 * person.height * person.girth + 0.078
@@ -201,7 +202,7 @@ def _left_hand_on_leg(person: Person, times: Floats) -> Transform:
     return Transform(np.array(place), BESIDE_SHANK).repeated(len(times)).mirrored()
 
 
-def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transform:
+def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
     """Thumb and fingers on the collar near the heel, object_from_hand (T)."""
     slid = np.array([0.0, 0.012 * person.manner.grip_slide, 0.0])
     turned = ON_COLLAR @ rotation_about("x", 0.5 * person.manner.grip_turn)
@@ -209,7 +210,7 @@ def _grip(person: Person, times: Floats, random: np.random.Generator) -> Transfo
 
 
 def _reaching(
-    times: Floats,
+    times: Array,
     stages: list[Stage],
     rest: Transform,
     busy: Transform,
@@ -227,7 +228,7 @@ def _reaching(
 
 def _carry(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     stages: list[Stage],
     right_foot: Transform,

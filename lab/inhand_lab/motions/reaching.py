@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from inhand_tracker.geometry.arrays import Array, Bytes
 
+from inhand_lab.geometry.transforms import Transform
 from inhand_lab.motions.performance import Contact, contacts
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, follow, track
-from inhand_lab.transforms import Floats, Transform
 
 TAKE = (Pause("wait", 0.5), Movement("reach", 1.0), Movement("grasp", 0.25))
 """Stages until the thing leaves its place."""
@@ -28,7 +28,7 @@ FROM_ABOVE = np.array([-0.16, -0.08, 0.15])
 
 
 def reaching_hand(
-    times: Floats,
+    times: Array,
     stages: list[Stage],
     rest: Transform,
     held: Transform,
@@ -50,9 +50,7 @@ def reaching_hand(
     )
 
 
-def helping_hand(
-    times: Floats, stages: list[Stage], rest: Transform, place: Transform
-) -> Transform:
+def helping_hand(times: Array, stages: list[Stage], rest: Transform, place: Transform) -> Transform:
     """The left hand, world_from_hand (T): at one place from "lift" to "return", else at rest."""
     lift, back = named(stages, "lift"), named(stages, "return")
     there = place.repeated(len(times))
@@ -68,7 +66,7 @@ def helping_hand(
     )
 
 
-def held_by_right_hand(times: Floats, stages: list[Stage]) -> NDArray[np.uint8]:
+def held_by_right_hand(times: Array, stages: list[Stage]) -> Bytes:
     """What carries the thing (T,): the right hand from the end of "grasp" to "release"."""
     changes = [
         (0.0, Contact.RESTING),
@@ -78,7 +76,7 @@ def held_by_right_hand(times: Floats, stages: list[Stage]) -> NDArray[np.uint8]:
     return contacts(times, changes)
 
 
-def attention(times: Floats, stages: list[Stage]) -> Floats:
+def attention(times: Array, stages: list[Stage]) -> Array:
     """How much (T,), 0 to 1, somebody looks at the place from which they take the thing."""
     share = np.zeros(len(times))
     for name in ("reach", "return"):

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import hold_bar
-from inhand_lab.kinematics import Trunk, place_trunk
+from inhand_lab.geometry.transforms import Transform, blend, rotation_about
 from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
     Contact,
     Performance,
@@ -20,8 +21,8 @@ from inhand_lab.motions.performance import (
 from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, named, reaching_hand
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.camera import CAMERA_HEIGHT, GRIP_OFFSET
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, blend, rotation_about
+from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (*TAKE, Movement("fetch", 1.0), Pause("ready", 0.3), Movement("raise", 1.0))
 USE = (Pause("film", 0.9), Movement("pan", 1.1), Pause("film", 0.9), Movement("pan", 1.1))
@@ -39,7 +40,7 @@ USUAL_PAN = 0.50
 """To either side, radians."""
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Filming at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     pan, tilt = _aim(person, times, random, stages)
@@ -79,8 +80,8 @@ def perform(person: Person, times: Floats, random: np.random.Generator) -> Perfo
 
 
 def _aim(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
-) -> tuple[Floats, Floats]:
+    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+) -> tuple[Array, Array]:
     """Where the camera is meant to look: its turn to the left and up (T,), radians."""
     lower = named(stages, "lower")
     side = random.choice([-1.0, 1.0])
@@ -97,7 +98,7 @@ def _aim(
     return track(times, pans), track(times, tilts)
 
 
-def _stance(times: Floats, stages: list[Stage], pan: Floats, tilt: Floats) -> Stance:
+def _stance(times: Array, stages: list[Stage], pan: Array, tilt: Array) -> Stance:
     """A look at the table; the body turns with the camera, the weight goes with it."""
     count = len(times)
     looked = attention(times, stages)[:, None]
@@ -112,13 +113,13 @@ def _stance(times: Floats, stages: list[Stage], pan: Floats, tilt: Floats) -> St
     return Stance(right_foot, left_foot, np.zeros(count), shift, trunk, head)
 
 
-def _raised(times: Floats, stages: list[Stage]) -> Floats:
+def _raised(times: Array, stages: list[Stage]) -> Array:
     """How far (T,), 0 to 1, the camera is up before the face."""
     up, down = named(stages, "raise"), named(stages, "lower")
     return track(times, [(up.start, 0.0), (up.end, 1.0), (down.start, 1.0), (down.end, 0.0)])
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Floats]:
+def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
     """A small table at the right hand and the camera's place on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.28, 0.34]) * size + random.normal(0.0, 0.015, 2)
@@ -127,7 +128,7 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
 
 
 def _grip(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
+    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Transform:
     """The right hand about the camera's side, thumb behind, object_from_hand (T)."""
     steepness = {"fetch": 0.5, "raise": 1.0, "lower": 0.5, "return": 0.0}
@@ -151,12 +152,12 @@ def _grip(
 
 def _carry(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     trunk: Trunk,
-    spot: Floats,
+    spot: Array,
     stages: list[Stage],
-    tilt: Floats,
+    tilt: Array,
 ) -> Transform:
     """The camera's way, world_from_object (T)."""
     on_table = Transform(spot, rotation_about("z", random.normal(-0.12, 0.12)))

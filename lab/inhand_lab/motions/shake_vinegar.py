@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import hold_bar
-from inhand_lab.kinematics import place_trunk
+from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import Performance, Stance, feet_apart, hanging_hands, stand
 from inhand_lab.motions.reaching import (
     PUT_BACK,
@@ -18,8 +19,8 @@ from inhand_lab.motions.reaching import (
 )
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.vinegar_bottle import BOTTLE_HALF_HEIGHT, BOTTLE_RADIUS
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, rotation_about
+from inhand_lab.people.kinematics import place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (*TAKE, Movement("lift", 0.85))
 USE = (
@@ -46,7 +47,7 @@ PLATE_SIZE, PLATE_HEIGHT = 0.25, 0.018
 CHINA, CHIPS = (232, 234, 238), (226, 178, 84)
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Shaking vinegar at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     posture = stand(person, times, random, _stance(times, stages))
@@ -67,7 +68,7 @@ def perform(person: Person, times: Floats, random: np.random.Generator) -> Perfo
     )
 
 
-def _stance(times: Floats, stages: list[Stage]) -> Stance:
+def _stance(times: Array, stages: list[Stage]) -> Stance:
     """A look at the bottle, and down at the plate while at work."""
     count = len(times)
     lift, back = named(stages, "lift"), named(stages, "return")
@@ -79,7 +80,7 @@ def _stance(times: Floats, stages: list[Stage]) -> Stance:
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Floats, Floats]:
+def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array, Array]:
     """A table ahead, the bottle's place on it (3,) and the middle of the plate (3,)."""
     size = person.height / 1.75
     top = 0.53 * person.height + random.normal(0.0, 0.015)
@@ -99,10 +100,10 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
 
 def _carry(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
-    spot: Floats,
-    plate: Floats,
+    spot: Array,
+    plate: Array,
     stages: list[Stage],
 ) -> Transform:
     """The bottle's way, world_from_object (T): over the plate it points to the left and down."""
@@ -139,9 +140,7 @@ def _carry(
     )
 
 
-def _tilt(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
-) -> Floats:
+def _tilt(person: Person, times: Array, random: np.random.Generator, stages: list[Stage]) -> Array:
     """The bottle's tilt (T,) to the left without the shakes, radians."""
     own = TIPPED + 0.25 * (person.manner.amplitude - 1.0)
     keys = [(0.0, HELD_TILT)]
@@ -156,8 +155,8 @@ def _tilt(
 
 
 def _shakes(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
-) -> Floats:
+    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+) -> Array:
     """Where (T,) the bottle is in its shakes, -1 to 1 for a person of average amplitude."""
     shaken = np.zeros(len(times))
     for stage in stages:

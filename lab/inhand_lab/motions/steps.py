@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
+from inhand_lab.geometry.transforms import rotation_about
 from inhand_lab.motions.timeline import minimum_jerk, track
-from inhand_lab.transforms import Floats, rotation_about
 
 STEP_HEIGHT = 0.05
 
@@ -26,13 +27,13 @@ class Turn:
 class Footing:
     """Soles (T, 3), turns (T, 2) of the right and the left foot, and heading (T,) of the body."""
 
-    right_foot: Floats
-    left_foot: Floats
-    foot_turns: Floats
-    heading: Floats
+    right_foot: Array
+    left_foot: Array
+    foot_turns: Array
+    heading: Array
 
 
-def turn_on_the_spot(times: Floats, half_width: float, turns: Sequence[Turn]) -> Footing:
+def turn_on_the_spot(times: Array, half_width: float, turns: Sequence[Turn]) -> Footing:
     """Feet that far from the middle, turned in order of time, first the one on the inner side."""
     feet = np.zeros((2, len(times)))
     lifts = np.zeros((2, len(times)))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT, wrap_bar
-from inhand_lab.kinematics import Trunk, place_trunk
+from inhand_lab.geometry.transforms import MIRROR, Transform, normalised, rotation_about
 from inhand_lab.motions.furniture import Box
+from inhand_lab.motions.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT, wrap_bar
 from inhand_lab.motions.performance import (
     Contact,
     Performance,
@@ -29,8 +30,8 @@ from inhand_lab.motions.timeline import (
     track,
 )
 from inhand_lab.objects.broom import BROOM_HALF_LENGTH, broom
-from inhand_lab.person import Person
-from inhand_lab.transforms import MIRROR, Floats, Transform, normalised, rotation_about
+from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.person import Person
 
 OPENING = (
     Pause("wait", 0.4),
@@ -59,7 +60,7 @@ LEAN = 0.14
 CUPBOARD_HEIGHT = 1.10
 
 
-def perform(person: Person, times: Floats, random: np.random.Generator) -> Performance:
+def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
     """Sweeping at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     brush = _brush_track(person, times, random, stages)
@@ -113,8 +114,8 @@ def perform(person: Person, times: Floats, random: np.random.Generator) -> Perfo
 
 
 def _brush_track(
-    person: Person, times: Floats, random: np.random.Generator, stages: list[Stage]
-) -> Floats:
+    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+) -> Array:
     """Where the brush is (T,) to the right of the body, metres: across to the left and back."""
     reach = 0.15 * person.height * person.manner.amplitude
 
@@ -133,10 +134,10 @@ def _brush_track(
 
 def _stance(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     stages: list[Stage],
-    brush: Floats,
+    brush: Array,
 ) -> Stance:
     """Turning and leaning with the brush, and now and then a small step to a new place."""
     count = len(times)
@@ -186,10 +187,10 @@ def _lean_on_cupboard(random: np.random.Generator) -> tuple[tuple[Box, ...], Tra
 
 def _sweep(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     trunk: Trunk,
-    brush: Floats,
+    brush: Array,
     stages: list[Stage],
 ) -> Transform:
     """The broom at work, world_from_object (T): its head on the floor but on the way back."""
@@ -208,7 +209,7 @@ def _sweep(
     return _stand_on_floor(normalised(end - foot), turn, head, raised)
 
 
-def _stand_on_floor(axis: Floats, turn: Floats, head: Floats, raised: Floats) -> Transform:
+def _stand_on_floor(axis: Array, turn: Array, head: Array, raised: Array) -> Transform:
     """The broom, world_from_object (T), along axis (T, 3) with its brush over head (T, 2).
 
     The brush is wide ahead of the person but for its turn (T,) about the handle, radians, and its
@@ -226,7 +227,7 @@ def _stand_on_floor(axis: Floats, turn: Floats, head: Floats, raised: Floats) ->
 
 def _hold(
     person: Person,
-    times: Floats,
+    times: Array,
     random: np.random.Generator,
     trunk: Trunk,
     carried: Transform,

@@ -10,11 +10,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from inhand_tracker.geometry.arrays import Array, Flags
+from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from inhand_lab.person import Person
-from inhand_lab.transforms import Floats, Transform, blend
+from inhand_lab.geometry.transforms import Transform, blend
+from inhand_lab.people.person import Person
 
 JITTER = 0.10
 """Standard deviation of the duration of one movement between repetitions."""
@@ -110,13 +111,13 @@ def _fill(steps: Sequence[Step], seconds: Sequence[float], duration: float) -> l
     ]
 
 
-def minimum_jerk(share: ArrayLike) -> Floats:
+def minimum_jerk(share: ArrayLike) -> Array:
     """Progress from 0 to 1 of a movement with rest at both ends, by the share of its time."""
     s = np.clip(np.asarray(share, float), 0.0, 1.0)
     return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s**2))
 
 
-def track(times: Floats, keys: Sequence[tuple[float, float]]) -> Floats:
+def track(times: Array, keys: Sequence[tuple[float, float]]) -> Array:
     """Values (T,) through keys (time, value) in order of time, at rest at every key."""
     values = np.full(len(times), keys[0][1])
     for (start, first), (end, second) in pairwise(keys):
@@ -124,7 +125,7 @@ def track(times: Floats, keys: Sequence[tuple[float, float]]) -> Floats:
     return values
 
 
-def flow(times: Floats, knots: Sequence[tuple[float, ArrayLike]]) -> Floats:
+def flow(times: Array, knots: Sequence[tuple[float, ArrayLike]]) -> Array:
     """Values (T, K) through knots (time, values (K,)) in order of time, without a halt at each.
 
     Every value rests only where it turns back or stays, and does not overshoot (Fritsch & Butland,
@@ -149,7 +150,7 @@ class Key:
     by: Transform | None = None
 
 
-def follow(times: Floats, keys: Sequence[Key]) -> Transform:
+def follow(times: Array, keys: Sequence[Key]) -> Transform:
     """The poses (T, ...) through the keys, in order of time, at rest relative to each of them."""
     here = keys[0].pose
     translation, rotation = here.translation.copy(), here.rotation.copy()
@@ -166,7 +167,7 @@ def follow(times: Floats, keys: Sequence[Key]) -> Transform:
     return Transform(translation, rotation)
 
 
-def _pass(here: Transform, key: Key, inside: NDArray[np.bool_], share: Floats) -> Transform:
+def _pass(here: Transform, key: Key, inside: Flags, share: Array) -> Transform:
     there = key.pose[inside]
     if key.by is None:
         return blend(here, there, share)
@@ -174,7 +175,7 @@ def _pass(here: Transform, key: Key, inside: NDArray[np.bool_], share: Floats) -
     return blend(blend(here, between, share), blend(between, there, share), share)
 
 
-def drift(times: Floats, random: np.random.Generator, deviation: float, period: float) -> Floats:
+def drift(times: Array, random: np.random.Generator, deviation: float, period: float) -> Array:
     """A slow wander (T,) about zero: sinusoids of random phase at and above the period, seconds."""
     periods = period * np.exp(random.uniform(-0.7, 0.7, 5))
     phases = random.uniform(0.0, 2.0 * np.pi, 5)

@@ -6,10 +6,10 @@ from functools import cache
 
 import numpy as np
 import trimesh
+from inhand_tracker.geometry.arrays import Array
 from trimesh import creation
 
 from inhand_lab.objects.model import ObjectModel, build_model, tube
-from inhand_lab.transforms import Floats
 
 JUG_HEIGHT = 0.088
 JUG_BELLY = 0.037
@@ -65,7 +65,7 @@ def jug() -> ObjectModel:
     return build_model("jug", [(vessel, CREAM), (tube(loop, 0.005), CREAM)], marks)
 
 
-def _with_spout(vertices: Floats) -> Floats:
+def _with_spout(vertices: Array) -> Array:
     """A vessel's vertices (V, 3) with the rim drawn out and up about +y."""
     x, y, z = vertices.T
     high = np.clip((z - 0.020) / (JUG_HEIGHT / 2.0 - 0.020), 0.0, 1.0) ** 2

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from inhand_tracker.shape import Symmetry
+from inhand_tracker.shape.shape import Symmetry
 from trimesh import creation
 
 from inhand_lab.objects.model import ObjectModel, build_model

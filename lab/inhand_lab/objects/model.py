@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import trimesh
-from inhand_tracker.shape import Symmetry
-from numpy.typing import NDArray
+from inhand_tracker.geometry.arrays import Array, Bytes, Indices
+from inhand_tracker.shape.shape import Symmetry
 
-from inhand_lab.transforms import MIRROR, Floats, normalised
+from inhand_lab.geometry.transforms import MIRROR, normalised
 
 TUBE_SECTIONS = 10
 
@@ -43,20 +43,20 @@ class ObjectModel:
 
     name: str
     mesh: trimesh.Trimesh
-    vertex_colours: NDArray[np.uint8]
-    marked_vertices: Floats
+    vertex_colours: Bytes
+    marked_vertices: Array
     symmetries: tuple[Symmetry, ...]
     colour: tuple[int, int, int]
     mirror_normal: tuple[float, float, float] = (1.0, 0.0, 0.0)
     returns_depth: bool = True
 
     @property
-    def vertices(self) -> Floats:
+    def vertices(self) -> Array:
         """(V, 3) metres."""
         return np.asarray(self.mesh.vertices, float)
 
     @property
-    def faces(self) -> NDArray[np.int64]:
+    def faces(self) -> Indices:
         """(F, 3) indices of vertices, counter-clockwise from outside."""
         return np.asarray(self.mesh.faces, np.int64)
 
@@ -66,7 +66,7 @@ def reflected(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
     return trimesh.Trimesh(mesh.vertices * MIRROR, mesh.faces[:, ::-1], process=False)
 
 
-def tube(path: Floats, radius: float) -> trimesh.Trimesh:
+def tube(path: Array, radius: float) -> trimesh.Trimesh:
     """A round rod along a path of points (K, 3) in metres that nowhere doubles back, closed."""
     tangents = normalised(np.gradient(path, axis=0))
     sideways = normalised(np.cross(tangents, np.cross([1.0, 0.02, 0.2], tangents)))

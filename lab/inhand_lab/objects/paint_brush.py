@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 import trimesh
-from inhand_tracker.shape import Symmetry
+from inhand_tracker.shape.shape import Symmetry
 from trimesh import creation
 
 from inhand_lab.objects.model import ObjectModel, build_model

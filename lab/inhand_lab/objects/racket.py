@@ -6,11 +6,11 @@ from functools import cache
 
 import numpy as np
 import trimesh
-from inhand_tracker.shape import Symmetry
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.shape.shape import Symmetry
 from trimesh import creation
 
 from inhand_lab.objects.model import ObjectModel, build_model, reflected, tube
-from inhand_lab.transforms import Floats
 
 RACKET_LENGTH = 0.685
 HANDLE_LENGTH = 0.20
@@ -50,7 +50,7 @@ def racket() -> ObjectModel:
     return build_model("racket", parts, marks, (Symmetry((0.0, 0.0, 1.0), order=2),))
 
 
-def _points(x: Floats, z: Floats) -> Floats:
+def _points(x: Array, z: Array) -> Array:
     return np.stack([x, np.zeros(len(x)), z], axis=1)
 
 

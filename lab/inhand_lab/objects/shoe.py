@@ -6,10 +6,10 @@ from functools import cache
 
 import numpy as np
 import trimesh
+from inhand_tracker.geometry.arrays import Array
 from numpy.typing import ArrayLike
 
 from inhand_lab.objects.model import ObjectModel, build_model
-from inhand_lab.transforms import Floats
 
 SHOE_LENGTH = 0.29
 HEEL_BEHIND = 0.078
@@ -95,7 +95,7 @@ def _upper() -> trimesh.Trimesh:
     return trimesh.Trimesh(np.concatenate(rings), triangles, process=False)
 
 
-def _squared(circle: ArrayLike) -> Floats:
+def _squared(circle: ArrayLike) -> Array:
     """A circle's coordinate, -1 to 1, pushed towards a rounded square's."""
     values = np.asarray(circle, float)
     return np.asarray(np.sign(values) * np.abs(values) ** 0.65)

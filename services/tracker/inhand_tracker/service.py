@@ -15,28 +15,27 @@ from inhand_schemas.messages import CameraInfo, Name, ObjectPose, RgbdFrame, Ske
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
 from pydantic import Field, PositiveInt
 
-from inhand_tracker.camera import Intrinsics, intrinsics_of
-from inhand_tracker.cascade import Cascade
-from inhand_tracker.conversion import (
+from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
+from inhand_tracker.geometry.image import Image
+from inhand_tracker.methods.object_tracker import ObjectTracker
+from inhand_tracker.methods.registry import (
+    DEFAULT_METHOD,
+    METHODS,
+    AnyTerm,
+    MethodName,
+    new_tracker,
+)
+from inhand_tracker.model.model_file import load_model
+from inhand_tracker.people.following import PeopleWatched, published
+from inhand_tracker.people.watching import GivenObjects, RecognisedObjects, Seen, Watcher
+from inhand_tracker.recognition.cascade import Cascade
+from inhand_tracker.recognition.recogniser_file import load_recogniser
+from inhand_tracker.wire.conversion import (
     box_around,
     image_of,
     object_pose_message,
 )
-from inhand_tracker.following import PeopleWatched, published
-from inhand_tracker.image import Image
-from inhand_tracker.model_file import load_model
-from inhand_tracker.pairing import Pairing
-from inhand_tracker.recogniser_file import load_recogniser
-from inhand_tracker.trackers import (
-    DEFAULT_METHOD,
-    AnyTerm,
-    MethodName,
-    ObjectTracker,
-    needs_of,
-    new_tracker,
-    usual_terms,
-)
-from inhand_tracker.watching import GivenObjects, RecognisedObjects, Seen, Watcher
+from inhand_tracker.wire.pairing import Pairing
 
 log = logging.getLogger(__name__)
 
@@ -72,8 +71,12 @@ class TrackerService:
     ) -> None:
         self._daemon = daemon
         self._camera = settings.camera
-        terms = usual_terms(settings.method) if settings.likelihood is None else settings.likelihood
-        self._needs = needs_of(settings.method, terms)
+        terms = (
+            METHODS[settings.method].usual_terms
+            if settings.likelihood is None
+            else settings.likelihood
+        )
+        self._needs = METHODS[settings.method].needs(terms)
         self._people = PeopleWatched(new_watcher, settings.people)
         self._publishers: dict[str, Publisher[ObjectPose]] = {
             name: daemon.publisher(POSE, name) for name in self._people.names

@@ -1,0 +1,142 @@
+"""What each part of ``fusion`` is worth: each taken out once, all on the same frames."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from inhand_tracker.body.anchors import ANCHORS
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.methods.fusion.search import Search
+from inhand_tracker.methods.fusion.tracker import FusionTracker
+from inhand_tracker.methods.registry import FUSION, METHODS
+from inhand_tracker.model.model_file import Model
+from inhand_tracker.prior.prior import Prior
+from inhand_tracker.sight.sight import SIGHT_TERMS, SightTerm
+
+from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, load_frames
+from inhand_lab.datasets.observations import track_together
+from inhand_lab.evaluation.folds import Fold, leave_one_out
+from inhand_lab.evaluation.pose_errors import ErrorGauge
+from inhand_lab.evaluation.protocol import fold_model
+from inhand_lab.evaluation.scoring import Judge
+from inhand_lab.workers import in_processes
+
+NOT_TRUSTED = 1e6
+"""Squared error, in m², of a prediction that is taken out: its weight is nothing."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """``fusion`` with something taken out."""
+
+    part: str
+    without: str
+    search: Search = field(default_factory=Search)
+    terms: tuple[SightTerm, ...] = SIGHT_TERMS
+    changed: Callable[[Prior], Prior] = lambda prior: prior
+
+    def tracker(self, model: Model, *, left_handed: bool) -> FusionTracker:
+        """A tracker of that kind; raises DatasetError for a model without a prior."""
+        if model.prior is None:
+            raise DatasetError(f"the model of {model.shape.name} holds no prior")
+        return FusionTracker(
+            replace(model, prior=self.changed(model.prior)),
+            left_handed=left_handed,
+            terms=self.terms,
+            search=self.search,
+        )
+
+
+def _only(views: tuple[int, ...], anchors: tuple[str, ...]) -> Callable[[Prior], Prior]:
+    """A prior in which nothing but these predictions counts."""
+
+    def restricted(prior: Prior) -> Prior:
+        dropped = np.array(
+            [
+                view not in views or anchor not in anchors
+                for view in range(len(prior.regressions))
+                for anchor in ANCHORS
+            ]
+        )
+        doubt = (NOT_TRUSTED * np.diag(dropped)).astype(np.float32)
+        return replace(
+            prior,
+            translation_products=prior.translation_products + doubt,
+            rotation_products=prior.rotation_products + doubt,
+        )
+
+    return restricted
+
+
+def _equally_weighted(prior: Prior) -> Prior:
+    equal = np.broadcast_to(
+        np.eye(prior.translation_products.shape[-1], dtype=np.float32),
+        prior.translation_products.shape,
+    )
+    return replace(prior, translation_products=equal, rotation_products=equal)
+
+
+VARIANTS: tuple[Variant, ...] = (
+    Variant("", "nothing"),
+    Variant("prior", "all anchors but the trunk", changed=_only((0, 1, 2), ("trunk",))),
+    Variant("prior", "all anchors but the hand", changed=_only((0, 1, 2), ("right hand",))),
+    Variant("prior", "memory", changed=_only((0, 1), ANCHORS)),
+    Variant("prior", "memory, and the upper body by itself", changed=_only((0,), ANCHORS)),
+    Variant("prior", "weights by how well each predicts", changed=_equally_weighted),
+    *(
+        Variant("likelihood", term, terms=tuple(one for one in SIGHT_TERMS if one != term))
+        for term in SIGHT_TERMS
+    ),
+    Variant("likelihood", "all of it", terms=()),
+    Variant("search", "what was seen before", search=Search(carries=False)),
+    Variant("search", "an object that was left", search=Search(leaves=False)),
+    Variant("search", "a second, nearer round", search=Search(rounds=1)),
+    Variant("search", "refinement", search=Search(refines=False)),
+)
+
+
+@dataclass(frozen=True)
+class Worth:
+    """A variant's mean vertex error in cm over interactions."""
+
+    variant: Variant
+    vertex_error_cm: float
+
+
+def ablate(
+    dataset: Dataset, processes: int, on_progress: Callable[[], None] = lambda: None
+) -> list[Worth]:
+    """Leave one participant out, with every variant; ``on_progress`` is called once a fold.
+
+    Raises DatasetError or RecordingError.
+    """
+    folds = leave_one_out(dataset)
+    tasks = [(dataset, fold) for fold in folds]
+    errors = in_processes(_try_fold, tasks, processes, lambda _: on_progress())
+    by_interaction: dict[str, list[Array]] = {}
+    for fold, of_fold in zip(folds, errors, strict=True):
+        by_interaction.setdefault(fold.interaction, []).append(of_fold)
+    means = np.mean([np.mean(cell, axis=0) for cell in by_interaction.values()], axis=0)
+    return [Worth(one, 100.0 * float(m)) for one, m in zip(VARIANTS, means, strict=True)]
+
+
+def _try_fold(task: tuple[Dataset, Fold]) -> Array:
+    """The vertex error of each variant, in metres."""
+    dataset, fold = task
+    model = fold_model(dataset, fold, images=True, fused=True)
+    gauge = ErrorGauge(model.shape)
+    return np.mean([list(_errors(dataset, entry, model, gauge)) for entry in fold.tested], axis=0)
+
+
+def _errors(dataset: Dataset, entry: Entry, model: Model, gauge: ErrorGauge) -> Iterator[float]:
+    path = dataset.path(entry)
+    frames = load_frames(path, entry.object)
+    left_handed = entry.handedness == "left"
+    trackers = [variant.tracker(model, left_handed=left_handed) for variant in VARIANTS]
+    joints, tracks = track_together(trackers, path, frames, METHODS[FUSION].needs(SIGHT_TERMS))
+    judge = Judge(frames, joints, gauge)
+    for track in tracks:
+        score = judge.score(track)
+        if score is None:
+            raise DatasetError(f"{entry.file}: no frame has both a pose and a label")
+        yield score.vertex_error_m

@@ -1,0 +1,97 @@
+"""What a frame of ``fusion`` costs, by how many labelled frames its prior was learned from.
+
+The people are simulated. Beyond the first 1,000 frames they are repeated, each time with another
+noise of their joints, as other people: what a regression costs does not depend on who they are.
+"""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from inhand_tracker.geometry.image import Image
+from inhand_tracker.mapping.learning import LabelledSequence, learn
+from inhand_tracker.methods.fusion.tracker import FusionTracker
+from inhand_tracker.model.model_file import Model
+from inhand_tracker.prior.learning import learn_prior
+from inhand_tracker.shape.viewpoints import find_viewpoints
+
+from inhand_lab.benchmarks.rendered_images import rendered_image
+from inhand_lab.world.messages import shape_of
+from inhand_lab.world.simulation import Simulation, simulate
+
+INTERACTION = "drinkFromMug"
+SEED = 0
+SIZES = (1_000, 10_000, 100_000)
+PEOPLE, FRAMES = 4, 250
+STRANGER = PEOPLE
+SHOWN = range(60, 90)
+NOISE_M = 0.01
+
+
+@dataclass(frozen=True)
+class FusionCost:
+    """Seconds to learn a prior from so many frames, and the median milliseconds that a frame then
+    takes without an image and with one."""
+
+    frames: int
+    learning_s: float
+    unseen_ms: float
+    seen_ms: float
+
+
+def measure_fusion(sizes: Sequence[int] = SIZES) -> tuple[FusionCost, ...]:
+    """One object, one person, as many hypotheses as usual."""
+    people = [simulate(INTERACTION, person, SEED, FRAMES) for person in range(PEOPLE)]
+    sequences = [true_sequence(one) for one in people]
+    shape = shape_of(people[0].object_model)
+    # fusion asks the mapping for what is usual of joints alone: its size costs a frame nothing.
+    mapping = learn(sequences, shape.mirror_normal)
+    model = Model(INTERACTION, shape, mapping, find_viewpoints(shape))
+    shown = simulate(INTERACTION, STRANGER, SEED, SHOWN.stop)
+    images = [rendered_image(shown, frame) for frame in SHOWN]
+    joints = shown.true_joints_in_camera[SHOWN.start : SHOWN.stop]
+    left_handed = shown.person.handedness == "left"
+    costs = []
+    for size in sizes:
+        began = time.perf_counter()
+        prior = learn_prior(_of_size(sequences, size), shape)
+        learning_s = time.perf_counter() - began
+        tracker = FusionTracker(replace(model, prior=prior), left_handed=left_handed)
+        unseen_ms, seen_ms = (
+            _frame_ms(tracker, joints, given) for given in ([None] * len(images), images)
+        )
+        costs.append(FusionCost(size, learning_s, unseen_ms, seen_ms))
+    return tuple(costs)
+
+
+def true_sequence(done: Simulation) -> LabelledSequence:
+    """A performance as it was done, with the true joints."""
+    return LabelledSequence(
+        str(done.participant),
+        done.person.handedness == "left",
+        done.true_joints_in_camera,
+        done.translations,
+        done.rotations,
+    )
+
+
+def _of_size(sequences: Sequence[LabelledSequence], size: int) -> list[LabelledSequence]:
+    """Sequences of so many frames together, or hardly more."""
+    random = np.random.default_rng(SEED)
+    copies = []
+    for number in range(-(-size // FRAMES)):
+        one = sequences[number % len(sequences)]
+        noise = NOISE_M * random.normal(size=one.joints.shape)
+        copies.append(replace(one, participant=str(number), joints=one.joints + noise))
+    return copies
+
+
+def _frame_ms(tracker: FusionTracker, joints: np.ndarray, images: Sequence[Image | None]) -> float:
+    tracker.restart()
+    took = []
+    for frame, (body, image) in enumerate(zip(joints, images, strict=True)):
+        began = time.perf_counter()
+        tracker.step(body, (frame + 1) * 33_333_333, image)
+        took.append(time.perf_counter() - began)
+    return 1e3 * float(np.median(took))

@@ -1,0 +1,118 @@
+"""Datasets of simulated people."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from inhand_schemas.messages import Message, Skeletons
+
+from inhand_lab.datasets.dataset import CAMERA, Dataset, DatasetWriter, Entry
+from inhand_lab.sensing.cameras import KINECT, Camera
+from inhand_lab.world.messages import (
+    camera_info,
+    label_message,
+    person_message,
+    pixels_message,
+    shape_of,
+)
+from inhand_lab.world.simulation import VERSION, Simulation, simulate
+
+FRAME_RATE = 30
+START_NS = 1_000_000_000_000_000_000
+
+
+@dataclass(frozen=True)
+class Take:
+    """A simulation to be written: the recording's name, and who is in it."""
+
+    name: str
+    participant: str
+    simulation: Simulation
+
+
+def generate(
+    folder: Path,
+    interactions: Sequence[str],
+    participants: int,
+    seed: int,
+    frames: int,
+    *,
+    images: bool,
+    on_progress: Callable[[], None],
+    camera: Camera = KINECT,
+) -> Dataset:
+    """Write a dataset of every participant doing every interaction.
+
+    ``on_progress`` is called once a recording. Raises DatasetError or RecordingError.
+    """
+    takes = (
+        Take(
+            f"{interaction}_p{participant:02}",
+            f"p{participant:02}",
+            simulate(interaction, participant, seed, frames, FRAME_RATE, camera),
+        )
+        for interaction in interactions
+        for participant in range(participants)
+    )
+    return write_takes(
+        folder,
+        takes,
+        {
+            "seed": seed,
+            "participants": participants,
+            "frames": frames,
+            "camera": camera.name,
+            "images": images,
+        },
+        images=images,
+        on_progress=on_progress,
+    )
+
+
+def write_takes(
+    folder: Path,
+    takes: Iterable[Take],
+    settings: Mapping[str, str | int | float | bool],
+    *,
+    images: bool,
+    on_progress: Callable[[], None],
+) -> Dataset:
+    """Write simulations as a dataset; ``settings`` say what they were made from.
+
+    ``on_progress`` is called once a recording. Raises DatasetError or RecordingError.
+    """
+    writer = DatasetWriter(folder)
+    for take in takes:
+        simulation = take.simulation
+        writer.add_shape(shape_of(simulation.object_model))
+        entry = Entry(
+            file=f"recordings/{take.name}.mcap",
+            interaction=simulation.interaction,
+            object=simulation.object_model.name,
+            participant=take.participant,
+            handedness=simulation.person.handedness,
+            frame_rate=simulation.frame_rate,
+        )
+        writer.add_recording(entry, _messages(simulation, images=images))
+        on_progress()
+    return writer.finish({"name": "inhand simulate", "version": VERSION, **settings})
+
+
+def _messages(simulation: Simulation, *, images: bool) -> Iterator[Message]:
+    yield camera_info(simulation.intrinsics, simulation.frame_rate, START_NS)
+    for frame in range(simulation.frames):
+        time_ns = START_NS + round(frame * 1_000_000_000 / simulation.frame_rate)
+        yield Skeletons(
+            sequence=frame, time_ns=time_ns, people=(person_message(simulation, frame),)
+        )
+        seen = simulation.render(frame) if images else None
+        yield label_message(
+            simulation,
+            frame,
+            sequence=frame,
+            time_ns=time_ns,
+            camera=CAMERA,
+            visible_fraction=seen.visible_fraction if seen else simulation.visible_fraction(frame),
+        )
+        if seen is not None:
+            yield pixels_message(seen, sequence=frame, time_ns=time_ns)

@@ -1,0 +1,111 @@
+"""What a tracker gets to see of a recording, as its daemon would: bodies and images, no labels."""
+
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from inhand_schemas.errors import MessageError
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.estimate import Estimate
+from inhand_tracker.geometry.image import Image
+from inhand_tracker.methods.object_tracker import ObjectTracker
+from inhand_tracker.people.following import Follower
+from inhand_tracker.wire.conversion import Need, image_of, joints_of
+
+from inhand_lab.datasets.dataset import Frame, iterate_pixels, load_camera_info
+from inhand_lab.datasets.tracks import Track, empty_track
+from inhand_lab.world.messages import camera_info, person_message, pixels_message
+from inhand_lab.world.simulation import Simulation
+
+
+@dataclass(frozen=True)
+class Observation:
+    """One frame: the joints (20, 3) of the person followed, or None, and the image, or None.
+
+    ``somebody_else`` tells that another person is followed from here on.
+    """
+
+    time_ns: int
+    joints: Array | None
+    image: Image | None
+    somebody_else: bool
+
+    def show(self, tracker: ObjectTracker) -> Estimate:
+        """Let a tracker see the frame."""
+        if self.somebody_else:
+            tracker.restart()
+        return tracker.step(self.joints, self.time_ns, self.image)
+
+
+def observe(
+    path: Path, frames: Sequence[Frame], needs: Collection[Need] = ()
+) -> Iterator[Observation]:
+    """The frames of a recording, one after the other.
+
+    Pixels are read and decoded once, and only those that are needed. Damaged
+    ones are none. Raises RecordingError.
+    """
+    name = next((frame.label.camera for frame in frames if frame.label is not None), None)
+    info = load_camera_info(path, name) if needs else None
+    pixels = iterate_pixels(path, name) if info is not None else iter(())
+    current = next(pixels, None)
+    follower = Follower()
+    for frame in frames:
+        while current is not None and current.time_ns < frame.time_ns:
+            current = next(pixels, None)
+        image = None
+        if info is not None and current is not None and current.time_ns == frame.time_ns:
+            with suppress(MessageError):
+                image = image_of(current, info, needs)
+        before = follower.person_id
+        person = follower.choose(frame.people, frame.time_ns)
+        joints = None if person is None else joints_of(person)
+        yield Observation(frame.time_ns, joints, image, follower.person_id != before)
+
+
+def observe_simulation(
+    simulation: Simulation, needs: Collection[Need] = ()
+) -> Iterator[Observation]:
+    """The frames of a simulation as if they came from a camera."""
+    info = camera_info(simulation.intrinsics, simulation.frame_rate)
+    for frame in range(simulation.frames):
+        time_ns = round(frame * 1e9 / simulation.frame_rate)
+        image = None
+        if needs:
+            seen = simulation.render(frame)
+            image = image_of(pixels_message(seen, sequence=frame, time_ns=time_ns), info, needs)
+        yield Observation(time_ns, joints_of(person_message(simulation, frame)), image, False)
+
+
+def track_recording(
+    tracker: ObjectTracker, path: Path, frames: Sequence[Frame], needs: Collection[Need] = ()
+) -> Iterator[Estimate]:
+    """A tracker's estimates for the frames of a recording, as the tracker daemon makes them."""
+    for observation in observe(path, frames, needs):
+        yield observation.show(tracker)
+
+
+def track_together(
+    trackers: Sequence[ObjectTracker], path: Path, frames: Sequence[Frame], needs: Collection[Need]
+) -> tuple[Array, list[Track]]:
+    """The joints (T, 20, 3) that several trackers saw of a recording, and their tracks.
+
+    The trackers share their model and the person's handedness, so each body is read once for all.
+    """
+    joints = np.full((len(frames), 20, 3), np.nan)
+    tracks = [empty_track(len(frames)) for _ in trackers]
+    reader = trackers[0].new_reader()
+    for index, seen in enumerate(observe(path, frames, needs)):
+        if seen.somebody_else:
+            reader = trackers[0].new_reader()
+        body = None
+        if seen.joints is not None:
+            joints[index] = seen.joints
+            body = reader.read(seen.joints)
+        for tracker, track in zip(trackers, tracks, strict=True):
+            if seen.somebody_else:
+                tracker.restart()
+            track.put(index, tracker.step_body(body, seen.time_ns, seen.image))
+    return joints, tracks

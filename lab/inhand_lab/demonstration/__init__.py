@@ -1,0 +1,1 @@
+"""The demonstration rig, and what its recording shows."""

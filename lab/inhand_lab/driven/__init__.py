@@ -1,0 +1,1 @@
+"""Recorded bodies that use simulated objects."""

@@ -1,0 +1,134 @@
+"""Datasets whose people moved before a real sensor and whose objects are simulated."""
+
+from collections.abc import Callable, Collection, Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from inhand_tracker.geometry.arrays import Flags
+from inhand_tracker.people.following import Follower
+from inhand_tracker.wire.conversion import joints_of
+
+from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, load_frames
+from inhand_lab.datasets.generation import Take, write_takes
+from inhand_lab.driven.recorded_body import RecordedBody, drive
+from inhand_lab.sensing.cameras import KINECT, Camera
+from inhand_lab.world.messages import JOINT_STATES
+from inhand_lab.world.simulation import INTERACTIONS
+
+FITTING = {
+    "drawX": "paintWall",
+    "baseballSwing": "hitGolfBall",
+    "tennisSwing": "hitTennisBall",
+    "tennisServe": "hitTennisBall",
+    "armCurl": "liftWeights",
+    "knock": "hammerNail",
+}
+"""Which object people may hold who mime an action; UTD-MHAD's names for these."""
+
+LONGEST_GAP_S = 0.5
+"""Nothing is made up for a body that is out of sight for longer."""
+
+
+def generate_driven(
+    folder: Path,
+    bodies: Dataset,
+    interactions: Collection[str] | None,
+    seed: int,
+    *,
+    images: bool,
+    on_progress: Callable[[], None],
+    camera: Camera = KINECT,
+) -> Dataset:
+    """Write a dataset of every recorded movement with the object of every chosen interaction.
+
+    Without a choice each recording gets what fits it. ``on_progress`` is called once a recording.
+    Raises DatasetError or RecordingError.
+    """
+    pairs = pairs_for(bodies, interactions)
+    return write_takes(
+        folder,
+        _takes(bodies, pairs, seed, camera),
+        {
+            "bodies": str(bodies.folder),
+            "seed": seed,
+            "camera": camera.name,
+            "images": images,
+        },
+        images=images,
+        on_progress=on_progress,
+    )
+
+
+def pairs_for(bodies: Dataset, interactions: Collection[str] | None) -> Sequence[tuple[Entry, str]]:
+    """Every recording with each interaction it is to drive; raises DatasetError without any."""
+    pairs = [
+        (entry, interaction)
+        for entry in bodies.entries
+        for interaction in (interactions or _fitting(entry))
+    ]
+    if not pairs:
+        raise DatasetError(
+            f"nothing fits what the people of {bodies.folder} do: choose with --interactions: "
+            f"{', '.join(INTERACTIONS)}"
+        )
+    return pairs
+
+
+def _fitting(entry: Entry) -> tuple[str, ...]:
+    name = FITTING.get(entry.interaction, entry.interaction)
+    return (name,) if name in INTERACTIONS else ()
+
+
+def _takes(
+    bodies: Dataset, pairs: Sequence[tuple[Entry, str]], seed: int, camera: Camera
+) -> Iterator[Take]:
+    participants = sorted({entry.participant for entry in bodies.entries})
+    for entry, interaction in pairs:
+        recorded = recorded_body(
+            bodies,
+            entry,
+            participant=participants.index(entry.participant),
+            recording=bodies.entries.index(entry),
+        )
+        name = f"{interaction}_{Path(entry.file).stem}"
+        yield Take(name, entry.participant, drive(recorded, interaction, seed, camera))
+
+
+def recorded_body(
+    dataset: Dataset, entry: Entry, *, participant: int, recording: int
+) -> RecordedBody:
+    """The longest stretch of a recording in which somebody is in sight; raises DatasetError."""
+    frames = load_frames(dataset.path(entry), None)
+    joints = np.full((len(frames), 20, 3), np.nan)
+    states = np.zeros((len(frames), 20), np.uint8)
+    confidences = np.zeros((len(frames), 20))
+    follower = Follower()
+    for index, frame in enumerate(frames):
+        person = follower.choose(frame.people, frame.time_ns)
+        if person is not None:
+            joints[index] = joints_of(person)
+            states[index] = [JOINT_STATES.index(state) for state in person.states]
+            confidences[index] = person.confidences
+    seen = np.asarray(np.isfinite(joints).all(axis=2))
+    stretch = _in_sight(seen, entry.frame_rate)
+    if not seen[stretch].any(axis=0).all():
+        raise DatasetError(f"{entry.file}: a body with all twenty joints is needed to hold things")
+    return RecordedBody(
+        joints[stretch],
+        states[stretch],
+        confidences[stretch],
+        entry.frame_rate,
+        entry.handedness,
+        participant,
+        recording,
+    )
+
+
+def _in_sight(seen: Flags, frame_rate: float) -> slice:
+    """The longest stretch of joints seen (T, 20) without a long gap; empty where none is."""
+    there = np.flatnonzero(seen.any(axis=1))
+    if len(there) == 0:
+        return slice(0, 0)
+    breaks = np.flatnonzero(np.diff(there) > LONGEST_GAP_S * frame_rate + 1)
+    longest = max(np.split(there, breaks + 1), key=len)
+    return slice(int(longest[0]), int(longest[-1]) + 1)

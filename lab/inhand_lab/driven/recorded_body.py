@@ -1,0 +1,176 @@
+"""Real movement, with its real tracking noise, drives the world in place of a synthetic person.
+
+The measured joints are what a tracker is given. The truth is built upon the body that denoising
+finds behind them: the object is held as that participant would hold it in the simulated
+interaction, in a wrist that turns as no skeleton shows. So the object's pose is known exactly,
+while the body that carries it is only near the one that was recorded.
+"""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from inhand_tracker.geometry.arrays import Array, Bytes
+
+from inhand_lab.driven.denoising import bone_lengths, denoise
+from inhand_lab.driven.holds import attach, rehearse
+from inhand_lab.driven.seen_frames import SeenFrames, seen_frames
+from inhand_lab.geometry.transforms import (
+    MIRROR,
+    Transform,
+    normalised,
+    rotation_about,
+    rotation_from_axes,
+)
+from inhand_lab.motions.timeline import drift
+from inhand_lab.people.joints import MIRRORED_JOINTS, Joint
+from inhand_lab.people.kinematics import Body
+from inhand_lab.people.person import Person, Proportions, sample_person, standing_height
+from inhand_lab.sensing.cameras import KINECT, Camera
+from inhand_lab.world.interactions import INTERACTIONS
+from inhand_lab.world.simulation import MIRRORED_CONTACT, PEOPLE, Simulation
+
+UNSEEN_TWIST, TWIST_PERIOD = 0.25, 2.0
+"""Deviation in radians and period in seconds of the forearm's twist that no joint shows."""
+UNSEEN_LOOK, LOOK_PERIOD = 0.20, 3.0
+"""The same of the head's turn."""
+
+
+@dataclass(frozen=True)
+class RecordedBody:
+    """What a tracker saw of one person over T frames, in the camera's frame.
+
+    joints (T, 20, 3) in metres, NaN where one is missing, states (T, 20) as in Simulation,
+    confidences (T, 20); participant is the person's number, recording tells one's takes apart.
+    """
+
+    joints: Array
+    states: Bytes
+    confidences: Array
+    frame_rate: float
+    handedness: Literal["left", "right"]
+    participant: int
+    recording: int
+
+
+def drive(
+    recorded: RecordedBody, interaction: str, seed: int, camera: Camera = KINECT
+) -> Simulation:
+    """The recorded movement with the interaction's object held, or worn, from first to last."""
+    camera_joints = denoise(recorded.joints, recorded.frame_rate)
+    camera_from_world = _world_of(camera_joints)
+    joints = camera_from_world.inverse().apply(camera_joints)
+    left_handed = recorded.handedness == "left"
+    if left_handed:
+        joints = (joints * MIRROR)[:, MIRRORED_JOINTS]
+    person = _person_of(joints, recorded, seed)
+    times = np.arange(len(joints)) / recorded.frame_rate
+    random = np.random.default_rng(
+        [PEOPLE, seed, recorded.participant, recorded.recording, zlib.crc32(interaction.encode())]
+    )
+    hold = rehearse(interaction, sample_person(seed, recorded.participant), seed)
+    seen = seen_frames(joints, recorded.frame_rate)
+    body = _turn_unseen(joints, seen, hold.right_wrist, hold.left_wrist, times, random)
+    world_from_object = attach(hold, body, seen, times, random)
+    contact = np.full(len(joints), hold.contact, np.uint8)
+    if left_handed:
+        body, world_from_object = body.mirrored(), world_from_object.mirrored()
+        contact = MIRRORED_CONTACT[contact]
+    viewpoint = camera_from_world.inverse().translation
+    return Simulation(
+        interaction,
+        recorded.participant,
+        seed,
+        recorded.recording,
+        recorded.frame_rate,
+        person,
+        INTERACTIONS[interaction].object_model(),
+        camera,
+        recorded.joints,
+        recorded.states,
+        recorded.confidences,
+        body.seen_from(camera_from_world),
+        camera_from_world @ world_from_object,
+        contact,
+        camera_from_world,
+        float(np.arctan2(-viewpoint[0], viewpoint[1])),
+        (),
+    )
+
+
+def _world_of(joints: Array) -> Transform:
+    """The person's world, camera_from_world: the floor under the feet, up along the body."""
+    ankles = 0.5 * (joints[:, Joint.ANKLE_LEFT] + joints[:, Joint.ANKLE_RIGHT])
+    up = normalised(np.median(joints[:, Joint.SHOULDER_CENTER] - ankles, axis=0))
+    right = np.median(joints[:, Joint.HIP_RIGHT] - joints[:, Joint.HIP_LEFT], axis=0)
+    forward = np.cross(up, right)
+    soles = _stature(joints) * Proportions().ankle
+    origin = np.median(ankles, axis=0) - soles * up
+    return Transform(origin, rotation_from_axes(forward, up))
+
+
+def _stature(joints: Array) -> float:
+    """Height in metres of a person whose bones are as long as those of joints (T, 20, 3)."""
+    average = Proportions()
+    bones = bone_lengths(joints)
+    measured = sum(
+        bones[joint - 1]
+        for joint in (
+            Joint.ANKLE_RIGHT,
+            Joint.KNEE_RIGHT,
+            Joint.SPINE,
+            Joint.SHOULDER_CENTER,
+            Joint.HEAD,
+        )
+    )
+    usual = average.shank + average.thigh + average.spine + average.chest + average.neck
+    return float(measured * standing_height(average) / usual)
+
+
+def _person_of(joints: Array, recorded: RecordedBody, seed: int) -> Person:
+    """The recorded body with the manner of the seed's participant of that number."""
+    manner = sample_person(seed, recorded.participant)
+    height = _stature(joints)
+    usual = {name: fraction * height for name, fraction in vars(Proportions()).items()}
+    bones = bone_lengths(joints)
+    measured = {
+        "upper_arm": bones[Joint.ELBOW_RIGHT - 1],
+        "forearm": bones[Joint.WRIST_RIGHT - 1],
+        "thigh": bones[Joint.KNEE_RIGHT - 1],
+        "shank": bones[Joint.ANKLE_RIGHT - 1],
+        "spine": bones[Joint.SPINE - 1],
+        "chest": bones[Joint.SHOULDER_CENTER - 1],
+        "neck": bones[Joint.HEAD - 1],
+    }
+    proportions = Proportions(**{**usual, **{name: float(m) for name, m in measured.items()}})
+    return replace(manner, height=height, handedness=recorded.handedness, proportions=proportions)
+
+
+def _turn_unseen(
+    joints: Array,
+    seen: SeenFrames,
+    right_wrist: Array,
+    left_wrist: Array,
+    times: Array,
+    random: np.random.Generator,
+) -> Body:
+    """The body with its hands and head turned by what no skeleton shows."""
+
+    def turned(hand: Transform, wrist: Array, joint: Joint) -> Transform:
+        twist = rotation_about("y", drift(times, random, UNSEEN_TWIST, TWIST_PERIOD))
+        rotation = hand.rotation @ twist @ wrist
+        root = joints[:, joint]
+        palm = np.linalg.norm(hand.translation - root, axis=1, keepdims=True)
+        return Transform(root + palm * rotation[:, :, 1], rotation)
+
+    right_hand = turned(seen.right_hand, right_wrist, Joint.WRIST_RIGHT)
+    left_hand = turned(seen.left_hand, left_wrist, Joint.WRIST_LEFT)
+    look = rotation_about("z", drift(times, random, UNSEEN_LOOK, LOOK_PERIOD))
+    moved = joints.copy()
+    moved[:, Joint.HAND_RIGHT] = right_hand.translation
+    moved[:, Joint.HAND_LEFT] = left_hand.translation
+    head = Transform(seen.head.translation, seen.head.rotation @ look)
+    return Body(moved, seen.pelvis, seen.chest, head, right_hand, left_hand)

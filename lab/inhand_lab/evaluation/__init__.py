@@ -1,0 +1,1 @@
+"""Trackers against the truth, on people left out of training."""

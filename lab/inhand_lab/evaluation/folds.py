@@ -1,0 +1,79 @@
+"""What is learned from and what is tested: leave one participant out, or two datasets."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry
+
+
+@dataclass(frozen=True)
+class Fold:
+    """The recordings of one interaction that are tested, and those that are learned from."""
+
+    interaction: str
+    tested: tuple[Entry, ...]
+    trained: tuple[Entry, ...]
+
+
+def leave_one_out(dataset: Dataset) -> list[Fold]:
+    """A fold a participant, or a recording where an interaction has one participant only.
+
+    Raises DatasetError where fewer than two recordings are left to learn from.
+    """
+    folds = []
+    for interaction in dataset.interactions():
+        entries = _labelled(dataset, interaction)
+        participants = sorted({entry.participant for entry in entries})
+        groups = (
+            [[e for e in entries if e.participant == participant] for participant in participants]
+            if len(participants) > 1
+            else [[entry] for entry in entries]
+        )
+        for group in groups:
+            rest = tuple(entry for entry in entries if entry not in group)
+            folds.append(Fold(interaction, tuple(group), rest))
+    return _checked(folds, dataset)
+
+
+def train_on_one_test_on_other(trained: Dataset, tested: Dataset) -> list[Fold]:
+    """A fold an interaction: all recordings of one set against all of the other.
+
+    Raises DatasetError where they share no interaction.
+    """
+    folds = [
+        Fold(interaction, _labelled(tested, interaction), _labelled(trained, interaction))
+        for interaction in tested.interactions()
+    ]
+    shared = [fold for fold in folds if fold.trained]
+    if not shared:
+        raise DatasetError(
+            f"{trained.folder} and {tested.folder} share no labelled interaction: the one has "
+            f"{_named(trained.interactions())}, the other {_named(tested.interactions())}"
+        )
+    return _checked(shared, trained)
+
+
+def _labelled(dataset: Dataset, interaction: str) -> tuple[Entry, ...]:
+    return tuple(e for e in dataset.entries if e.interaction == interaction and e.object)
+
+
+def _checked(folds: list[Fold], dataset: Dataset) -> list[Fold]:
+    if not folds:
+        raise DatasetError(f"{dataset.folder} has no labelled interaction to evaluate")
+    for fold in folds:
+        if len(fold.trained) < 2:
+            raise DatasetError(
+                f"{dataset.folder}: {fold.interaction} leaves {len(fold.trained)} recordings to "
+                "learn from, and two are the least: add participants"
+            )
+        objects = sorted({str(entry.object) for entry in (*fold.trained, *fold.tested)})
+        if len(objects) > 1:
+            raise DatasetError(
+                f"{dataset.folder}: {fold.interaction} is done with {len(objects)} objects "
+                f"({', '.join(objects)}): give each its own interaction's name"
+            )
+    return folds
+
+
+def _named(interactions: Sequence[str]) -> str:
+    return ", ".join(interactions) or "none"

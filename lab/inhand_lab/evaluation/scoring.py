@@ -1,0 +1,79 @@
+"""The score of one tracker on one recording: its poses against the labels."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from inhand_tracker.geometry.arrays import Array
+
+from inhand_lab.datasets.dataset import Frame
+from inhand_lab.datasets.tracks import Track, true_joints, true_track
+from inhand_lab.evaluation.losses import (
+    Recoveries,
+    lost_bodies,
+    lost_frames,
+    recoveries,
+    recoveries_after,
+)
+from inhand_lab.evaluation.pose_errors import ErrorGauge, region_share
+
+
+@dataclass(frozen=True)
+class Score:
+    """Of the labelled frames of one recording.
+
+    The errors are means over the frames in which a pose was given, or had been given before: it
+    counts until the next. Shares are of all labelled frames; a frame before the first pose is
+    neither within 5 cm and 5° nor under the curve, and lost. ``region_share`` is the share of
+    poses whose own 90 % region, by their covariance, holds the true one; None where none has one.
+    """
+
+    frames: int
+    vertex_error_m: float
+    translation_m: float
+    rotation_rad: float
+    close_share: float
+    area_under_curve: float
+    lost_share: float
+    recoveries: Recoveries
+    body_recoveries: Recoveries
+    region_share: float | None = None
+
+
+class Judge:
+    """Knows the truth of one recording, and scores tracks by it.
+
+    ``joints`` (T, 20, 3) is the body that the trackers saw, NaN where missing.
+    """
+
+    def __init__(self, frames: Sequence[Frame], joints: Array, gauge: ErrorGauge) -> None:
+        true = true_track(frames)
+        self._labelled = true.given
+        self._true = true.of(self._labelled)
+        self._times = np.array([frame.time_ns for frame in frames], np.int64)[self._labelled]
+        bodies = lost_bodies(joints, true_joints(frames))
+        self._body_lost = bodies[self._labelled]
+        self._gauge = gauge
+
+    def score(self, track: Track) -> Score | None:
+        """The score of a track; None where no labelled frame has a pose, then or before."""
+        errors = self._gauge.compare(track.held().of(self._labelled), self._true)
+        if not np.isfinite(errors.vertex_m).any():
+            return None
+        lost = lost_frames(errors.vertex_m, track.given[self._labelled])
+        return Score(
+            len(lost),
+            float(np.nanmean(errors.vertex_m)),
+            float(np.nanmean(errors.translation_m)),
+            float(np.nanmean(errors.rotation_rad)),
+            float(errors.close().mean()),
+            errors.area_under_curve(),
+            float(lost.mean()),
+            recoveries(lost, self._times),
+            recoveries_after(self._body_lost, lost, self._times),
+            region_share(
+                track.of(self._labelled),
+                self._true,
+                None if track.covariances is None else track.covariances[self._labelled],
+            ),
+        )

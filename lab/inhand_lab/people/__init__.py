@@ -1,0 +1,1 @@
+"""Simulated bodies: joints, proportions, posture and surface."""

@@ -1,0 +1,142 @@
+"""The visible surface of a person: rigid parts on the joints, skin, hair and clothes.
+
+Radii of limbs are fractions of stature after the circumferences of ANSUR II.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from inhand_tracker.geometry.arrays import Array, Indices
+
+from inhand_lab.geometry.surfaces import Colour, Surface, ellipsoid, joined, limb
+from inhand_lab.geometry.transforms import MIRROR, Transform, normalised
+from inhand_lab.people.joints import Joint
+from inhand_lab.people.kinematics import Body
+from inhand_lab.people.person import Person
+from inhand_lab.people.solids import belly, head_radii, pelvis, rib_cage
+
+SKIN = ((236, 196, 170), (214, 166, 132), (176, 124, 88), (124, 84, 60), (88, 58, 42))
+EYE = (40, 34, 32)
+HAIR = ((36, 28, 24), (78, 52, 34), (120, 88, 52), (164, 150, 130))
+
+LIMBS: tuple[tuple[Joint, Joint, float, float, str], ...] = (
+    (Joint.SHOULDER_RIGHT, Joint.ELBOW_RIGHT, 0.029, 0.025, "shirt"),
+    (Joint.ELBOW_RIGHT, Joint.WRIST_RIGHT, 0.024, 0.016, "skin"),
+    (Joint.SHOULDER_LEFT, Joint.ELBOW_LEFT, 0.029, 0.025, "shirt"),
+    (Joint.ELBOW_LEFT, Joint.WRIST_LEFT, 0.024, 0.016, "skin"),
+    (Joint.HIP_RIGHT, Joint.KNEE_RIGHT, 0.047, 0.034, "trousers"),
+    (Joint.KNEE_RIGHT, Joint.ANKLE_RIGHT, 0.033, 0.023, "trousers"),
+    (Joint.HIP_LEFT, Joint.KNEE_LEFT, 0.047, 0.034, "trousers"),
+    (Joint.KNEE_LEFT, Joint.ANKLE_LEFT, 0.033, 0.023, "trousers"),
+    (Joint.ANKLE_RIGHT, Joint.FOOT_RIGHT, 0.022, 0.017, "shoes"),
+    (Joint.ANKLE_LEFT, Joint.FOOT_LEFT, 0.022, 0.017, "shoes"),
+    (Joint.SHOULDER_CENTER, Joint.SHOULDER_RIGHT, 0.034, 0.031, "shirt"),
+    (Joint.SHOULDER_CENTER, Joint.SHOULDER_LEFT, 0.034, 0.031, "shirt"),
+    (Joint.SHOULDER_CENTER, Joint.HEAD, 0.034, 0.031, "skin"),
+)
+"""Parent and child joint, radii at both as fractions of stature, and what covers the limb."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A person's surface; part (V,) tells which of the part frames moves each vertex."""
+
+    surface: Surface
+    part: Indices
+
+    def posed(self, body: Body, frame: int) -> Surface:
+        """The surface in the frame of reference of the body, at one of its frames."""
+        frames = _part_frames(body, frame)
+        rotation = frames.rotation[self.part]
+        vertices = np.einsum("vij,vj->vi", rotation, self.surface.vertices)
+        normals = np.einsum("vij,vj->vi", rotation, self.surface.normals)
+        return Surface(
+            vertices + frames.translation[self.part],
+            normals,
+            self.surface.faces,
+            self.surface.colours,
+        )
+
+
+def build_figure(person: Person, joints: Array) -> Figure:
+    """The surface of this person, with bones as between the joints (20, 3), and clothed."""
+    palette = _palette(person)
+    size = person.height * person.girth
+    parts = [
+        limb(_distance(joints, parent, child), root * size, tip * size, palette[cover])
+        for parent, child, root, tip, cover in LIMBS
+    ]
+    parts += [
+        ellipsoid(*pelvis(person), palette["trousers"]),
+        joined([ellipsoid(*part(person), palette["shirt"]) for part in (rib_cage, belly)]),
+        _head(person, palette["skin"], palette["hair"]),
+    ]
+    hand = _right_hand(person, palette["skin"])
+    left = Surface(hand.vertices * MIRROR, hand.normals * MIRROR, hand.faces[:, ::-1], hand.colours)
+    parts += [hand, left]
+    counts = [len(part.vertices) for part in parts]
+    return Figure(joined(parts), np.repeat(np.arange(len(parts)), counts))
+
+
+def _distance(joints: Array, parent: Joint, child: Joint) -> float:
+    return float(np.linalg.norm(joints[child] - joints[parent]))
+
+
+def _part_frames(body: Body, frame: int) -> Transform:
+    joints = body.joints[frame]
+    right = body.from_chest.rotation[frame, :, 0] + 0.01 * body.from_chest.rotation[frame, :, 1]
+    along = normalised([joints[child] - joints[parent] for parent, child, *_ in LIMBS])
+    across = normalised(np.cross(along, right))
+    bones = np.stack([np.cross(across, along), across, along], axis=2)
+    wholes = (
+        body.from_pelvis,
+        body.from_chest,
+        body.from_head,
+        body.from_right_hand,
+        body.from_left_hand,
+    )
+    return Transform(
+        np.stack(
+            [*(joints[parent] for parent, *_ in LIMBS), *(w.translation[frame] for w in wholes)]
+        ),
+        np.concatenate([bones, [whole.rotation[frame] for whole in wholes]]),
+    )
+
+
+def _palette(person: Person) -> dict[str, Colour]:
+    random = np.random.default_rng(person.appearance)
+
+    def cloth() -> Colour:
+        dye = random.uniform(40.0, 190.0) + random.normal(0.0, 35.0, 3)
+        red, green, blue = (int(value) for value in np.clip(dye, 20.0, 230.0))
+        return red, green, blue
+
+    return {
+        "skin": SKIN[random.integers(len(SKIN))],
+        "hair": HAIR[random.integers(len(HAIR))],
+        "shirt": cloth(),
+        "trousers": cloth(),
+        "shoes": cloth(),
+    }
+
+
+def _head(person: Person, skin: Colour, hair: Colour) -> Surface:
+    wide, deep, high = radii = head_radii(person)
+    cap = ellipsoid((0.0, -0.18 * deep, 0.20 * high), radii * (1.07, 0.95, 0.87), hair)
+    nose = ellipsoid((0.0, deep, -0.12 * high), (0.012, 0.016, 0.020), skin, detail=1)
+    eyes = [
+        ellipsoid((side * 0.42 * wide, 0.90 * deep, 0.10 * high), (0.012, 0.008, 0.006), EYE, 1)
+        for side in (-1.0, 1.0)
+    ]
+    return joined([ellipsoid((0.0, 0.0, 0.0), radii, skin), cap, nose, *eyes])
+
+
+def _right_hand(person: Person, colour: Colour) -> Surface:
+    """Half closed: the back of the hand, the fingers bent over the palm, the thumb."""
+    size = person.height / 1.75
+    back = ellipsoid((0.002, -0.005, 0.0), np.array([0.018, 0.070, 0.042]) * size, colour)
+    fingers = ellipsoid((-0.026, 0.050, -0.002), np.array([0.030, 0.030, 0.038]) * size, colour)
+    thumb = ellipsoid((-0.024, 0.030, 0.034), np.array([0.016, 0.042, 0.014]) * size, colour, 1)
+    return joined([back, fingers, thumb])

@@ -1,0 +1,1 @@
+"""How near the simulated sensors are to real ones."""

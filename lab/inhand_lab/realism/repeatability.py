@@ -1,0 +1,120 @@
+"""How nearly a body pose comes back, in the same person and in others.
+
+``python -m inhand_lab.realism.repeatability DATASET`` shows the median distance, in body heights
+over all joints, from a body pose to the nearest one when the person does the same again, and to
+the nearest one of five other people: how exact a skeleton tracker is, and how alike people move.
+"""
+
+import argparse
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from inhand_tracker.body.skeleton import (
+    body_pose,
+    mirror_joints,
+    part_lengths,
+    pelvis_basis,
+    standing_height,
+)
+from inhand_tracker.geometry.arrays import Array
+from rich.console import Console
+from rich.table import Table
+from scipy.spatial.distance import cdist
+
+from inhand_lab.datasets.dataset import Dataset, Entry, labelled_sequence, load_dataset, load_frames
+from inhand_lab.datasets.tracks import true_joints
+
+AGAIN_S = 1.5
+"""Within one recording a pose is done again when so much time has passed."""
+OTHERS = 5
+
+
+@dataclass(frozen=True)
+class Poses:
+    """The body poses b (T, 60) of a recording's frames whose joints are all known, and their times
+    (T,) in seconds."""
+
+    participant: str
+    seconds: Array
+    bodies: Array
+
+
+def poses_of(participant: str, frame_rate: float, handedness: str, joints: Array) -> Poses:
+    """The body poses of joints (T, 20, 3) in metres; left-handed people are mirrored."""
+    known = np.isfinite(joints).all(axis=(1, 2))
+    seen = joints[known]
+    if handedness == "left":
+        seen = mirror_joints(seen)
+    bodies = body_pose(seen, pelvis_basis(seen), standing_height(part_lengths(seen)))
+    return Poses(participant, np.flatnonzero(known) / frame_rate, bodies)
+
+
+def again(recordings: Sequence[Poses]) -> float:
+    """The median distance to the same person's nearest pose, mean over recordings: in other
+    recordings, or later or earlier in this one where there is no other."""
+    return float(np.mean([np.median(np.linalg.norm(one, axis=1)) for one in _returns(recordings)]))
+
+
+def joints_again(recordings: Sequence[Poses]) -> Array:
+    """The same for each joint (20,) by itself, between the poses that are nearest as a whole."""
+    medians = []
+    for returned in _returns(recordings):
+        by_joint = np.linalg.norm(returned.reshape(len(returned), -1, 3), axis=2)
+        medians.append(np.median(by_joint, axis=0))
+    return np.asarray(np.mean(medians, axis=0))
+
+
+def _returns(recordings: Sequence[Poses]) -> Iterator[Array]:
+    """For each recording what its poses (T, 60) differ by from the person's nearest other one."""
+    for one in recordings:
+        rest = [r for r in recordings if r.participant == one.participant and r is not one]
+        others = np.concatenate([r.bodies for r in rest]) if rest else one.bodies
+        distances = cdist(one.bodies, others)
+        if not rest:
+            distances[np.abs(one.seconds[:, None] - one.seconds) < AGAIN_S] = np.inf
+        yield one.bodies - others[distances.argmin(axis=1)]
+
+
+def by_others(recordings: Sequence[Poses]) -> float:
+    """The median distance to the nearest pose of five others' first recordings, mean over
+    recordings."""
+    firsts = {r.participant: r for r in reversed(recordings)}
+    medians = []
+    for one in recordings:
+        others = [firsts[name].bodies for name in sorted(firsts) if name != one.participant]
+        distances = cdist(one.bodies, np.concatenate(others[:OTHERS]))
+        medians.append(np.median(distances.min(axis=1)))
+    return float(np.mean(medians))
+
+
+def main() -> None:
+    """Show how nearly poses come back, by interaction."""
+    parser = argparse.ArgumentParser(
+        prog="python -m inhand_lab.realism.repeatability", description=__doc__
+    )
+    parser.add_argument("dataset", type=Path, metavar="DATASET")
+    dataset = load_dataset(parser.parse_args().dataset)
+    table = Table("interaction", "joints", "done again", "five others")
+    for name in dict.fromkeys(entry.interaction for entry in dataset.entries):
+        entries = [entry for entry in dataset.entries if entry.interaction == name]
+        measured = [labelled_sequence(dataset, entry).joints for entry in entries]
+        true = [_true_joints(dataset, entry) for entry in entries]
+        for kind, joints in (("measured", measured), ("true", true)):
+            if all(np.isfinite(one).all(axis=(1, 2)).any() for one in joints):
+                recordings = [
+                    poses_of(entry.participant, entry.frame_rate, entry.handedness, one)
+                    for entry, one in zip(entries, joints, strict=True)
+                ]
+                figures = again(recordings), by_others(recordings)
+                table.add_row(name, kind, *(f"{figure:.3f}" for figure in figures))
+    Console().print(table)
+
+
+def _true_joints(dataset: Dataset, entry: Entry) -> Array:
+    return true_joints(load_frames(dataset.path(entry), entry.object))
+
+
+if __name__ == "__main__":
+    main()

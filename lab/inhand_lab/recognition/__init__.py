@@ -1,0 +1,1 @@
+"""How well objects that are not given are recognised."""

@@ -1,0 +1,153 @@
+"""The tables of an evaluation, for terminals and for Markdown."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rich import box
+from rich.table import Table
+
+from inhand_lab.evaluation.published import (
+    EDGE_WORTH_PERCENT,
+    MEAN_EDGE_WORTH_PERCENT,
+    REFERENCE_METHOD,
+    VERTEX_ERROR_CM,
+)
+
+MEASURES = {
+    "rotation_deg": "rotation, °",
+    "translation_cm": "translation, cm",
+    "within_5cm_5deg_percent": "within 5 cm 5°, %",
+    "within_90_percent_region_percent": "within its 90 % region, %",
+    "add_area_percent": "ADD(-S) area, %",
+    "lost_percent": "lost, %",
+    "recovery_s": "recovery, s",
+    "body_recovery_s": "after body, s",
+}
+NOTHING = "–"
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Rows of text under a header, some of them set apart as a summary."""
+
+    title: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    summary: tuple[tuple[str, ...], ...] = ()
+
+    def for_terminal(self) -> Table:
+        """At most 80 columns wide with six methods; headers break after hyphens."""
+        table = Table(title=self.title, box=box.SIMPLE_HEAD, padding=0, show_edge=False)
+        for index, name in enumerate(self.header):
+            table.add_column(_broken(name), justify="right" if index else "left", no_wrap=True)
+        for row in self.rows:
+            table.add_row(*map(_narrow, row))
+        if self.summary:
+            table.add_section()
+        for row in self.summary:
+            table.add_row(*map(_narrow, row))
+        return table
+
+    def for_markdown(self) -> str:
+        """A table with its title as a heading."""
+        alignment = (":--", *["--:"] * (len(self.header) - 1))
+        bold = [tuple(f"**{cell}**" for cell in row) for row in self.summary]
+        lines = [f"| {' | '.join(row)} |" for row in (self.header, alignment, *self.rows, *bold)]
+        return "\n".join([f"## {self.title}", "", *lines, ""])
+
+
+def error_grid(methods: Mapping[str, Any], remark: str = "") -> Grid:
+    """Vertex errors as the paper's Table 1, with its means below ours."""
+    interactions = next(iter(methods.values()))["interactions"]
+    published = [VERTEX_ERROR_CM.get(name) for name in methods]
+    rows = tuple(
+        (name, *(_spread(method["interactions"][name]) for method in methods.values()))
+        for name in interactions
+    )
+    return Grid(
+        f"vertex error in cm: mean ± sd over participants{remark}",
+        ("interaction", *methods),
+        rows,
+        (
+            ("mean", *(_spread(method) for method in methods.values())),
+            ("paper's mean", *(_number(value) for value in published)),
+            ("ratio", *(_number(method["ratio"], 2) for method in methods.values())),
+            ("paper's ratio", *(_number(_published_ratio(value), 2) for value in published)),
+        ),
+    )
+
+
+def measures_grid(methods: Mapping[str, Any]) -> Grid:
+    """The other measures, means over interactions."""
+    rows = tuple(
+        (title, *(_number(method[key]) for method in methods.values()))
+        for key, title in MEASURES.items()
+    )
+    return Grid("means over interactions", ("measure", *methods), rows)
+
+
+def interaction_grid(measure: str, methods: Mapping[str, Any]) -> Grid:
+    """One of the other measures for every interaction."""
+    interactions = next(iter(methods.values()))["interactions"]
+    rows = tuple(
+        (name, *(_number(method["interactions"][name][measure]) for method in methods.values()))
+        for name in interactions
+    )
+    mean = ("mean", *(_number(method[measure]) for method in methods.values()))
+    return Grid(MEASURES[measure], ("interaction", *methods), rows, (mean,))
+
+
+def worth_grid(terms: str, worths: Mapping[str, Any]) -> Grid:
+    """By how much terms reduce the vertex error: ``worths`` by the name of what they replace."""
+    interactions = next(iter(worths.values()))["interactions"]
+    against = tuple(f"against {name}" for name in worths)
+    paper = "paper, edges"
+    rows = tuple(
+        (
+            name,
+            *(f"{worth['interactions'][name]:+.1f}" for worth in worths.values()),
+            _signed(EDGE_WORTH_PERCENT.get(name)),
+        )
+        for name in interactions
+    )
+    means = (f"{worth['mean']:+.1f}" for worth in worths.values())
+    return Grid(
+        f"percent by which {terms} reduce the vertex error, over all methods",
+        ("interaction", *against, paper),
+        rows,
+        (("mean", *means, _signed(MEAN_EDGE_WORTH_PERCENT)),),
+    )
+
+
+def shown_grids(result: Mapping[str, Any]) -> Sequence[Grid]:
+    """What a terminal shows of a result."""
+    shown = [error_grid(result["methods"]), measures_grid(result["methods"])]
+    if result["worth"]:
+        shown.append(worth_grid(result["terms"], result["worth"]))
+    return shown
+
+
+def _published_ratio(value: float | None) -> float | None:
+    return None if value is None else value / VERTEX_ERROR_CM[REFERENCE_METHOD]
+
+
+def _spread(figures: Mapping[str, float]) -> str:
+    return f"{figures['vertex_error_cm']:.1f} ± {figures['sd']:.1f}"
+
+
+def _number(value: float | None, digits: int = 1) -> str:
+    return NOTHING if value is None else f"{value:.{digits}f}"
+
+
+def _signed(value: float | None) -> str:
+    return NOTHING if value is None else f"{value:+.1f}"
+
+
+def _narrow(cell: str) -> str:
+    return cell.replace(" ± ", "±")
+
+
+def _broken(name: str) -> str:
+    head, hyphen, tail = name.rpartition("-")
+    return f"{head}-\n{tail}" if hyphen and len(name) > 11 else name

@@ -1,0 +1,1 @@
+"""What sensors make of the world: pictures, depth and skeletons with their errors."""

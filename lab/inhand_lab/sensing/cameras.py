@@ -1,0 +1,35 @@
+"""The cameras that a simulated scene can be seen by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from inhand_lab.geometry import rasteriser
+from inhand_lab.geometry.rasteriser import Intrinsics
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera of colour and depth; exposure is how long a colour frame takes, in seconds."""
+
+    name: str
+    intrinsics: Intrinsics
+    depth_from: Literal["structured light", "stereo"]
+    exposure: float
+
+
+KINECT = Camera("kinect", rasteriser.KINECT, "structured light", exposure=0.020)
+"""Kinect for Xbox 360 at 640 x 480, in the light of a living room."""
+
+OAK_D = Camera(
+    "oak_d", Intrinsics(1280, 720, 1000.0, 1000.0, 639.5, 359.5), "stereo", exposure=0.015
+)
+"""Luxonis OAK-D with depth aligned to colour at 1280 x 720.
+
+The sheet gives the colour sensor a field of view of 69 degrees over all its 4056 columns; video
+uses the middle 3840 of them, a third as many pixels, and so a focal length of about 1000.
+"""
+
+CAMERAS = {camera.name: camera for camera in (KINECT, OAK_D)}
+"""By name."""

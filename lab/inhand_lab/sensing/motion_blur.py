@@ -1,0 +1,137 @@
+"""Colour of what moves while the shutter is open.
+
+Where something moves by a pixel or more its triangles are drawn again and again on their way, and
+the pictures averaged. Everything else is as it was drawn, so that stillness costs nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from inhand_tracker.geometry.arrays import Array, Bytes, Flags, Singles
+from numpy.typing import NDArray
+
+from inhand_lab.geometry.rasteriser import Canvas, Intrinsics, draw
+from inhand_lab.geometry.surfaces import Surface, lit
+from inhand_lab.geometry.transforms import Transform
+from inhand_lab.geometry.window import window_around
+from inhand_lab.people.figure import Figure
+from inhand_lab.people.kinematics import Body
+
+SHARPNESS = 1.0
+"""Movement in pixels during the exposure below which nothing is blurred."""
+SPACING = 4.0
+"""Pixels between one picture and the next; MOST pictures at the most."""
+MOST = 8
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A surface in the camera's frame in the middle of the exposure, and by how much each of its
+    vertices (V, 3) moves in the course of it, in metres."""
+
+    surface: Surface
+    travel: Array
+
+
+def scene_in_motion(
+    figure: Figure,
+    body_in_camera: Body,
+    object_surface: Surface,
+    camera_from_object: Transform,
+    frame: int,
+    exposure: float,
+) -> list[Moving]:
+    """Person and object in a frame of a recording, with an exposure of that share of a frame's
+    time; they move as from the frame before to the frame after."""
+    before, after = max(frame - 1, 0), min(frame + 1, len(body_in_camera.joints) - 1)
+    share = exposure / max(after - before, 1)
+    person = [figure.posed(body_in_camera, one) for one in (before, frame, after)]
+    thing = [object_surface.moved(camera_from_object[one]) for one in (before, frame, after)]
+    return [
+        Moving(middle, share * (end.vertices - start.vertices))
+        for start, middle, end in (person, thing)
+    ]
+
+
+def blurred(sharp: Canvas, room: Canvas, intrinsics: Intrinsics, scene: list[Moving]) -> Bytes:
+    """The colours (H, W, 3) of a scene that was drawn sharply before the room."""
+    parts = [_Part.of(moving, intrinsics) for moving in scene]
+    furthest = max(part.furthest for part in parts)
+    if furthest < SHARPNESS:
+        return sharp.colour
+    swept = [part.swept() for part in parts]
+    window = window_around(intrinsics, np.concatenate(swept))
+    if 0 in (window.intrinsics.width, window.intrinsics.height):
+        return sharp.colour
+    behind = window.cut(room).copy()
+    for part in parts:
+        part.draw(behind, window.intrinsics, ~part.moves, 0.0)
+    count = int(np.clip(np.ceil(furthest / SPACING), 2, MOST))
+    total = np.zeros(behind.colour.shape, np.uint16)
+    for share in (np.arange(count) + 0.5) / count - 0.5:
+        picture = behind.copy()
+        for part in parts:
+            part.draw(picture, window.intrinsics, part.moves, float(share))
+        _add(total, picture.colour)
+    colour = sharp.colour.copy()
+    _divide(total, count, colour[window.rows, window.columns])
+    return colour
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A surface ready to be drawn: vertices and travel (V, 3), and which faces (F,) move."""
+
+    vertices: Singles
+    travel: Singles
+    faces: NDArray[np.int32]
+    shades: Singles
+    moves: Flags
+    furthest: float
+
+    @classmethod
+    def of(cls, moving: Moving, intrinsics: Intrinsics) -> _Part:
+        surface = moving.surface
+        depth = np.maximum(surface.vertices[:, 2:], 0.1)
+        along = moving.travel[:, :2] - surface.vertices[:, :2] * (moving.travel[:, 2:] / depth)
+        pixels = intrinsics.fx * np.linalg.norm(along, axis=1) / depth[:, 0]
+        return cls(
+            surface.vertices.astype(np.float32),
+            moving.travel.astype(np.float32),
+            surface.faces,
+            lit(surface.normals, surface.colours),
+            (pixels >= SHARPNESS)[surface.faces].any(axis=1),
+            float(pixels.max()),
+        )
+
+    def swept(self) -> Singles:
+        """Where (N, 3) the vertices of the moving faces begin and end."""
+        corners = np.unique(self.faces[self.moves])
+        middle, half = self.vertices[corners], 0.5 * self.travel[corners]
+        return np.concatenate([middle - half, middle + half])
+
+    def draw(self, canvas: Canvas, intrinsics: Intrinsics, chosen: Flags, share: float) -> None:
+        """Draw the chosen faces (F,) where they are at a share of the exposure, 0 its middle."""
+        placed = self.vertices + np.float32(share) * self.travel
+        draw(canvas, intrinsics, placed, self.faces[chosen], self.shades, 1)
+
+
+@numba.njit(cache=True, nogil=True)
+def _add(total, colour):  # type: ignore[no-untyped-def]
+    height, width, _ = colour.shape
+    for v in range(height):
+        for u in range(width):
+            for channel in range(3):
+                total[v, u, channel] += colour[v, u, channel]
+
+
+@numba.njit(cache=True, nogil=True)
+def _divide(total, count, colour):  # type: ignore[no-untyped-def]
+    height, width, _ = colour.shape
+    for v in range(height):
+        for u in range(width):
+            for channel in range(3):
+                colour[v, u, channel] = (total[v, u, channel] + count // 2) // count

@@ -1,0 +1,62 @@
+"""Noise drawn once and looked up ever after: sensors are too large for a fresh draw a frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from inhand_tracker.geometry.arrays import Array, Singles
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
+from scipy.special import ndtr
+
+FIELD = 1024
+"""Width and height of the fields, which repeat; a power of two."""
+
+Place = tuple[int, int]
+"""Row and column of a field that an image begins at."""
+
+
+@dataclass(frozen=True)
+class NoiseFields:
+    """Fields (FIELD, FIELD) of noise.
+
+    axial is of unit deviation and correlated, lateral (..., 2) are whole pixels, loss is uniform
+    in [0, 1), patches is so too but correlated over many pixels, colour is of unit deviation.
+    """
+
+    axial: Singles
+    lateral: NDArray[np.int8]
+    loss: Singles
+    patches: Singles
+    colour: Singles
+
+
+@cache
+def noise_fields(grain: float, lateral_deviation: float, patch: float) -> NoiseFields:
+    """Fields, always the same for the same sizes in pixels: grain is over how many depth noise is
+    correlated, patch how large the patches are."""
+    random = np.random.default_rng(0x5E4502)
+
+    def correlated(pixels: float) -> Array:
+        field = gaussian_filter(random.normal(size=(FIELD, FIELD)), pixels, mode="wrap")
+        return np.asarray(field / field.std())
+
+    axial = correlated(grain).astype(np.float32)
+    lateral = np.empty((FIELD, FIELD, 2), np.int8)
+    for axis in range(2):
+        lateral[..., axis] = np.rint(lateral_deviation * correlated(0.8 * grain))
+    return NoiseFields(
+        axial,
+        lateral,
+        random.random((FIELD, FIELD)).astype(np.float32),
+        ndtr(correlated(patch)).astype(np.float32),
+        random.normal(size=(FIELD, FIELD)).astype(np.float32),
+    )
+
+
+def any_place(random: np.random.Generator) -> Place:
+    """Somewhere in a field."""
+    row, column = random.integers(FIELD, size=2).tolist()
+    return row, column

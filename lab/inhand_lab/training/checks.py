@@ -1,0 +1,111 @@
+"""Whether recordings can be learned from; each mistake is one line that says the mend."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from inhand_schemas.messages import JOINT_NAMES
+from inhand_tracker.body.skeleton import JOINT, PELVIS_JOINTS
+from inhand_tracker.geometry import rotations
+from inhand_tracker.mapping.learning import LabelledSequence
+
+from inhand_lab.datasets.dataset import DatasetError, Entry
+
+FASTEST_M_PER_S = 60.0
+"""Faster than the head of a golf club."""
+
+FASTEST_RAD_PER_S = 85.0
+"""Faster than a golf club turns; a label that is upside down for a frame at 30 Hz turns faster."""
+
+LEAST_SHARE = 0.5
+"""Of a recording's frames, that must have a label, and a whole body."""
+
+CLEARLY = 0.9
+"""The share of frames in which the object is nearer to one hand, where it is that hand's."""
+
+
+def check_sequence(entry: Entry, sequence: LabelledSequence) -> None:
+    """Raises DatasetError for a recording that cannot be meant."""
+    if len(sequence.joints) == 0:
+        raise DatasetError(
+            f"{entry.file} holds no skeletons: record it again with a body tracker, or take it "
+            "out of dataset.toml"
+        )
+    _check_labels(entry, sequence)
+    _check_jumps(entry, sequence)
+    _check_bodies(entry, sequence)
+
+
+def check_hands(entries: Sequence[Entry], sequences: Sequence[LabelledSequence]) -> None:
+    """Raises DatasetError where an object is in the dominant hand of some people, and in the other
+    hand of others: one of them is not as handed as ``dataset.toml`` says."""
+    shares = np.array([_share_at_dominant_hand(sequence) for sequence in sequences])
+    at_dominant, at_other = shares >= CLEARLY, shares <= 1.0 - CLEARLY
+    if not (at_dominant.any() and at_other.any()):
+        return
+    odd = at_other if at_other.sum() <= at_dominant.sum() else at_dominant
+    index = int(np.flatnonzero(odd)[0])
+    entry, hand = entries[index], "other" if odd is at_other else "dominant"
+    mended = "right" if entry.handedness == "left" else "left"
+    raise DatasetError(
+        f"{entry.file}: {entry.object!r} is at the {hand} hand of a {entry.handedness}-handed "
+        f"person, unlike in {int((~odd & (at_dominant | at_other)).sum())} other recordings: "
+        f'write handedness = "{mended}" in dataset.toml, or take the recording out'
+    )
+
+
+def _check_labels(entry: Entry, sequence: LabelledSequence) -> None:
+    frames = len(sequence.translations)
+    unlabelled = int((~np.isfinite(sequence.translations).all(axis=1)).sum())
+    if unlabelled > (1.0 - LEAST_SHARE) * frames:
+        raise DatasetError(
+            f"{entry.file} has no label of {entry.object!r} in {_share(unlabelled, frames)}, and "
+            f"{1.0 - LEAST_SHARE:.0%} may lack one: label it, or take it out of dataset.toml"
+        )
+
+
+def _check_jumps(entry: Entry, sequence: LabelledSequence) -> None:
+    moved = np.linalg.norm(np.diff(sequence.translations, axis=0), axis=1)
+    turned = rotations.angle_between(sequence.rotations[:-1], sequence.rotations[1:])
+    for frame in np.flatnonzero(moved * entry.frame_rate > FASTEST_M_PER_S):
+        raise DatasetError(
+            f"{entry.file}: the label jumps by {moved[frame]:.2f} m after frame {frame}: "
+            "mend that label"
+        )
+    for frame in np.flatnonzero(turned * entry.frame_rate > FASTEST_RAD_PER_S):
+        raise DatasetError(
+            f"{entry.file}: the label turns by {np.degrees(turned[frame]):.0f}° after frame "
+            f"{frame}: mend that label"
+        )
+
+
+def _check_bodies(entry: Entry, sequence: LabelledSequence) -> None:
+    seen = np.asarray(np.isfinite(sequence.joints).all(axis=2))
+    frames = len(seen)
+    most_missing = (1.0 - LEAST_SHARE) * frames
+    without_pelvis = int((~seen[:, PELVIS_JOINTS].all(axis=1)).sum())
+    if without_pelvis > most_missing:
+        needed = ", ".join(JOINT_NAMES[joint] for joint in sorted(PELVIS_JOINTS))
+        raise DatasetError(
+            f"{entry.file} has no pelvis in {_share(without_pelvis, frames)}, and body poses are "
+            f"measured from it: record so that {needed} are tracked"
+        )
+    incomplete = int((~seen.all(axis=1)).sum())
+    if incomplete > most_missing:
+        worst = JOINT_NAMES[int(np.argmin(seen.sum(axis=0)))]
+        raise DatasetError(
+            f"{entry.file} lacks joints in {_share(incomplete, frames)}, {worst} most often, and "
+            f"{1.0 - LEAST_SHARE:.0%} may: record so that the whole body is seen"
+        )
+
+
+def _share_at_dominant_hand(sequence: LabelledSequence) -> float:
+    """The share of the frames in which the object is nearer to the dominant hand than the other."""
+    hands = sequence.joints[:, [JOINT["HandRight"], JOINT["HandLeft"]]]
+    right, left = np.linalg.norm(hands - sequence.translations[:, None], axis=2).T
+    known = np.isfinite(right) & np.isfinite(left)
+    nearer = left < right if sequence.left_handed else right < left
+    return float(nearer[known].mean()) if known.any() else 0.5
+
+
+def _share(count: int, frames: int) -> str:
+    return f"{count} of {frames} frames"

@@ -1,0 +1,112 @@
+"""Training a model from a dataset."""
+
+from collections.abc import Callable, Collection, Sequence
+
+from inhand_schemas.errors import MessageError
+from inhand_tracker.mapping.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
+from inhand_tracker.methods.registry import DEFAULT_METHOD, new_tracker
+from inhand_tracker.model.model_file import Model
+from inhand_tracker.prior.learning import learn_prior
+from inhand_tracker.shape.viewpoints import find_viewpoints
+from inhand_tracker.sight.appearance import learn_appearance
+
+from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, labelled_sequence
+from inhand_lab.training.appearance_samples import appearance_samples
+from inhand_lab.training.checks import check_hands, check_sequence
+
+READING, VIEWPOINTS, APPEARANCE, PRIOR = "recordings", "viewpoints", "appearance", "prior"
+
+
+def stages(recordings: int) -> dict[str, int]:
+    """What training goes through, each with the number of its steps."""
+    return {
+        READING: recordings,
+        **dict.fromkeys(STAGES, recordings),
+        VIEWPOINTS: 1,
+        APPEARANCE: 1,
+        PRIOR: 1,
+    }
+
+
+def entries_for(
+    dataset: Dataset, object_name: str | None = None, without: Collection[str] = ()
+) -> list[Entry]:
+    """The labelled recordings of one object, but for some participants'.
+
+    ``object_name`` may be left out where the dataset has one object. Raises DatasetError.
+    """
+    labelled = [entry for entry in dataset.entries if entry.object is not None]
+    objects = sorted({entry.object for entry in labelled if entry.object is not None})
+    if object_name is None:
+        if len(objects) != 1:
+            raise DatasetError(
+                f"{dataset.folder} has {len(objects)} labelled objects; "
+                + (f"choose with --object: {', '.join(objects)}" if objects else "none to learn")
+            )
+        object_name = objects[0]
+    chosen = [e for e in labelled if e.object == object_name]
+    if not chosen:
+        raise DatasetError(
+            f"{dataset.folder} has no labelled recording of {object_name!r}; there are: "
+            f"{', '.join(objects) or 'none'}"
+        )
+    participants = sorted({entry.participant for entry in chosen})
+    unknown = sorted(set(without) - set(participants))
+    if unknown:
+        raise DatasetError(
+            f"{dataset.folder} has no participant {unknown[0]!r} with {object_name!r}; there are: "
+            f"{', '.join(participants)}"
+        )
+    return [entry for entry in chosen if entry.participant not in without]
+
+
+def train(
+    dataset: Dataset,
+    entries: Sequence[Entry],
+    on_step: Callable[[str], None] = lambda stage: None,
+) -> Model:
+    """Learn from recordings of one object; ``on_step`` is called at every step of ``stages``.
+
+    Raises DatasetError or InhandError.
+    """
+    if len(entries) < 2:
+        raise DatasetError(
+            f"{dataset.folder}: learning compares recordings, two at the least, and "
+            f"{len(entries)} is left: add participants"
+        )
+    first = entries[0]
+    if first.object is None:
+        raise DatasetError(f"{first.file} is not labelled")
+    shape = dataset.shape(first.object)
+    sequences = []
+    for entry in entries:
+        sequences.append(checked_sequence(dataset, entry))
+        on_step(READING)
+    check_hands(entries, sequences)
+    try:
+        mapping = learn(sequences, shape.mirror_normal, on_step)
+    except UnusableSequenceError as error:
+        raise DatasetError(f"{dataset.folder}: {error}") from None
+    viewpoints = find_viewpoints(shape)
+    on_step(VIEWPOINTS)
+    appearance = learn_appearance(shape, appearance_samples(dataset, entries))
+    on_step(APPEARANCE)
+    prior = learn_prior(sequences, shape)
+    on_step(PRIOR)
+    model = Model(first.interaction, shape, mapping, viewpoints, appearance, prior)
+    # Compiles, once an installation, what the start of a rig would otherwise wait for.
+    new_tracker(model, DEFAULT_METHOD)
+    return model
+
+
+def checked_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
+    """A recording for training; raises DatasetError for one that cannot be meant."""
+    try:
+        sequence = labelled_sequence(dataset, entry)
+    except MessageError as error:
+        raise DatasetError(
+            f"{entry.file} holds a message that is wrong ({error}): record or label it again, or "
+            "take it out of dataset.toml"
+        ) from None
+    check_sequence(entry, sequence)
+    return sequence

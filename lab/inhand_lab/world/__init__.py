@@ -1,0 +1,1 @@
+"""A simulated person with an object before a camera."""

@@ -1,0 +1,109 @@
+"""A simulation told in messages."""
+
+import numpy as np
+from inhand_runtime.pixels import encode_colour, encode_depth
+from inhand_schemas.messages import (
+    CameraInfo,
+    Contact,
+    JointState,
+    ObjectPose,
+    Person,
+    RgbdFrame,
+    Vector3,
+)
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.shape.shape import ObjectShape
+from inhand_tracker.wire.poses import pose_message
+
+from inhand_lab.geometry.rasteriser import Intrinsics
+from inhand_lab.objects.model import ObjectModel
+from inhand_lab.world.simulation import Frame, Simulation
+
+JOINT_STATES: tuple[JointState, ...] = ("missing", "inferred", "tracked")
+CONTACTS: tuple[Contact, ...] = ("resting", "right_hand", "left_hand", "both_hands", "worn")
+"""In the order of the world's numbers."""
+
+
+def camera_info(intrinsics: Intrinsics, frame_rate: float, time_ns: int = 0) -> CameraInfo:
+    """How the simulated camera sees."""
+    return CameraInfo(
+        sequence=0,
+        time_ns=time_ns,
+        width=intrinsics.width,
+        height=intrinsics.height,
+        fx=intrinsics.fx,
+        fy=intrinsics.fy,
+        cx=intrinsics.cx,
+        cy=intrinsics.cy,
+        frame_rate=frame_rate,
+        description="simulated",
+    )
+
+
+def person_message(simulation: Simulation, frame: int) -> Person:
+    """What the simulated skeleton tracker says of one frame."""
+    states = tuple(JOINT_STATES[state] for state in simulation.joint_states[frame])
+    return Person(
+        id=0,
+        joints=tuple(
+            (0.0, 0.0, 0.0) if state == "missing" else (x, y, z)
+            for state, (x, y, z) in zip(
+                states, simulation.joints_in_camera[frame].tolist(), strict=True
+            )
+        ),
+        states=states,
+        confidences=tuple(simulation.joint_confidences[frame].tolist()),
+    )
+
+
+def pixels_message(seen: Frame, *, sequence: int, time_ns: int) -> RgbdFrame:
+    """A frame as a camera sends it."""
+    return RgbdFrame(
+        sequence=sequence,
+        time_ns=time_ns,
+        colour=encode_colour(seen.colour),
+        depth=encode_depth(seen.depth),
+    )
+
+
+def label_message(
+    simulation: Simulation,
+    frame: int,
+    *,
+    sequence: int,
+    time_ns: int,
+    camera: str,
+    visible_fraction: float | None = None,
+) -> ObjectPose:
+    """The truth of one frame; how much of the object is visible is for the caller to find out."""
+    return ObjectPose(
+        sequence=sequence,
+        time_ns=time_ns,
+        object=simulation.object_model.name,
+        camera=camera,
+        state="tracked",
+        confidence=1.0,
+        person=0,
+        camera_from_object=pose_message(
+            simulation.translations[frame], simulation.rotations[frame]
+        ),
+        visible_fraction=visible_fraction,
+        contact=CONTACTS[simulation.contact[frame]],
+        person_joints=_triples(simulation.true_joints_in_camera[frame]),
+    )
+
+
+def shape_of(model: ObjectModel) -> ObjectShape:
+    """The object as datasets keep it."""
+    return ObjectShape(
+        model.name,
+        model.vertices,
+        model.faces,
+        model.marked_vertices,
+        np.array(model.mirror_normal),
+        model.symmetries,
+    )
+
+
+def _triples(joints: Array) -> tuple[Vector3, ...]:
+    return tuple((x, y, z) for x, y, z in joints.tolist())

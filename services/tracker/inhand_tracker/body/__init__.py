@@ -1,0 +1,1 @@
+"""The skeleton: its basis, parts, height, and its last moments."""

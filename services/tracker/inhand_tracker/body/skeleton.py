@@ -1,0 +1,229 @@
+"""The body: pelvis basis, body pose, part predictors, height (Darby et al. 2014, section 4).
+
+Joints are (..., 20, 3) in metres in the camera frame, in Kinect order
+(``inhand_schemas.messages.JOINT_NAMES``). A part is a joint with its parent: 19 of them, in the
+order of ``PARTS``. Missing joints are NaN.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from inhand_schemas.messages import JOINT_NAMES
+
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array
+
+JOINT = {name: index for index, name in enumerate(JOINT_NAMES)}
+
+_PARENT_NAMES = {
+    "Spine": "HipCenter",
+    "ShoulderCenter": "Spine",
+    "Head": "ShoulderCenter",
+    "ShoulderLeft": "ShoulderCenter",
+    "ElbowLeft": "ShoulderLeft",
+    "WristLeft": "ElbowLeft",
+    "HandLeft": "WristLeft",
+    "ShoulderRight": "ShoulderCenter",
+    "ElbowRight": "ShoulderRight",
+    "WristRight": "ElbowRight",
+    "HandRight": "WristRight",
+    "HipLeft": "HipCenter",
+    "KneeLeft": "HipLeft",
+    "AnkleLeft": "KneeLeft",
+    "FootLeft": "AnkleLeft",
+    "HipRight": "HipCenter",
+    "KneeRight": "HipRight",
+    "AnkleRight": "KneeRight",
+    "FootRight": "AnkleRight",
+}
+
+PARTS = tuple(_PARENT_NAMES)
+PART = {name: index for index, name in enumerate(PARTS)}
+CHILD_JOINTS = np.array([JOINT[name] for name in PARTS])
+PARENT_JOINTS = np.array([JOINT[_PARENT_NAMES[name]] for name in PARTS])
+RIGHT_HAND = PART["HandRight"]
+LEFT_HAND = PART["HandLeft"]
+PELVIS_JOINTS = np.array([JOINT[n] for n in ("HipCenter", "Spine", "HipLeft", "HipRight")])
+
+MIRRORED_JOINTS = np.array(
+    [
+        JOINT[name.replace("Left", "Right") if "Left" in name else name.replace("Right", "Left")]
+        for name in JOINT_NAMES
+    ]
+)
+
+# Shares of stature (Drillis and Contini 1966): from the ankle (3.9 %) to the hip (53 %), and from
+# the hip to the middle of the head (93.5 %).
+LEG_SHARE = 0.491
+TRUNK_SHARE = 0.405
+
+HEIGHT_WINDOW = 300
+WILD = 2.0
+FARTHEST_M = 1000.0
+
+_LEG_PARTS = np.array(
+    [[PART["KneeLeft"], PART["AnkleLeft"]], [PART["KneeRight"], PART["AnkleRight"]]]
+)
+
+
+@dataclass(frozen=True)
+class Bases:
+    """Coordinate systems in the camera frame: ``origins`` (..., 3), ``rotations`` (..., 4)."""
+
+    origins: Array
+    rotations: Array
+
+    def to_camera(self, translations: Array, orientations: Array) -> tuple[Array, Array]:
+        """Poses given in these bases, (..., 3) and (..., 4), taken to the camera frame."""
+        return (
+            self.origins + rotations.rotate(self.rotations, translations),
+            rotations.multiply(self.rotations, orientations),
+        )
+
+    def from_camera(self, translations: Array, orientations: Array) -> tuple[Array, Array]:
+        """Poses of the camera frame, (..., 3) and (..., 4), seen from these bases."""
+        inverse = rotations.conjugate(self.rotations)
+        return (
+            rotations.rotate(inverse, translations - self.origins),
+            rotations.multiply(inverse, orientations),
+        )
+
+
+def pelvis_basis(joints: Array) -> Bases:
+    """H*: x from the right hip to the left, y up the spine, z forwards, origin at HipCenter."""
+    x = joints[..., JOINT["HipLeft"], :] - joints[..., JOINT["HipRight"], :]
+    upwards = joints[..., JOINT["Spine"], :] - joints[..., JOINT["HipCenter"], :]
+    z = np.cross(x, upwards)
+    y = np.cross(z, x)
+    axes = np.stack([_unit(axis) for axis in (x, y, z)], axis=-1)
+    return Bases(joints[..., JOINT["HipCenter"], :], rotations.from_matrix(axes))
+
+
+def has_pelvis(joints: Array) -> bool:
+    """Whether the pelvis basis of one person's (20, 3) joints is defined."""
+    if not np.isfinite(joints[PELVIS_JOINTS]).all():
+        return False
+    x = joints[JOINT["HipLeft"]] - joints[JOINT["HipRight"]]
+    upwards = joints[JOINT["Spine"]] - joints[JOINT["HipCenter"]]
+    return bool(np.linalg.norm(np.cross(x, upwards)) > 1e-6)
+
+
+def part_bases(joints: Array, pelvis: Bases) -> Bases:
+    """The part predictors H_l, (..., 19): H* at the parent joint, z turned along the part.
+
+    A part of no length keeps the pelvis' directions; one that points exactly backwards is turned
+    about the pelvis' x axis.
+    """
+    parents = joints[..., PARENT_JOINTS, :]
+    pelvis_rotation = pelvis.rotations[..., None, :]
+    along = rotations.rotate(
+        rotations.conjugate(pelvis_rotation), joints[..., CHILD_JOINTS, :] - parents
+    )
+    return Bases(parents, rotations.multiply(pelvis_rotation, _turn_z_to(along)))
+
+
+def _turn_z_to(direction: Array) -> Array:
+    """The shortest rotation that takes the z axis to a direction, (..., 3) → (..., 4)."""
+    length = np.linalg.norm(direction, axis=-1, keepdims=True)
+    unit = direction / np.where(length > 1e-9, length, 1.0)
+    x, y, z = rotations.components(unit)
+    turn = np.stack((1.0 + z, -y, x, np.zeros_like(z)), axis=-1)
+    backwards = np.linalg.norm(turn, axis=-1, keepdims=True) <= 1e-9
+    return rotations.normalise(np.where(backwards, np.array([0.0, 1.0, 0.0, 0.0]), turn))
+
+
+def body_pose(joints: Array, pelvis: Bases, height: Array | float) -> Array:
+    """b: the joints in the pelvis basis in units of the person's height, (..., 60)."""
+    local = rotations.rotate(
+        rotations.conjugate(pelvis.rotations)[..., None, :],
+        joints - pelvis.origins[..., None, :],
+    )
+    scaled = local / np.asarray(height)[..., None, None]
+    return scaled.reshape(*scaled.shape[:-2], 60)
+
+
+def part_lengths(joints: Array) -> Array:
+    """The lengths of the 19 parts, (..., 19); NaN where an end is missing."""
+    return np.linalg.norm(joints[..., CHILD_JOINTS, :] - joints[..., PARENT_JOINTS, :], axis=-1)
+
+
+def standing_height(lengths: Array) -> float:
+    """Stature from part lengths (T, 19) of one person, each part's median over time.
+
+    Lengths do not change when a person bends. A leg seen on one side only counts for both, and
+    the trunk alone must do where no leg was seen; NaN when a part of the trunk was not.
+    """
+    typical = np.full(len(PARTS), np.nan)
+    seen = np.isfinite(lengths).any(axis=0)
+    known = lengths[:, seen]
+    # The same where nothing is missing, and np.nanmedian takes ten times as long.
+    median = np.median if np.isfinite(known).all() else np.nanmedian
+    typical[seen] = median(known, axis=0)
+    trunk = typical[[PART["Spine"], PART["ShoulderCenter"], PART["Head"]]].sum()
+    legs = typical[_LEG_PARTS].sum(axis=1)
+    if not np.isfinite(legs).any():
+        return float(trunk / TRUNK_SHARE)
+    return float((trunk + np.nanmean(legs)) / (TRUNK_SHARE + LEG_SHARE))
+
+
+class RunningHeight:
+    """h_t: the stature from the last frames' part lengths.
+
+    ``proportions`` (19,) are usual part lengths in any unit. A part of more than twice or less
+    than half of the length that the person's other parts make one expect has a wild joint, and
+    the expected length stands for it: so even the first frame may be wild.
+    """
+
+    def __init__(self, proportions: Array | None = None) -> None:
+        self._proportions = proportions
+        self._lengths = np.full((HEIGHT_WINDOW, len(PARTS)), np.nan)
+        self._frames = 0
+
+    def update(self, joints: Array) -> float:
+        """Take one frame's (20, 3) joints and give the height in metres; NaN while unknown."""
+        lengths = part_lengths(joints)
+        if self._proportions is not None:
+            lengths = _in_proportion(lengths, self._proportions)
+        self._lengths[self._frames % HEIGHT_WINDOW] = lengths
+        self._frames += 1
+        return standing_height(self._lengths[: self._frames])
+
+
+def _in_proportion(lengths: Array, proportions: Array) -> Array:
+    shares = lengths / np.maximum(proportions, 1e-9)
+    known = np.isfinite(shares)
+    if not known.any():
+        return lengths
+    typical = np.median(shares[known])
+    wild = (shares > WILD * typical) | (shares < typical / WILD)
+    return np.where(wild, typical * proportions, lengths)
+
+
+def without_impossible(joints: Array) -> Array:
+    """Joints (..., 3), those beyond any room (1 km) as missing."""
+    possible = (np.abs(joints) <= FARTHEST_M).all(axis=-1, keepdims=True)
+    return np.where(possible, joints, np.nan)
+
+
+def mirror_joints(joints: Array) -> Array:
+    """The person as a mirror shows it: x negated, left and right exchanged, (..., 20, 3)."""
+    return joints[..., MIRRORED_JOINTS, :] * np.array([-1.0, 1.0, 1.0])
+
+
+def mirror_pose(
+    translations: Array, orientations: Array, mirror_normal: Array
+) -> tuple[Array, Array]:
+    """Object poses (..., 3) and (..., 4) as a mirror (x negated) shows them.
+
+    ``mirror_normal`` (3,) is the unit normal, in the object's frame, of the object's own plane of
+    symmetry, which makes the mirrored object the same object again.
+    """
+    # A reflection is minus a half turn about its normal: S R S' = turn_x R turn_normal.
+    turn_x = np.array([0.0, 1.0, 0.0, 0.0])
+    turn_normal = np.concatenate(([0.0], mirror_normal))
+    turned = rotations.multiply(rotations.multiply(turn_x, orientations), turn_normal)
+    return translations * np.array([-1.0, 1.0, 1.0]), turned
+
+
+def _unit(vector: Array) -> Array:
+    return vector / np.linalg.norm(vector, axis=-1, keepdims=True)

@@ -1,0 +1,51 @@
+"""Pinhole projection."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from inhand_schemas.messages import CameraInfo
+
+from inhand_tracker.geometry.arrays import Array
+
+NEAREST_M = 0.05
+
+
+@dataclass(frozen=True)
+class Intrinsics:
+    """Focal lengths and principal point in pixels of a ``width`` × ``height`` image."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    width: int
+    height: int
+
+    def scaled_to(self, width: int, height: int) -> "Intrinsics":
+        """The same view in an image of another size."""
+        x, y = width / self.width, height / self.height
+        return Intrinsics(
+            self.fx * x,
+            self.fy * y,
+            (self.cx + 0.5) * x - 0.5,
+            (self.cy + 0.5) * y - 0.5,
+            width,
+            height,
+        )
+
+    def project(self, points: Array) -> Array:
+        """Pixels (..., 2) of points (..., 3) in the camera frame; NaN behind the camera."""
+        depth = points[..., 2:]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            plane = np.where(depth > NEAREST_M, points[..., :2] / depth, np.nan)
+        return plane * [self.fx, self.fy] + [self.cx, self.cy]
+
+    def unproject(self, pixels: Array, depths: Array) -> Array:
+        """Points (N, 3) in the camera frame at pixels (N, 2) with depths (N,) in metres."""
+        across = (pixels - [self.cx, self.cy]) / [self.fx, self.fy]
+        return np.column_stack((across * depths[:, None], depths))
+
+
+def intrinsics_of(info: CameraInfo) -> Intrinsics:
+    """The pinhole part of a camera's description."""
+    return Intrinsics(info.fx, info.fy, info.cx, info.cy, info.width, info.height)

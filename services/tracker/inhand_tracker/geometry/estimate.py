@@ -1,0 +1,70 @@
+"""From weighted particles to one pose, with its covariance and confidence."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array
+
+AGREEMENT_M = 0.10
+AGREEMENT_RAD = np.deg2rad(30.0)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The object's pose in the camera frame.
+
+    ``translation`` (3,), ``rotation`` (4,), ``covariance`` (6, 6) of (translation, rotation vector
+    on the left), ``confidence`` the weight of the particles within 10 cm and 30° of the pose. A
+    lost object has no pose.
+    """
+
+    state: Literal["tracked", "predicted", "lost"]
+    confidence: float
+    translation: Array | None = None
+    rotation: Array | None = None
+    covariance: Array | None = None
+
+
+LOST = Estimate("lost", 0.0)
+
+
+def normalised_weights(log_weights: Array) -> Array:
+    """Weights (P,) that sum to 1."""
+    weights = np.exp(log_weights - log_weights.max())
+    return weights / weights.sum()
+
+
+def weighted_estimate(translations: Array, orientations: Array, weights: Array) -> Estimate:
+    """The expected pose (equations 18 and 19; the rotation after Markley) of (P, 3), (P, 4)."""
+    translation = weights @ translations
+    rotation = rotations.mean(orientations, weights)
+    offsets = translations - translation
+    turns = rotations.to_vector(rotations.multiply(orientations, rotations.conjugate(rotation)))
+    deviations = np.concatenate((offsets, turns), axis=1)
+    agreeing = (np.linalg.norm(offsets, axis=1) < AGREEMENT_M) & (
+        np.linalg.norm(turns, axis=1) < AGREEMENT_RAD
+    )
+    return Estimate(
+        "tracked",
+        float(min(weights @ agreeing, 1.0)),
+        translation,
+        rotation,
+        np.einsum("p,pi,pj->ij", weights, deviations, deviations),
+    )
+
+
+def vertex_error(
+    estimate: tuple[Array, Array], truth: tuple[Array, Array], marked_vertices: Array
+) -> Array:
+    """The paper's error score in metres: mean distance of corresponding vertices (M, 3).
+
+    Both poses are translations (..., 3) and rotations (..., 4); the result is (...).
+    """
+    placed = [
+        rotations.rotate(orientation[..., None, :], marked_vertices) + translation[..., None, :]
+        for translation, orientation in (estimate, truth)
+    ]
+    return np.asarray(np.linalg.norm(placed[0] - placed[1], axis=-1).mean(axis=-1))

@@ -1,0 +1,98 @@
+"""Normal distributions over poses, and mixtures of them.
+
+A pose is that of the object's centre: ``centre`` (3,) and ``rotation`` (4,) in the camera frame.
+Deviations are (translation of the centre, rotation vector on the left), in metres and radians.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array
+
+
+@dataclass(frozen=True)
+class PoseGaussian:
+    """A mean pose and the ``covariance`` (6, 6) of deviations from it."""
+
+    centre: Array
+    rotation: Array
+    covariance: Array
+
+    def deviations(self, centres: Array, orientations: Array) -> Array:
+        """(P, 6): how poses (P, 3) and (P, 4) deviate from the mean."""
+        turns = rotations.multiply(orientations, rotations.conjugate(self.rotation))
+        return np.concatenate((centres - self.centre, rotations.to_vector(turns)), axis=1)
+
+    def deviated(self, deviations: Array) -> tuple[Array, Array]:
+        """The poses (P, 3) and (P, 4) that deviate so, (P, 6), from the mean."""
+        turns = rotations.from_vector(deviations[:, 3:])
+        return self.centre + deviations[:, :3], rotations.multiply(turns, self.rotation)
+
+    def square_distance(self, other: "PoseGaussian") -> float:
+        """Of another one's mean from this mean, in units of this covariance."""
+        off = self.deviations(other.centre[None], other.rotation[None])[0]
+        return float(off @ np.linalg.solve(self.covariance, off))
+
+    def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
+        """Poses (P, 3) and (P, 4)."""
+        root = np.linalg.cholesky(self.covariance)
+        return self.deviated(random.normal(size=(count, 6)) @ root.T)
+
+    def log_density(self, centres: Array, orientations: Array) -> Array:
+        """(P,) of poses (P, 3) and (P, 4)."""
+        root = np.linalg.cholesky(self.covariance)
+        whitened = np.linalg.solve(root, self.deviations(centres, orientations).T)
+        scale = np.log(np.diag(root)).sum() + 3.0 * np.log(2.0 * np.pi)
+        return np.asarray(-0.5 * np.square(whitened).sum(axis=0) - scale)
+
+
+@dataclass(frozen=True)
+class PoseMixture:
+    """Normal distributions and their ``weights`` (K,), which sum to 1."""
+
+    parts: tuple[PoseGaussian, ...]
+    weights: Array
+
+    def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
+        """Poses (P, 3) and (P, 4), from each part as many as its weight asks for."""
+        ends = np.rint(np.cumsum(self.weights) * count).astype(int)
+        counts = np.diff(ends, prepend=0)
+        drawn = [p.sample(n, random) for p, n in zip(self.parts, counts, strict=True) if n]
+        centres, orientations = zip(*drawn, strict=True)
+        return np.concatenate(centres), np.concatenate(orientations)
+
+    def log_densities(self, centres: Array, orientations: Array) -> Array:
+        """(K, P): each part's, with its weight."""
+        logs = [part.log_density(centres, orientations) for part in self.parts]
+        with np.errstate(divide="ignore"):
+            return np.array(logs) + np.log(self.weights)[:, None]
+
+    def moments(self) -> PoseGaussian:
+        """The normal distribution of the same mean and covariance."""
+        centres = np.array([part.centre for part in self.parts])
+        turns = np.array([part.rotation for part in self.parts])
+        mean = PoseGaussian(
+            self.weights @ centres, rotations.mean(turns, self.weights), np.zeros((6, 6))
+        )
+        apart = mean.deviations(centres, turns)
+        within = np.array([part.covariance for part in self.parts])
+        covariance = np.einsum("k,ki,kj->ij", self.weights, apart, apart)
+        covariance += np.einsum("k,kij->ij", self.weights, within)
+        return PoseGaussian(mean.centre, mean.rotation, covariance)
+
+
+def mixture(parts: Sequence[PoseGaussian], log_weights: Array) -> PoseMixture:
+    """A mixture by unnormalised log-weights (K,)."""
+    weights = np.exp(log_weights - log_weights.max())
+    return PoseMixture(tuple(parts), weights / weights.sum())
+
+
+def lever(arm: Array) -> Array:
+    """(6, 6): takes deviations of a pose to those of a point ``arm`` (3,) away that moves along."""
+    x, y, z = arm
+    moved = np.eye(6)
+    moved[:3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+    return moved

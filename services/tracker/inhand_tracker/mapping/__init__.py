@@ -1,0 +1,1 @@
+"""The published mapping from body poses to object poses (Darby et al. 2014)."""

@@ -1,0 +1,164 @@
+"""Learning from labelled sequences (Darby et al. 2014, TR1 to TR3).
+
+For every training frame: how much the object's pose varies among frames of like body pose (a low
+variation is a good moment to re-initialise), and how stable and how close the object is relative
+to each of the 19 parts.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+
+from inhand_tracker.body.skeleton import (
+    body_pose,
+    mirror_joints,
+    mirror_pose,
+    part_bases,
+    part_lengths,
+    pelvis_basis,
+    standing_height,
+)
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array, Indices
+from inhand_tracker.mapping.mapping import Mapping
+from inhand_tracker.mapping.measures import Measures, RelativePoses, measure
+from inhand_tracker.mapping.radii import cluster_radii
+
+Stage = Literal["relative poses", "cluster radii", "clusters"]
+STAGES: tuple[Stage, ...] = ("relative poses", "cluster radii", "clusters")
+"""What learning goes through, one after the other, each sequence by sequence."""
+
+PIECE = 8192
+
+
+@dataclass(frozen=True)
+class LabelledSequence:
+    """One recording of one person with the object's pose in every frame, in the camera frame.
+
+    ``joints`` (N, 20, 3), ``translations`` (N, 3), ``rotations`` (N, 4). Frames that are not
+    usable (a missing joint or label) hold NaN and are left out, with the step into them.
+    ``frame_rate`` is in Hz.
+    """
+
+    participant: str
+    left_handed: bool
+    joints: Array
+    translations: Array
+    rotations: Array
+    frame_rate: float = 30.0
+
+
+class UnusableSequenceError(ValueError):
+    """A sequence, or a set of them, that nothing can be learned from."""
+
+
+def learn(
+    sequences: Sequence[LabelledSequence],
+    mirror_normal: Array,
+    on_sequence: Callable[[Stage], None] = lambda stage: None,
+) -> Mapping:
+    """Learn a mapping; left-handed people are mirrored, so that every mapping is right-handed.
+
+    ``mirror_normal`` (3,) is the object's (``ObjectShape``); ``on_sequence`` is called when a
+    stage is done with a sequence. Raises UnusableSequenceError.
+
+    Time and memory grow with the number of frames. Exact up to 20,000 frames in sequences of up
+    to 2,048; beyond, radii and clusters come from a part of the frames (``cluster_radii``,
+    ``stretches``).
+    """
+    if len(sequences) < 2:
+        raise UnusableSequenceError(
+            f"learning compares sequences, and there is {len(sequences)}: two are the least"
+        )
+    participants = tuple(sequence.participant for sequence in sequences)
+    poses, starts = _relative_poses(sequences, mirror_normal, on_sequence)
+    radii = cluster_radii(
+        poses.body_poses, starts, participants, lambda: on_sequence("cluster radii")
+    )
+    measures = _measures(poses, starts, radii, on_sequence)
+    return Mapping(
+        participants=participants,
+        starts=starts,
+        radii=radii,
+        body_poses=poses.body_poses,
+        translations=poses.translations,
+        rotations=poses.rotations,
+        translation_variation=measures.translation_variation,
+        rotation_variation=measures.rotation_variation,
+        stable_translation_part=measures.stable_translation_part,
+        stable_rotation_part=measures.stable_rotation_part,
+        proximate_part=measures.proximate_part,
+    )
+
+
+def _relative_poses(
+    sequences: Sequence[LabelledSequence],
+    mirror_normal: Array,
+    on_sequence: Callable[[Stage], None],
+) -> tuple[RelativePoses, Indices]:
+    """TR1 of all usable frames, one sequence after the other, and the starts (S + 1,)."""
+    poses = RelativePoses.empty(sum(len(sequence.joints) for sequence in sequences))
+    starts, end = [0], 0
+    for sequence in sequences:
+        for piece in _pieces(sequence, mirror_normal):
+            start, end = end, end + len(piece.body_poses)
+            poses.put(slice(start, end), piece)
+        starts.append(end)
+        on_sequence("relative poses")
+    return poses.rows(slice(0, end)), np.array(starts)
+
+
+def _pieces(sequence: LabelledSequence, mirror_normal: Array) -> Iterator[RelativePoses]:
+    """TR1 of the usable frames of a sequence, in pieces that need little memory."""
+    joints, translations = sequence.joints, sequence.translations
+    with np.errstate(invalid="ignore", divide="ignore"):
+        orientations = rotations.normalise(sequence.rotations)
+    if sequence.left_handed:
+        joints = mirror_joints(joints)
+        translations, orientations = mirror_pose(translations, orientations, mirror_normal)
+    height = standing_height(part_lengths(joints))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        pelvis = pelvis_basis(joints)
+    poses = body_pose(joints, pelvis, height)
+    usable = np.flatnonzero(
+        np.isfinite(poses).all(axis=1)
+        & np.isfinite(pelvis.rotations).all(axis=1)
+        & np.isfinite(translations).all(axis=1)
+        & np.isfinite(orientations).all(axis=1)
+    )
+    if len(usable) < 2:
+        raise UnusableSequenceError(
+            f"a sequence of participant {sequence.participant!r} has {len(usable)} frames in "
+            "which the whole body and the object's label are known: two are the least"
+        )
+    consecutive = np.append(np.diff(usable) == 1, False)
+    for start in range(0, len(usable), PIECE):
+        frames = usable[start : start + PIECE]
+        bases = part_bases(joints[frames], pelvis_basis(joints[frames]))
+        relative_translations, relative_rotations = bases.from_camera(
+            translations[frames, None, :], orientations[frames, None, :]
+        )
+        yield RelativePoses(
+            poses[frames],
+            relative_translations / height,
+            relative_rotations,
+            consecutive[start : start + PIECE],
+        )
+
+
+def _measures(
+    poses: RelativePoses,
+    starts: Indices,
+    radii: Array,
+    on_sequence: Callable[[Stage], None],
+) -> Measures:
+    """TR2 and TR3 of all frames."""
+    measures = Measures.empty(len(poses.body_poses))
+    for (start, end), radius in zip(pairwise(starts), radii, strict=True):
+        for rows, of_stretch in measure(poses.rows(slice(start, end)), radius):
+            measures.put(slice(start + rows.start, start + rows.stop), of_stretch)
+        on_sequence("clusters")
+    return measures

@@ -1,0 +1,1 @@
+"""How objects are tracked: the protocol, the registry, and a package for each method."""

@@ -1,0 +1,1 @@
+"""The published methods of Darby et al. 2014."""

@@ -1,0 +1,39 @@
+"""What every method's tracker can do."""
+
+from typing import Protocol
+
+from inhand_tracker.body.reader import Body, BodyReader
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.estimate import Estimate
+from inhand_tracker.geometry.image import Image
+from inhand_tracker.sight.support import Support
+
+
+class ObjectTracker(Protocol):
+    """Follows one object of one person through the frames of one camera."""
+
+    @property
+    def support(self) -> Support | None:
+        """What the last image says for the object; None where it says nothing."""
+
+    def restart(self) -> None:
+        """Forget the person and the object: somebody else comes into view."""
+
+    def new_reader(self) -> BodyReader:
+        """A reader of bodies for trackers of this model and handedness."""
+
+    def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
+        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image."""
+
+    def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
+        """One frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
+
+    def remember(self, body: Body, time_ns: int) -> None:
+        """A frame in which the object is not looked for; what the body did before counts later."""
+
+    def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
+        """The object's pose in a frame by itself; what is tracked is neither used nor changed."""
+
+    def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:
+        """Pixels (B, 2) of the boundary of the object at an estimate; None for a lost one."""

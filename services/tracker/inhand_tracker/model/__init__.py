@@ -1,0 +1,1 @@
+"""What is learned of one object in one interaction, and its file."""

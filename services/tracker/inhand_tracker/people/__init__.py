@@ -1,0 +1,1 @@
+"""Who is seen: each person is followed, identified and given a watcher of objects."""

@@ -1,0 +1,1 @@
+"""Where an object is, from the body alone."""

@@ -1,0 +1,107 @@
+"""Kernel ridge regression on landmarks (the subset of regressors; Rasmussen and Williams 2006,
+section 8.3.1), with the residuals of groups that were held out.
+
+Time and memory grow with the number of samples N: all that is kept of them are sums of the size of
+the landmarks.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from inhand_tracker.geometry.arrays import Array, Indices, Singles
+
+WIDTH = 0.5
+"""Of the Gaussian kernel, as a share of the usual distance between landmarks."""
+RIDGE = 0.1
+"""How much regression is held back: the variance of noise over that of the signal."""
+CHUNK = 8192
+JITTER = 1e-4
+
+
+@dataclass(frozen=True)
+class KernelRidge:
+    """Predicts ``offset`` (M,) + k(x) @ ``coefficients`` (L, M), k the Gaussian kernel of squared
+    width ``width`` to each of ``landmarks`` (L, D)."""
+
+    landmarks: Singles
+    width: float
+    coefficients: Array
+    offset: Array
+
+    def kernel(self, inputs: Singles) -> Array:
+        """The kernel (T, L) of inputs (T, D): 1 at a landmark, 0 far from it."""
+        return gaussian(inputs, self.landmarks, self.width)
+
+    def predict(self, inputs: Singles) -> Array:
+        """(T, M) for inputs (T, D)."""
+        return self.kernel(inputs) @ self.coefficients + self.offset
+
+
+def gaussian(inputs: Singles, landmarks: Singles, width: float) -> Array:
+    """exp(−d²/(2 width)) of the distances d between inputs (T, D) and landmarks (L, D)."""
+    return np.exp(squared_distances(inputs, landmarks) / (-2.0 * width))
+
+
+def squared_distances(inputs: Singles, others: Singles) -> Array:
+    """(T, L), in double precision: nearly equal poses must not come out at a distance below 0."""
+    one, other = inputs.astype(np.float64), others.astype(np.float64)
+    products = one @ other.T
+    sums = np.square(one).sum(axis=1)[:, None] + np.square(other).sum(axis=1)
+    return np.maximum(sums - 2.0 * products, 0.0)
+
+
+def fit(
+    inputs: Singles, targets: Singles, groups: Indices, landmark_rows: Indices
+) -> tuple[KernelRidge, Array]:
+    """Learn from inputs (N, D) and targets (N, M); also the landmarks' held-out residuals (L, M).
+
+    ``groups`` (N,) tells what is held out together: a landmark's residual, target less prediction,
+    is that of a regression without any sample of its group.
+    """
+    landmarks = inputs[landmark_rows]
+    between = squared_distances(landmarks, landmarks)
+    width = max(float(np.median(between)), 1e-12) * WIDTH**2
+    root = np.linalg.cholesky(np.exp(between / (-2.0 * width)) + JITTER * np.eye(len(landmarks)))
+    offset = targets.mean(axis=0, dtype=np.float64)
+
+    def features(rows: Indices) -> Array:
+        kernel = gaussian(inputs[rows], landmarks, width)
+        return np.asarray(solve_triangular(root, kernel.T, lower=True)).T
+
+    names = np.unique(groups)
+    sums = [_sums(features, targets, offset, np.flatnonzero(groups == name)) for name in names]
+    scatter = np.sum([group for group, _ in sums], axis=0)
+    cross = np.sum([group for _, group in sums], axis=0)
+    residuals = np.empty((len(landmarks), targets.shape[1]))
+    for name, (group_scatter, group_cross) in zip(names, sums, strict=True):
+        held_out = np.flatnonzero(groups[landmark_rows] == name)
+        weights = _solve(scatter - group_scatter, cross - group_cross)
+        rows = landmark_rows[held_out]
+        residuals[held_out] = targets[rows] - offset - features(rows) @ weights
+    coefficients = solve_triangular(root.T, _solve(scatter, cross), lower=False)
+    return KernelRidge(landmarks, width, np.asarray(coefficients), offset), residuals
+
+
+def _sums(
+    features: Callable[[Indices], Array], targets: Singles, offset: Array, rows: Indices
+) -> tuple[Array, Array]:
+    """Σ φ φᵀ (L, L) and Σ φ yᵀ (L, M) over some samples."""
+    pieces = _chunks(rows)
+    first = features(pieces[0])
+    scatter, cross = first.T @ first, first.T @ (targets[pieces[0]] - offset)
+    for piece in pieces[1:]:
+        more = features(piece)
+        scatter += more.T @ more
+        cross += more.T @ (targets[piece] - offset)
+    return scatter, cross
+
+
+def _chunks(rows: Indices) -> Sequence[Indices]:
+    return [rows[start : start + CHUNK] for start in range(0, len(rows), CHUNK)]
+
+
+def _solve(scatter: Array, cross: Array) -> Array:
+    return np.asarray(np.linalg.solve(scatter + RIDGE * np.eye(len(scatter)), cross), np.float64)

@@ -1,0 +1,1 @@
+"""Which object is in use, when nobody says."""

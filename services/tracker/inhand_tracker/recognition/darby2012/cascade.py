@@ -1,0 +1,164 @@
+"""Cascade recognition and hierarchical importance sampling (Darby et al. 2012).
+
+The object is not given: a classifier of body poses says which actions are likely, and particles
+search action and object pose together.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from inhand_tracker.body.reader import Body, BodyReader
+from inhand_tracker.body.skeleton import Bases, mirror_pose
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.estimate import LOST, Estimate, normalised_weights, weighted_estimate
+from inhand_tracker.geometry.image import Image
+from inhand_tracker.methods.darby2014.edges import chamfer_of, edge_log_weights
+from inhand_tracker.methods.darby2014.tracker import GAP_NS, PARTICLES
+from inhand_tracker.model.model_file import Model
+from inhand_tracker.recognition.answer import Recognition, boxes_around, known_action
+from inhand_tracker.recognition.darby2012.action_particles import (
+    ActionParticles,
+    TrainingPoses,
+    corrections,
+    drawn,
+    joined,
+    likeliest,
+    moved,
+)
+from inhand_tracker.recognition.recogniser import Recogniser
+from inhand_tracker.shape.viewpoints import VisiblePoints
+
+KINDS = (0.5, 0.4, 0.1)
+"""How many particles are action, importance and initialiser particles, on average."""
+
+
+class Cascade2012:
+    """Follows whatever one person uses, of ``models`` in the order of the recogniser's actions.
+
+    Without an image the particles weigh as they were drawn.
+    """
+
+    def __init__(
+        self,
+        recogniser: Recogniser,
+        models: Sequence[Model],
+        *,
+        left_handed: bool = False,
+        particles: int = PARTICLES,
+        seed: int = 0,
+    ) -> None:
+        self._svm = recogniser.svm
+        self._learned = recogniser
+        self._models = models
+        self._poses = [TrainingPoses(m.mapping.body_poses.astype(np.float32)) for m in models]
+        self._outlines = [
+            VisiblePoints(m.viewpoints.directions, m.viewpoints.boundaries) for m in models
+        ]
+        self._left_handed = left_handed
+        self._count = particles
+        self._random = np.random.default_rng(seed)
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget the person and the object: somebody else comes into view."""
+        self._reader = BodyReader(self._learned, left_handed=self._left_handed)
+        self._particles: ActionParticles | None = None
+        self._last = Recognition(np.zeros(len(self._models)))
+        self._time_ns = 0
+
+    def step(
+        self,
+        joints: Array | None,
+        time_ns: int,
+        image: Image | None = None,
+        camera: Intrinsics | None = None,
+    ) -> Recognition:
+        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
+
+        ``camera`` is for the box where there is no image.
+        """
+        if image is not None:
+            camera = image.camera
+        body = None if joints is None else self._reader.read(joints)
+        if body is None:
+            return Recognition(self._last.probabilities, None, LOST, self._last.box)
+        particles = self._propose(body, time_ns)
+        translations, orientations = self._place(particles, body)
+        logs, boxes = self._see(particles, translations, orientations, image, camera)
+        with np.errstate(divide="ignore"):
+            weights = normalised_weights(np.log(particles.weights) + logs)
+        self._particles = joined([particles], weights)
+        self._time_ns = time_ns
+        masses = np.bincount(particles.actions, weights, len(self._models)).astype(float)
+        known = known_action(masses)
+        estimate = LOST
+        if known is not None:
+            ours = particles.actions == known
+            estimate = _expected(translations[ours], orientations[ours], weights[ours])
+        self._last = Recognition(masses, known, estimate, _mean_box(boxes, weights))
+        return self._last
+
+    def _propose(self, body: Body, time_ns: int) -> ActionParticles:
+        """Particles whose weights hold the correction of the importance particles."""
+        shares = likeliest(self._svm.probabilities(body.pose[None])[0])
+        before = self._particles
+        if before is None or not 0 < time_ns - self._time_ns <= GAP_NS:
+            return drawn(self._count, shares, body.pose, self._poses, self._random)
+        acting, important, initial = self._random.multinomial(self._count, KINDS)
+        generated = moved(before, acting, self._poses, self._random)
+        importance = drawn(important, shares, body.pose, self._poses, self._random)
+        initialisers = drawn(initial, shares, body.pose, self._poses, self._random)
+        weights = np.ones(self._count)
+        weights[acting : acting + important] = corrections(importance, shares, before, self._poses)
+        return joined([generated, importance, initialisers], weights)
+
+    def _place(self, particles: ActionParticles, body: Body) -> tuple[Array, Array]:
+        """The particles' poses in the camera frame, (P, 3) and (P, 4)."""
+        translations, orientations = np.empty((self._count, 3)), np.empty((self._count, 4))
+        for action in np.unique(particles.actions):
+            ours = particles.actions == action
+            frames, parts = particles.frames[ours], particles.parts[ours]
+            mapping = self._models[action].mapping
+            bases = Bases(body.parts.origins[parts], body.parts.rotations[parts])
+            poses = bases.to_camera(
+                mapping.translations[frames, parts] * body.height, mapping.rotations[frames, parts]
+            )
+            if self._left_handed:
+                poses = mirror_pose(*poses, self._models[action].shape.mirror_normal)
+            translations[ours], orientations[ours] = poses
+        return translations, orientations
+
+    def _see(
+        self,
+        particles: ActionParticles,
+        translations: Array,
+        orientations: Array,
+        image: Image | None,
+        camera: Intrinsics | None,
+    ) -> tuple[Array, Array]:
+        """The particles' log-likelihoods (P,) and boxes in the image (P, 4)."""
+        logs, boxes = np.zeros(self._count), np.full((self._count, 4), np.nan)
+        if camera is None:
+            return logs, boxes
+        for action in np.unique(particles.actions):
+            ours = particles.actions == action
+            placed = self._outlines[action].place(translations[ours], orientations[ours])
+            pixels = camera.project(placed)
+            boxes[ours] = boxes_around(pixels)
+            chamfer = None if image is None else image.once(chamfer_of)
+            if chamfer is not None:
+                logs[ours] = edge_log_weights(chamfer, pixels)
+        return logs, boxes
+
+
+def _expected(translations: Array, orientations: Array, weights: Array) -> Estimate:
+    return weighted_estimate(translations, orientations, weights / weights.sum())
+
+
+def _mean_box(boxes: Array, weights: Array) -> Array | None:
+    seen = np.isfinite(boxes).all(axis=1) & (weights > 0.0)
+    if not seen.any():
+        return None
+    return np.asarray(weights[seen] @ boxes[seen] / weights[seen].sum())

@@ -1,0 +1,1 @@
+"""An object's mesh, and what is seen of it from all directions."""

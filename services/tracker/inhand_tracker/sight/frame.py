@@ -1,0 +1,87 @@
+"""What one frame shows, prepared once for however many objects are looked for in it."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import cv2
+import numpy as np
+
+from inhand_tracker.geometry.arrays import Bytes, Singles
+from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.image import Image
+from inhand_tracker.sight.colours import Bins, colour_bins
+from inhand_tracker.sight.oriented_edges import edge_distances, edge_scores
+
+Region = tuple[float, float, float, float]
+"""Left, top, right and bottom in pixels."""
+
+
+@dataclass(frozen=True)
+class SightFrame:
+    """A part of an image: ``colour`` (H, W, 3) and ``depth`` (H, W) in metres, 0 where nothing was
+    measured, or None; ``camera`` is that of the part."""
+
+    camera: Intrinsics
+    colour: Bytes | None
+    depth: Singles | None
+
+    @cached_property
+    def bins(self) -> Bins | None:
+        """The colours' bins (H, W)."""
+        return None if self.colour is None else colour_bins(self.colour)
+
+    @cached_property
+    def edges(self) -> Bytes | None:
+        """Distances (4, H, W) to oriented edges."""
+        if self.colour is None:
+            return None
+        return edge_distances(np.asarray(cv2.cvtColor(self.colour, cv2.COLOR_RGB2GRAY), np.uint8))
+
+    @cached_property
+    def edge_scores(self) -> Singles | None:
+        """(4, 8), what those distances say."""
+        return None if self.edges is None else edge_scores(self.edges)
+
+
+def prepare(image: Image, region: Region | None = None) -> SightFrame:
+    """The part of an image within a region, or all of it; what needs work is done when asked for.
+
+    Depth of another size is brought to that of the colours.
+    """
+    camera, colour, depth = image.camera, image.colour, image.depth
+    if colour is not None:
+        camera = camera.scaled_to(colour.shape[1], colour.shape[0])
+    elif depth is not None:
+        camera = camera.scaled_to(depth.shape[1], depth.shape[0])
+    size = (camera.width, camera.height)
+    if depth is not None and depth.shape[::-1] != size:
+        depth = np.asarray(cv2.resize(depth, size, interpolation=cv2.INTER_NEAREST), np.float32)
+    if region is not None:
+        left, top, right, bottom = _whole_pixels(region, camera)
+        camera = replace(
+            camera, cx=camera.cx - left, cy=camera.cy - top, width=right - left, height=bottom - top
+        )
+        colour = None if colour is None else colour[top:bottom, left:right]
+        depth = None if depth is None else depth[top:bottom, left:right]
+    return SightFrame(
+        camera,
+        None if colour is None else np.ascontiguousarray(colour),
+        None if depth is None else np.ascontiguousarray(depth, np.float32),
+    )
+
+
+SMALLEST_PIXELS = 16
+
+
+def _whole_pixels(region: Region, camera: Intrinsics) -> tuple[int, int, int, int]:
+    """The region's pixels within the image, 16 each way at the least."""
+    ends = []
+    for low, high, size in (
+        (region[0], region[2], camera.width),
+        (region[1], region[3], camera.height),
+    ):
+        smallest = min(SMALLEST_PIXELS, size)
+        first = int(np.clip(np.floor(low), 0, size - smallest))
+        ends.append((first, int(np.clip(np.ceil(high), first + smallest, size))))
+    (left, right), (top, bottom) = ends
+    return left, top, right, bottom

@@ -1,0 +1,31 @@
+"""What each part of fusion is worth, on a dataset of three people."""
+
+import json
+from pathlib import Path
+
+import pytest
+from inhand_lab.benchmarks.ablation import VARIANTS
+from waving import write_dataset
+
+from inhand.__main__ import main
+
+pytestmark = pytest.mark.long
+
+
+def test_every_part_is_taken_out_once_and_the_table_tells_what_that_costs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_dataset(tmp_path / "data", frames=20, images=True)
+    written = tmp_path / "worths.json"
+    assert main(["bench", "ablation", str(tmp_path / "data"), "--json", str(written)]) == 0
+    rows = json.loads(written.read_text())["variants"]
+    assert [(row["part"], row["without"]) for row in rows] == [
+        (one.part, one.without) for one in VARIANTS
+    ]
+    errors = {row["without"]: row["vertex_error_cm"] for row in rows}
+    assert 0.0 < errors["nothing"] < 10.0
+    assert len(set(errors.values())) > len(errors) // 2
+    assert errors["all anchors but the trunk"] > errors["nothing"]
+    shown = capsys.readouterr().out
+    assert f"{errors['nothing']:.2f}" in shown
+    assert "refinement" in shown

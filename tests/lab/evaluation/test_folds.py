@@ -1,0 +1,75 @@
+"""What is learned from and what is tested."""
+
+from pathlib import Path
+
+import pytest
+from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry
+from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
+
+
+def entry(
+    name: str, participant: str, interaction: str = "wave", thing: str | None = "box"
+) -> Entry:
+    return Entry(file=name, interaction=interaction, participant=participant, object=thing)
+
+
+def dataset(*entries: Entry) -> Dataset:
+    return Dataset(Path("somewhere"), entries)
+
+
+def test_every_participant_is_left_out_once_and_never_learned_from() -> None:
+    folds = leave_one_out(
+        dataset(*(entry(f"{p}{n}", p) for p in ("a", "b", "c") for n in range(2)))
+    )
+    assert [{e.participant for e in fold.tested} for fold in folds] == [{"a"}, {"b"}, {"c"}]
+    assert all(len(fold.tested) == 2 and len(fold.trained) == 4 for fold in folds)
+    for fold in folds:
+        tested = {e.participant for e in fold.tested}
+        assert tested.isdisjoint(e.participant for e in fold.trained)
+
+
+def test_of_a_single_participant_every_recording_is_left_out_once() -> None:
+    folds = leave_one_out(dataset(*(entry(f"swing{n}", "a") for n in range(5))))
+    assert [fold.tested[0].file for fold in folds] == [f"swing{n}" for n in range(5)]
+    assert all(len(fold.trained) == 4 for fold in folds)
+
+
+def test_interactions_are_kept_apart_and_unlabelled_recordings_left_out() -> None:
+    folds = leave_one_out(
+        dataset(
+            *(entry(f"w{p}", p) for p in "abc"),
+            *(entry(f"s{p}", p, "sweep", "broom") for p in "abc"),
+            entry("idle", "d", "wave", None),
+        )
+    )
+    assert [fold.interaction for fold in folds] == ["wave"] * 3 + ["sweep"] * 3
+    assert all(len(fold.trained) == 2 for fold in folds)
+
+
+def test_too_few_recordings_are_refused_with_the_mend() -> None:
+    with pytest.raises(DatasetError, match=r"leaves 1 recordings.*add participants"):
+        leave_one_out(dataset(entry("a", "a"), entry("b", "b")))
+
+
+def test_nothing_labelled_is_refused() -> None:
+    with pytest.raises(DatasetError, match="no labelled interaction"):
+        leave_one_out(dataset(entry("a", "a", thing=None)))
+
+
+def test_one_interaction_with_two_objects_is_refused() -> None:
+    entries = [entry(p, p, thing="mug" if p == "a" else "cup") for p in "abc"]
+    with pytest.raises(DatasetError, match=r"wave is done with 2 objects \(cup, mug\)"):
+        leave_one_out(dataset(*entries))
+
+
+def test_all_of_one_set_is_learned_and_all_of_the_other_tested() -> None:
+    trained = dataset(*(entry(p, p) for p in "ab"), *(entry(p, p, "sweep", "broom") for p in "ab"))
+    tested = dataset(*(entry(p, p) for p in "ade"))
+    (fold,) = train_on_one_test_on_other(trained, tested)
+    assert (fold.tested, fold.trained) == (tested.entries, trained.entries[:2])
+
+
+def test_sets_that_share_nothing_are_refused_with_what_they_have() -> None:
+    trained, tested = dataset(entry("a", "a")), dataset(entry("a", "a", "sweep", "broom"))
+    with pytest.raises(DatasetError, match="the one has wave, the other sweep"):
+        train_on_one_test_on_other(trained, tested)

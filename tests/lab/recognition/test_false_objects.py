@@ -1,0 +1,60 @@
+"""``inhand recognise --false-objects`` on small simulated worlds, without and with images."""
+
+import json
+from pathlib import Path
+
+import pytest
+from inhand_lab.datasets.dataset import has_images
+from inhand_lab.datasets.generation import generate
+from inhand_lab.recognition import false_objects_by_movement, false_objects_with_images
+
+from inhand.__main__ import main
+
+pytestmark = [pytest.mark.long, pytest.mark.timeout(900)]
+
+ACTIONS = ("hammerNail", "putOnShoe", "drinkFromMug")
+
+
+def count(folder: Path, result: Path, *more: str) -> dict[str, dict[str, float]]:
+    command = ["recognise", str(folder), "--false-objects", "--unseen", "p02"]
+    assert main([*command, "--json", str(result), *more]) == 0
+    told: dict[str, dict[str, float]] = json.loads(result.read_text())
+    for shares in (told["nothing_in_use"], told["others"], told["never_trained"]):
+        assert all(0.0 <= share <= 1.0 for share in shares.values())
+    assert tuple(told["never_trained"]) == ACTIONS
+    return told
+
+
+def test_without_images_skeletons_alone_are_looked_at(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(false_objects_by_movement, "IDLE_PEOPLE", 1)
+    people = generate(tmp_path / "set", ACTIONS, 3, 5, 90, images=False, on_progress=lambda: None)
+    assert not has_images(people)
+    told = count(people.folder, tmp_path / "result.json")
+    assert told["images"] is False
+    assert set(told["nothing_in_use"]) == {"stand", "walkOnSpot", "walkAbout", "gesture"}
+    assert told["nothing_in_use"]["stand"] == 0.0
+    shown = capsys.readouterr().out
+    assert "skeletons alone" in shown
+    assert "with images" not in shown
+
+
+def test_with_images_the_cascade_sees_idle_people_strangers_and_untaught_actions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(false_objects_with_images, "IDLE_PEOPLE", 1)
+    monkeypatch.setattr(false_objects_with_images, "IDLE_KINDS", ("stand",))
+    people = generate(tmp_path / "set", ACTIONS, 3, 5, 90, images=True, on_progress=lambda: None)
+    strangers = generate(
+        tmp_path / "others", ("sweepFloor",), 1, 6, 30, images=False, on_progress=lambda: None
+    )
+    assert has_images(people)
+    told = count(people.folder, tmp_path / "result.json", "--others", str(strangers.folder))
+    assert told["images"] is True
+    assert told["others_images"] is False
+    assert told["nothing_in_use"] == {"stand": 0.0}
+    assert set(told["others"]) == {"sweepFloor"}
+    shown = capsys.readouterr().out
+    assert "with images" in shown
+    assert "skeletons alone" in shown

@@ -1,0 +1,112 @@
+"""What is learned of how objects are seen, from a small simulated world with images."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from inhand_lab.datasets.generation import generate
+from inhand_lab.training.model_training import train
+from inhand_lab.training.presence_training import Look, learn_presence, look_around, presence_of
+from inhand_tracker.model.model_file import save_model
+from inhand_tracker.recognition.presence import usual_presence
+from inhand_tracker.recognition.recogniser_file import load_recogniser
+from inhand_tracker.sight.support import Support
+
+from inhand.__main__ import main
+
+ACTIONS = ("sweepFloor", "drinkFromMug")
+
+
+@pytest.mark.long
+@pytest.mark.timeout(900)
+def test_objects_are_seen_better_where_they_are(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    people = generate(tmp_path / "set", ACTIONS, 2, 3, 90, images=True, on_progress=lambda: None)
+    models = [
+        train(people, [e for e in people.entries if e.interaction == action]) for action in ACTIONS
+    ]
+    presence = learn_presence(people, people.entries, ACTIONS, models)
+    assert (presence.supports + 10.0 < presence.present[:, None]).sum() == 2
+    assert not np.allclose(presence.supports, usual_presence(2).supports)
+    again = presence_of(look_around(people, people.entries, ACTIONS, models), ACTIONS)
+    np.testing.assert_array_equal(again.present, presence.present)
+    blind = replace(people, entries=())
+    untold = learn_presence(blind, (), ACTIONS, models)
+    np.testing.assert_allclose(untold.present, usual_presence(2).present)
+
+    files = [tmp_path / f"{action}.model" for action in ACTIONS]
+    for model, file in zip(models, files, strict=True):
+        save_model(model, file)
+    learned = tmp_path / "actions.recogniser"
+    command = ["train", str(people.folder), "-o", str(learned), "--recogniser", "--models"]
+    assert main([*command, *map(str, files)]) == 0
+    np.testing.assert_allclose(load_recogniser(learned).presence.present, presence.present)
+    capsys.readouterr()
+    assert main([*command, str(files[0])]) == 2
+    assert "--models has none of 'drinkFromMug'" in capsys.readouterr().err
+
+
+def test_looks_of_one_action_fewer_tell_the_same_of_the_others() -> None:
+    random = np.random.default_rng(4)
+    actions = ("sweep", "drink", "call")
+    looks = [
+        Look(
+            done,
+            {
+                seen: Support(
+                    *random.normal([1.0, 10.0 * (seen == done), 1.0, 9.0 * (seen == done)], 2.0)
+                )
+                for seen in actions
+            },
+        )
+        for done in actions
+        for _ in range(6)
+    ]
+    looks.append(Look("drink", {}))
+    of_all, of_two = presence_of(looks, actions), presence_of(looks, actions[:2])
+    np.testing.assert_array_equal(of_all.present[:2], of_two.present)
+    kept = presence_of([look for look in looks if look.action != "call"], actions[:2])
+    np.testing.assert_array_equal(kept.supports, of_two.supports)
+    np.testing.assert_array_equal(kept.spread, of_two.spread)
+    np.testing.assert_array_equal(kept.parts, of_two.parts)
+    np.testing.assert_array_equal(kept.part_spreads, of_two.part_spreads)
+
+
+def test_the_object_that_resembles_another_is_told_from_those_that_do_not() -> None:
+    actions = ("hammer", "brush", "call")
+    resemblance = {("hammer", "brush"): 18.0, ("brush", "hammer"): 16.0}
+    looks = [
+        Look(
+            done,
+            {
+                seen: Support(
+                    0.0, 25.0 * (seen == done) + resemblance.get((seen, done), 0.0), 0.0, 0.0
+                )
+            },
+        )
+        for done in actions
+        for seen in actions
+        for _ in range(20)
+    ]
+    supports = presence_of(looks, actions).supports
+    expected = [[25.0, 18.0, 0.0], [16.0, 25.0, 0.0], [0.0, 0.0, 25.0]]
+    np.testing.assert_allclose(supports, expected, atol=3.5)
+
+
+def test_the_parts_of_an_objects_support_are_those_in_images_of_itself() -> None:
+    looks = [
+        Look(
+            "drink",
+            {
+                "drink": Support(4.0, 12.0 + off, 2.0, 9.0),
+                "call": Support(0.0, 90.0 * off, 0.0, 0.0),
+            },
+        )
+        for off in (-6.0, 6.0) * 200
+    ]
+    told = presence_of(looks, ("drink", "call"))
+    np.testing.assert_allclose(told.parts, [[4.0, 12.0, 2.0, 9.0], [-np.inf] * 4])
+    assert told.part_spreads[0, 1] == pytest.approx(6.0, rel=0.05)
+    np.testing.assert_allclose(told.part_spreads[1], usual_presence(1).part_spreads[0])

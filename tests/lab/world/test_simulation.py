@@ -1,0 +1,159 @@
+"""Simulated recordings as a whole."""
+
+import numpy as np
+import pytest
+from inhand_lab.geometry.rasteriser import KINECT
+from inhand_lab.geometry.transforms import MIRROR
+from inhand_lab.motions.performance import Contact
+from inhand_lab.people.joints import Joint
+from inhand_lab.people.person import Person, sample_person
+from inhand_lab.sensing.skeleton_noise import INFERRED, MISSING, TRACKED
+from inhand_lab.world.simulation import INTERACTIONS, Simulation, simulate
+from inhand_lab.world.simulation import simulation as world
+from numpy.typing import NDArray
+
+
+def bytes_of(simulation: Simulation) -> list[bytes]:
+    arrays: list[NDArray[np.generic]] = [
+        simulation.joints_in_camera,
+        simulation.joint_states,
+        simulation.joint_confidences,
+        simulation.true_joints_in_camera,
+        simulation.translations,
+        simulation.rotations,
+        simulation.contact,
+    ]
+    return [array.tobytes() for array in arrays]
+
+
+@pytest.mark.parametrize("interaction", INTERACTIONS)
+def test_the_same_seed_makes_the_same_bytes(interaction: str) -> None:
+    one, other = (simulate(interaction, 2, seed=7) for _ in range(2))
+    assert bytes_of(one) == bytes_of(other)
+    first, later = one.render(150), [other.render(frame) for frame in (40, 150)][1]
+    assert first.colour.tobytes() == later.colour.tobytes()
+    assert first.depth.tobytes() == later.depth.tobytes()
+
+
+def test_another_seed_makes_another_world() -> None:
+    one, other = (simulate("drinkFromMug", 2, seed=seed) for seed in (7, 8))
+    assert not np.array_equal(one.translations, other.translations)
+    assert one.person != other.person
+
+
+def test_a_participant_is_the_same_person_in_every_interaction() -> None:
+    people = [simulate(interaction, 3, seed=7, frames=1).person for interaction in INTERACTIONS]
+    assert all(person == people[0] for person in people)
+    assert people[0] == sample_person(7, 3)
+
+
+def test_another_performance_is_the_same_person_before_the_same_camera() -> None:
+    one, other = (simulate("sweepFloor", 0, seed=7, performance=number) for number in (0, 1))
+    assert one.person == other.person
+    assert np.array_equal(one.camera_from_world.translation, other.camera_from_world.translation)
+    assert np.abs(one.translations - other.translations).max() > 0.05
+
+
+@pytest.mark.parametrize("interaction", INTERACTIONS)
+def test_fewer_frames_are_the_beginning_of_more(interaction: str) -> None:
+    short, long = (simulate(interaction, 1, seed=7, frames=frames) for frames in (50, 360))
+    assert short.frames == 50
+    assert np.allclose(short.translations, long.translations[:50])
+    assert np.allclose(short.true_joints_in_camera, long.true_joints_in_camera[:50])
+
+
+@pytest.mark.parametrize("interaction", INTERACTIONS)
+def test_shapes_and_values_are_what_the_reader_expects(interaction: str) -> None:
+    simulation = simulate(interaction, 0, seed=7, frames=90)
+    assert simulation.joints_in_camera.shape == (90, 20, 3)
+    assert simulation.joint_states.shape == simulation.joint_confidences.shape == (90, 20)
+    assert np.isfinite(simulation.joints_in_camera).all()
+    assert (simulation.joint_confidences >= 0).all()
+    assert (simulation.joint_confidences <= 1).all()
+    assert np.allclose(np.linalg.norm(simulation.rotations, axis=1), 1.0)
+    assert np.sum(simulation.rotations[1:] * simulation.rotations[:-1], axis=1).min() > 0.9
+    frame = simulation.render(0)
+    assert frame.colour.shape == (480, 640, 3)
+    assert frame.depth.shape == (480, 640)
+
+
+def test_an_unknown_interaction_is_named_with_those_there_are() -> None:
+    with pytest.raises(ValueError, match=r"juggle.*drinkFromMug"):
+        simulate("juggle", 0, seed=0)
+
+
+@pytest.mark.parametrize("interaction", INTERACTIONS)
+def test_the_whole_person_and_the_object_are_in_the_image(interaction: str) -> None:
+    for participant in range(8):
+        simulation = simulate(interaction, participant, seed=9)
+        for points, margin in (
+            (simulation.true_joints_in_camera.reshape(-1, 3), 10.0),
+            (simulation.translations, 0.0),
+        ):
+            pixels = points[:, :2] / points[:, 2:] * KINECT.fx + (KINECT.cx, KINECT.cy)
+            assert pixels.min() > margin
+            assert (pixels.max(axis=0) < (KINECT.width - margin, KINECT.height - margin)).all()
+
+
+def test_a_person_facing_the_camera_has_the_left_hand_at_the_right_of_the_image() -> None:
+    joints = simulate("drinkFromMug", 0, seed=9, frames=1).true_joints_in_camera[0]
+    assert joints[Joint.SHOULDER_LEFT, 0] > joints[Joint.SHOULDER_RIGHT, 0] + 0.2
+    assert joints[Joint.FOOT_LEFT, 1] > joints[Joint.HEAD, 1] + 1.2
+
+
+@pytest.mark.parametrize("interaction", INTERACTIONS)
+def test_a_left_handed_person_is_the_mirror_image(
+    interaction: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    simulations = []
+    for handedness in ("right", "left"):
+
+        def everybody(seed: int, participant: int, handedness: str = handedness) -> Person:
+            fields = vars(sample_person(seed, participant)) | {"handedness": handedness}
+            return Person(**fields)
+
+        monkeypatch.setattr(world, "sample_person", everybody)
+        simulations.append(simulate(interaction, 0, seed=7))
+    right, left = (
+        simulation.body_in_camera.seen_from(simulation.camera_from_world.inverse())
+        for simulation in simulations
+    )
+    assert np.allclose(left.joints[:, Joint.HAND_LEFT], right.joints[:, Joint.HAND_RIGHT] * MIRROR)
+    assert np.allclose(left.joints[:, Joint.KNEE_RIGHT], right.joints[:, Joint.KNEE_LEFT] * MIRROR)
+    marked = simulations[0].object_model.marked_vertices
+    ours, theirs = (
+        (simulation.camera_from_world.inverse() @ simulation.camera_from_object)[150]
+        for simulation in simulations
+    )
+    assert np.allclose(theirs.apply(marked * MIRROR), ours.apply(marked) * MIRROR)
+    ours_held, theirs_held = (set(simulation.contact) for simulation in simulations)
+    assert (Contact.LEFT_HAND in theirs_held) == (Contact.RIGHT_HAND in ours_held)
+    assert (Contact.RIGHT_HAND in theirs_held) == (Contact.LEFT_HAND in ours_held)
+
+
+def test_the_object_is_where_the_hand_is() -> None:
+    simulation = simulate("drinkFromMug", 0, seed=7)
+    held = simulation.contact == Contact.RIGHT_HAND
+    hand = simulation.true_joints_in_camera[held, Joint.HAND_RIGHT]
+    assert np.linalg.norm(hand - simulation.translations[held], axis=1).max() < 0.15
+
+
+@pytest.mark.parametrize("interaction", INTERACTIONS)
+def test_the_tracker_errs_by_centimetres_and_has_an_inkling_of_it(interaction: str) -> None:
+    errors, states, confidences = [], [], []
+    for participant in range(6):
+        simulation = simulate(interaction, participant, seed=7)
+        error = simulation.joints_in_camera - simulation.true_joints_in_camera
+        errors.append(np.linalg.norm(error, axis=2))
+        states.append(simulation.joint_states)
+        confidences.append(simulation.joint_confidences)
+    error, state, confidence = (np.stack(each) for each in (errors, states, confidences))
+    assert {TRACKED} <= set(np.unique(state)) <= {MISSING, INFERRED, TRACKED}
+    assert 0.005 < np.median(error) < 0.05
+    assert -0.9 < np.corrcoef(error.ravel(), confidence.ravel())[0, 1] < -0.2
+
+
+def test_the_trackers_error_is_slow() -> None:
+    simulation = simulate("drinkFromMug", 0, seed=7)
+    error = (simulation.joints_in_camera - simulation.true_joints_in_camera)[:, Joint.HEAD]
+    assert np.corrcoef(error[1:, 0], error[:-1, 0])[0, 1] > 0.8

@@ -1,0 +1,49 @@
+"""Simulated people for the lab's tests, and plain geometry to judge them by."""
+
+from functools import cache
+
+import numpy as np
+from inhand_lab.geometry.transforms import Transform
+from inhand_lab.motions.performance import Performance
+from inhand_lab.people.kinematics import Body, place_body
+from inhand_lab.people.person import Person, sample_person
+from inhand_lab.people.solids import head_radii
+from inhand_lab.world.interactions import INTERACTIONS
+from inhand_tracker.geometry.arrays import Array
+
+SEED = 20
+FRAME_RATE = 15.0
+
+
+@cache
+def performed(interaction: str, participant: int) -> tuple[Person, Performance, Body]:
+    """12 s of an interaction at 15 Hz, in the person's world."""
+    person = sample_person(SEED, participant)
+    times = np.arange(0.0, 12.0, 1.0 / FRAME_RATE)
+    random = np.random.default_rng([SEED, participant])
+    performance = INTERACTIONS[interaction].perform(person, times, random)
+    posture, right, left = performance.posture, performance.right_hand, performance.left_hand
+    return person, performance, place_body(person, posture, right, left)
+
+
+def object_points(interaction: str, world_from_object: Transform) -> Array:
+    """The object's vertices (T, V, 3) in the world."""
+    vertices = INTERACTIONS[interaction].object_model().vertices
+    turned = np.einsum("tij,vj->tvi", world_from_object.rotation, vertices)
+    return np.asarray(turned + world_from_object.translation[:, None])
+
+
+def angles_at(joints: Array, first: int, middle: int, last: int) -> Array:
+    """The angle (T,) in degrees between the bones that meet at the middle joint."""
+    one, other = joints[:, first] - joints[:, middle], joints[:, last] - joints[:, middle]
+    cosine = np.sum(one * other, axis=1)
+    cosine /= np.linalg.norm(one, axis=1) * np.linalg.norm(other, axis=1)
+    return np.asarray(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+
+
+def depth_in_head(person: Person, body: Body, points: Array) -> Array:
+    """How far (T, V) points (T, V, 3) are inside the head's ellipsoid, metres, along the ray."""
+    offset = points - body.from_head.translation[:, None]
+    local = np.einsum("tji,tvj->tvi", body.from_head.rotation, offset)
+    level = np.linalg.norm(local / head_radii(person), axis=2)
+    return np.asarray((1.0 / level - 1.0) * np.linalg.norm(local, axis=2))

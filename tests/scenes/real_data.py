@@ -1,0 +1,1 @@
+"""Where the real recordings lie that some tests read, beside the checkout."""

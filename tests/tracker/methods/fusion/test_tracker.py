@@ -1,0 +1,472 @@
+"""The fused tracker, frame by frame: what it forgets, keeps to itself, and withstands."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from inhand_tracker.body.skeleton import skeleton as body
+from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.estimate import LOST, Estimate
+from inhand_tracker.geometry.image import Image
+from inhand_tracker.methods.fusion.search import Search
+from inhand_tracker.methods.fusion.tracker import FusionTracker
+from inhand_tracker.model.model_file import Model, ModelError
+from people import (
+    FRAME_NS,
+    RIGHT_ARM,
+    held,
+    scipy_rotation,
+    unseen_wave,
+    wave_model,
+    waving,
+)
+
+FRAMES = 25
+CAMERA = Intrinsics(260.0, 260.0, 159.5, 119.5, 320, 240)
+RED, GREY = (200, 30, 30), (110, 110, 110)
+
+
+def draw(place: np.ndarray, turn: np.ndarray) -> Image:
+    """The wedge as red dots of its box before a grey wall, with its depth."""
+    colour = np.full((240, 320, 3), GREY, np.uint8)
+    depth = np.full((240, 320), 3.5, np.float32)
+    steps = np.linspace(-0.5, 0.5, 60)
+    inside = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
+    points = scipy_rotation(turn).apply(inside * [0.06, 0.09, 0.24]) + place
+    columns, rows = np.rint(CAMERA.project(points)).astype(int).T
+    shown = (columns >= 0) & (rows >= 0) & (columns < 320) & (rows < 240)
+    rows, columns, nearness = rows[shown], columns[shown], points[shown, 2]
+    colour[rows, columns] = RED
+    np.minimum.at(depth, (rows, columns), nearness.astype(np.float32))
+    return Image(None, CAMERA, depth, colour)
+
+
+@cache
+def images() -> tuple[Image, ...]:
+    """Of somebody who is not known, holding the wedge."""
+    joints = unseen_wave(FRAMES)
+    return tuple(draw(*pose) for pose in zip(*held(joints, seed=7), strict=True))
+
+
+def tracker(**options: object) -> FusionTracker:
+    return FusionTracker(wave_model(), **options)
+
+
+def follow(
+    one: FusionTracker, joints: np.ndarray, seen: Sequence[Image | None] | None = None
+) -> list[Estimate]:
+    given = [None] * len(joints) if seen is None else seen
+    return [
+        one.step(pose, (n + 1) * FRAME_NS, image)
+        for n, (pose, image) in enumerate(zip(joints, given, strict=True))
+    ]
+
+
+def assert_same(first: Sequence[Estimate], second: Sequence[Estimate]) -> None:
+    for one, other in zip(first, second, strict=True):
+        assert one.state == other.state
+        assert one.confidence == other.confidence
+        np.testing.assert_array_equal(one.translation, other.translation)
+        np.testing.assert_array_equal(one.rotation, other.rotation)
+        np.testing.assert_array_equal(one.covariance, other.covariance)
+
+
+def assert_sound(estimate: Estimate) -> None:
+    """A pose with all that belongs to one, or lost."""
+    if estimate.state == "lost":
+        assert estimate == LOST
+        return
+    assert estimate.translation is not None
+    assert np.isfinite(estimate.translation).all()
+    assert np.linalg.norm(estimate.rotation) == pytest.approx(1.0)
+    assert 0.0 <= estimate.confidence <= 1.0
+    covariance = estimate.covariance
+    np.testing.assert_allclose(covariance, covariance.T, rtol=1e-6, atol=1e-12)
+    assert np.linalg.eigvalsh(0.5 * (covariance + covariance.T)).min() > 0.0
+
+
+def errors(estimates: Sequence[Estimate], places: np.ndarray) -> np.ndarray:
+    return np.linalg.norm([one.translation for one in estimates] - places, axis=1)
+
+
+# --- What it does
+
+
+def test_the_object_is_where_the_hand_of_a_stranger_is() -> None:
+    joints = unseen_wave(FRAMES)
+    estimates = follow(tracker(), joints)
+    assert {one.state for one in estimates} == {"tracked"}
+    assert errors(estimates, held(joints, seed=7)[0]).mean() < 0.03
+
+
+def test_images_show_where_it_is_held_otherwise_than_usual() -> None:
+    """A stranger who holds it 4 cm lower than everybody: seen at once, unknown unseen."""
+    joints = unseen_wave(FRAMES)
+    places, turns = held(joints, seed=7)
+    places = places + np.array([0.0, 0.04, 0.0])
+    shown = [draw(*pose) for pose in zip(places, turns, strict=True)]
+    unseen, seen = (follow(tracker(), joints, given) for given in (None, shown))
+    assert errors(unseen, places)[5:].mean() > 0.03
+    assert errors(seen, places)[5:].mean() < 0.5 * errors(unseen, places)[5:].mean()
+
+
+def test_what_was_seen_is_kept_for_a_while_and_fades() -> None:
+    joints = unseen_wave(FRAMES)
+    blind, shown = tracker(), tracker()
+    usual = follow(blind, joints)
+    kept = follow(shown, joints, [*images()[:10], *[None] * (FRAMES - 10)])
+    apart = errors(kept, np.array([one.translation for one in usual]))
+    assert apart[10] > 0.2 * apart[9]
+    assert apart[-1] < apart[9]
+    np.testing.assert_allclose(
+        shown.step(joints[-1], 10**10).translation, blind.step(joints[-1], 10**10).translation
+    )
+
+
+# --- What it keeps to itself
+
+
+@pytest.mark.parametrize("seen", [False, True])
+def test_the_same_seed_gives_the_same_poses_and_so_does_a_restart(seen: bool) -> None:
+    joints, given = unseen_wave(10), list(images()[:10]) if seen else None
+    one, other = tracker(seed=3), tracker(seed=3)
+    first = follow(one, joints, given)
+    assert_same(follow(other, joints, given), first)
+    one.restart()
+    assert_same(follow(one, joints, given), first)
+
+
+def test_another_seed_looks_elsewhere() -> None:
+    joints, given = unseen_wave(5), images()[:5]
+    one, other = (follow(tracker(seed=seed), joints, given) for seed in (0, 1))
+    assert not np.array_equal(one[-1].translation, other[-1].translation)
+    assert np.linalg.norm(one[-1].translation - other[-1].translation) < 0.05
+
+
+def test_two_trackers_of_a_model_do_not_disturb_each_other() -> None:
+    joints, given = unseen_wave(8), images()[:8]
+    alone = follow(tracker(), joints, given)
+    one, other = tracker(), tracker()
+    mixed = []
+    for number, image in enumerate(given):
+        mixed.append(one.step(joints[number], (number + 1) * FRAME_NS, image))
+        other.step(waving(8, seed=5)[number], (number + 1) * FRAME_NS, images()[-1 - number])
+    assert_same(mixed, alone)
+
+
+@pytest.mark.parametrize("seen", [False, True])
+def test_a_frame_by_itself_neither_uses_nor_changes_what_is_tracked(seen: bool) -> None:
+    joints, given = unseen_wave(8), images()[:8] if seen else [None] * 8
+    alone = follow(tracker(), joints, given)
+    one, mixed, between = tracker(), [], []
+    for number, image in enumerate(given):
+        mixed.append(one.step(joints[number], (number + 1) * FRAME_NS, image))
+        between.append(one.estimate_single_frame(joints[2], given[2]))
+    assert_same(mixed, alone)
+    assert_same(between[:1] * 8, between)
+    assert_same(between[:1], [tracker().step(joints[2], 1, given[2])])
+
+
+def test_arrays_that_were_given_and_told_are_nobody_s_to_change() -> None:
+    joints = unseen_wave(6)
+    alone = follow(tracker(), joints)
+    one, told = tracker(), []
+    for number, pose in enumerate(joints):
+        lent = pose.copy()
+        estimate = one.step(lent, (number + 1) * FRAME_NS)
+        told.append(replace(estimate, translation=estimate.translation.copy()))
+        lent += 5.0
+    assert_same(told, alone)
+    np.testing.assert_array_equal(joints, unseen_wave(6))
+
+
+@pytest.mark.parametrize("seen", [False, True])
+def test_a_left_handed_person_is_the_mirror_image(seen: bool) -> None:
+    """Without images to the last digit; with them the hypotheses differ."""
+    joints = unseen_wave(8)
+    flipped = body.mirror_joints(joints)
+    given = images()[:8] if seen else [None] * 8
+    turned = [
+        image and replace(image, depth=image.depth[:, ::-1], colour=image.colour[:, ::-1])
+        for image in given
+    ]
+    right = follow(tracker(), joints, given)
+    left = follow(tracker(left_handed=True), flipped, turned)
+    for one, other in zip(right, left, strict=True):
+        place, turn = body.mirror_pose(
+            one.translation, one.rotation, wave_model().shape.mirror_normal
+        )
+        apart = (scipy_rotation(turn) * scipy_rotation(other.rotation).inv()).magnitude()
+        assert np.linalg.norm(place - other.translation) < (0.03 if seen else 1e-9)
+        assert apart < (0.4 if seen else 1e-6)
+    signs = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
+    if not seen:
+        expected = right[-1].covariance * np.outer(signs, signs)
+        np.testing.assert_allclose(left[-1].covariance, expected, atol=1e-9)
+
+
+# --- What it withstands
+
+
+def nobody(joints: np.ndarray) -> np.ndarray:
+    return np.full_like(joints, np.nan)
+
+
+def no_arm(joints: np.ndarray) -> np.ndarray:
+    joints[:, [9, *RIGHT_ARM]] = np.nan
+    return joints
+
+
+def pelvis_only(joints: np.ndarray) -> np.ndarray:
+    joints[:, [n for n in range(20) if n not in (0, 12, 16)]] = np.nan
+    return joints
+
+
+def one_point(joints: np.ndarray) -> np.ndarray:
+    return np.tile([0.0, 0.0, 2.0], (len(joints), 20, 1))
+
+
+def at_the_camera(joints: np.ndarray) -> np.ndarray:
+    return joints - [0.0, 0.0, 2.2]
+
+
+def behind_the_camera(joints: np.ndarray) -> np.ndarray:
+    return joints * [1.0, 1.0, -1.0]
+
+
+def out_of_the_image(joints: np.ndarray) -> np.ndarray:
+    return joints + np.array([40.0, 0.0, 0.0])
+
+
+def infinite(joints: np.ndarray) -> np.ndarray:
+    joints[:, 11] = np.inf
+    return joints
+
+
+def enormous(joints: np.ndarray) -> np.ndarray:
+    return 1e150 * joints
+
+
+def flickering(joints: np.ndarray) -> np.ndarray:
+    joints[np.random.default_rng(0).random(joints.shape[:2]) < 0.4] = np.nan
+    return joints
+
+
+def scattered(metres: float) -> Callable[[np.ndarray], np.ndarray]:
+    def scatter(joints: np.ndarray) -> np.ndarray:
+        return joints + metres * np.random.default_rng(0).normal(size=joints.shape)
+
+    return scatter
+
+
+FAULTS = [
+    nobody,
+    no_arm,
+    pelvis_only,
+    one_point,
+    at_the_camera,
+    behind_the_camera,
+    out_of_the_image,
+    infinite,
+    enormous,
+    flickering,
+    scattered(0.3),
+    scattered(3.0),
+    scattered(50.0),
+]
+
+
+@pytest.mark.parametrize("seen", [False, True])
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_wrong_body_gives_a_sound_pose_or_none_and_the_next_right_one_a_good_one(
+    fault: Callable[[np.ndarray], np.ndarray], seen: bool
+) -> None:
+    joints = unseen_wave(FRAMES)
+    joints[12:18] = fault(joints[12:18].copy())
+    estimates = follow(tracker(), joints, images() if seen else None)
+    for estimate in estimates:
+        assert_sound(estimate)
+    late = [one.state for one in estimates[18:]]
+    assert late == ["tracked"] * len(late)
+    places, _ = held(unseen_wave(FRAMES), seed=7)
+    assert errors(estimates[21:], places[21:]).max() < 0.10
+
+
+@pytest.mark.parametrize("seen", [False, True])
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_wrong_body_at_first_is_no_obstacle(
+    fault: Callable[[np.ndarray], np.ndarray], seen: bool
+) -> None:
+    joints = unseen_wave(10)
+    joints[:3] = fault(joints[:3].copy())
+    estimates = follow(tracker(), joints, images()[:10] if seen else None)
+    for estimate in estimates:
+        assert_sound(estimate)
+    assert [one.state for one in estimates[3:]] == ["tracked"] * 7
+
+
+@pytest.mark.parametrize(
+    "times",
+    [
+        [0, 1, 2, 1, 2, 3],
+        [100, 101, 1, 2, 3, 4],
+        [1, 1, 1, 1, 1, 1],
+        [1, 2, 20, 21, 22, 10**6],
+        [0, 0, -5, -4, -3, -2],
+    ],
+    ids=["back", "far back", "still", "gaps", "negative"],
+)
+@pytest.mark.parametrize("seen", [False, True])
+def test_clocks_that_jump_or_stand_still_do_no_harm(times: list[int], seen: bool) -> None:
+    joints, one = unseen_wave(6), tracker()
+    places, _ = held(joints, seed=7)
+    for number, frame in enumerate(times):
+        image = images()[number] if seen else None
+        estimate = one.step(joints[number], frame * FRAME_NS, image)
+        assert_sound(estimate)
+        assert np.linalg.norm(estimate.translation - places[number]) < 0.08
+
+
+def test_after_a_gap_a_frame_is_a_first_one() -> None:
+    joints, one, other = unseen_wave(12), tracker(), tracker()
+    follow(one, joints[:8], images()[:8])
+    follow(other, joints[:8])
+    late = [t.step(joints[9], 8 * FRAME_NS + 500_000_001) for t in (one, other)]
+    assert_same(late[:1], late[1:])
+
+
+def without(*, colour: bool = False, depth: bool = False) -> Callable[[Image], Image]:
+    return lambda image: replace(
+        image,
+        colour=None if colour else image.colour,
+        depth=None if depth else image.depth,
+    )
+
+
+def of_size(width: int, height: int) -> Callable[[Image], Image]:
+    return lambda image: Image(
+        None,
+        CAMERA.scaled_to(width, height),
+        np.full((height, width), 3.5, np.float32),
+        np.full((height, width, 3), 90, np.uint8),
+    )
+
+
+def filled(colour: int, depth: float) -> Callable[[Image], Image]:
+    return lambda image: Image(
+        None,
+        CAMERA,
+        np.full((240, 320), depth, np.float32),
+        np.full((240, 320, 3), colour, np.uint8),
+    )
+
+
+def depth_smaller(image: Image) -> Image:
+    return replace(image, depth=np.ascontiguousarray(image.depth[::2, ::2]))
+
+
+def read_only(image: Image) -> Image:
+    depth, colour = image.depth.copy(), image.colour.copy()
+    depth.flags.writeable = colour.flags.writeable = False
+    return replace(image, depth=depth, colour=colour)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        without(colour=True),
+        without(depth=True),
+        without(colour=True, depth=True),
+        of_size(1, 1),
+        of_size(2, 2),
+        of_size(7, 5),
+        filled(0, 0.0),
+        filled(255, 0.0),
+        filled(128, 0.3),
+        filled(128, 65.0),
+        depth_smaller,
+        read_only,
+    ],
+    ids=[
+        "no colour",
+        "no depth",
+        "nothing",
+        "1x1",
+        "2x2",
+        "7x5",
+        "black",
+        "white",
+        "all near",
+        "all far",
+        "small depth",
+        "read-only",
+    ],
+)
+def test_any_image_leaves_a_sound_pose_near_the_hand(change: Callable[[Image], Image]) -> None:
+    joints = unseen_wave(6)
+    estimates = follow(tracker(), joints, [change(image) for image in images()[:6]])
+    for estimate in estimates:
+        assert_sound(estimate)
+    assert errors(estimates, held(joints, seed=7)[0]).max() < 0.15
+
+
+@pytest.mark.parametrize("terms", [("edges",), ("region",), ("interior",), ("depth",), ()])
+def test_each_term_can_weigh_by_itself(terms: tuple[str, ...]) -> None:
+    joints = unseen_wave(6)
+    estimates = follow(tracker(terms=terms), joints, images()[:6])
+    for estimate in estimates:
+        assert_sound(estimate)
+    assert errors(estimates, held(joints, seed=7)[0]).max() < 0.10
+    if not terms:
+        assert_same(estimates, follow(tracker(), joints))
+
+
+def test_one_hypothesis_is_enough_to_go_on() -> None:
+    for estimate in follow(tracker(search=Search(hypotheses=1)), unseen_wave(4), images()[:4]):
+        assert_sound(estimate)
+
+
+def test_who_jumps_away_takes_the_object_along() -> None:
+    """Another person under the same number, or a tracker's mistake."""
+    joints = unseen_wave(10)
+    joints[5:] += [3.0, 0.0, 4.0]
+    estimates = follow(tracker(), joints)
+    places, _ = held(joints, seed=7)
+    assert errors(estimates, places)[5:].max() < 0.10
+    for estimate in estimates:
+        assert_sound(estimate)
+
+
+def test_an_unseen_body_s_object_is_predicted_for_a_second_and_then_lost() -> None:
+    one, joints = tracker(), unseen_wave(4)
+    last = follow(one, joints[:3])[-1]
+    states = [one.step(None, 3 * FRAME_NS + 200_000_000 * n) for n in range(1, 8)]
+    assert [estimate.state for estimate in states] == ["predicted"] * 5 + ["lost"] * 2
+    np.testing.assert_array_equal(states[0].translation, last.translation)
+    assert states[0].confidence > states[4].confidence
+    assert one.step(joints[3], 10**10).state == "tracked"
+
+
+def test_a_tracker_that_saw_nobody_has_lost_it() -> None:
+    assert tracker().step(None, FRAME_NS) == LOST
+    assert tracker().estimate_single_frame(np.full((20, 3), np.nan)) == LOST
+    assert tracker().outline(LOST, CAMERA) is None
+
+
+def test_the_outline_is_about_the_object() -> None:
+    one = tracker()
+    (estimate,) = follow(one, unseen_wave(1))
+    outline = one.outline(estimate, CAMERA)
+    corners = scipy_rotation(estimate.rotation).apply(wave_model().shape.vertices)
+    corners = CAMERA.project(corners + estimate.translation)
+    assert outline is not None
+    assert (outline >= corners.min(axis=0) - 1.0).all()
+    assert (outline <= corners.max(axis=0) + 1.0).all()
+
+
+def test_a_model_of_an_older_release_says_to_train_again() -> None:
+    old: Model = replace(wave_model(), prior=None)
+    with pytest.raises(ModelError, match=r"the model of wedge .* no prior: train it again"):
+        FusionTracker(old)

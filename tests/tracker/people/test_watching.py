@@ -1,0 +1,108 @@
+"""Several people, each with what they use."""
+
+import numpy as np
+from inhand_schemas.messages import Person
+from inhand_tracker.geometry.estimate import LOST, Estimate
+from inhand_tracker.people.following import PeopleWatched, published
+from inhand_tracker.people.watching import GivenObjects, RecognisedObjects, Seen
+from inhand_tracker.recognition.answer import Recognition
+from people import FRAME_NS, STANDING
+
+HERE = Estimate("tracked", 1.0, np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.eye(6))
+
+
+class Scripted:
+    """A cascade that says what it is told to."""
+
+    def __init__(self, *answers: Recognition | Exception) -> None:
+        self.answers = list(answers)
+        self.restarts = 0
+
+    def restart(self) -> None:
+        self.restarts += 1
+
+    def step(self, *_: object) -> Recognition:
+        answer = self.answers.pop(0)
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+    def outline(self, *_: object) -> None:
+        return None
+
+
+def see(watcher, failures=None):
+    on_failure = (lambda *_: None) if failures is None else lambda *told: failures.append(told)
+    return watcher.see(STANDING, FRAME_NS, None, None, on_failure)
+
+
+def test_the_known_object_has_a_pose_and_all_tell_the_probabilities() -> None:
+    answer = Recognition(np.array([0.2, 0.6, 0.1]), 1, HERE)
+    watcher = RecognisedObjects(Scripted(answer), ["mug", "phone", "mug"])
+    mug, phone = see(watcher)
+    assert (mug.name, mug.estimate.state) == ("mug", "lost")
+    assert (phone.name, phone.estimate) == ("phone", HERE)
+    for seen in (mug, phone):
+        assert {k: round(v, 9) for k, v in seen.class_probabilities.items()} == {
+            "mug": 0.3,
+            "phone": 0.6,
+        }
+
+
+def test_a_cascade_that_fails_is_told_restarted_and_loses_a_frame() -> None:
+    failing = Scripted(ZeroDivisionError("a bug"), Recognition(np.array([0.9]), 0, HERE))
+    watcher, failures = RecognisedObjects(failing, ["mug"]), []
+    assert [seen.estimate.state for seen in see(watcher, failures)] == ["lost"]
+    assert (failing.restarts, str(failures[0][1])) == (1, "a bug")
+    assert [seen.estimate.state for seen in see(watcher)] == ["tracked"]
+
+
+def test_every_pose_is_published_and_an_unused_object_is_lost_once() -> None:
+    found = {
+        0: [Seen("mug", HERE), Seen("phone", LOST), Seen("pan", LOST)],
+        1: [Seen("mug", HERE), Seen("phone", HERE), Seen("pan", LOST, None, {"pan": 0.4})],
+    }
+    told = [(person, seen.name, seen.estimate.state) for person, seen in published(found)]
+    assert told == [
+        (0, "mug", "tracked"),
+        (1, "mug", "tracked"),
+        (1, "phone", "tracked"),
+        (1, "pan", "lost"),
+    ]
+
+
+def person(number: int, x: float) -> Person:
+    joints = STANDING + np.array([x, 0.0, 0.0])
+    return Person(
+        id=number,
+        joints=tuple(map(tuple, joints.tolist())),
+        states=("tracked",) * 20,
+        confidences=(1.0,) * 20,
+    )
+
+
+class Still:
+    """A tracker of a thing that never moves."""
+
+    def restart(self) -> None: ...
+
+    def step(self, joints: object, *_: object) -> Estimate:
+        return LOST if joints is None else HERE
+
+    def outline(self, *_: object) -> None:
+        return None
+
+
+def test_no_more_people_are_watched_than_asked_for_and_who_leaves_makes_room() -> None:
+    watched = PeopleWatched(lambda: GivenObjects({"mug": Still()}), 2)
+
+    def numbers(people: list[Person], second: float) -> set[int | None]:
+        time_ns = round(second * 1e9)
+        return set(watched.see(people, time_ns, None, None, lambda *_: None))
+
+    assert numbers([], 0.0) == {None}
+    three = [person(1, -1.0), person(2, 0.0), person(3, 1.0)]
+    assert numbers(three, 0.1) == {0, 1}
+    assert numbers(three[1:], 0.2) == {0, 1}
+    assert numbers(three[1:], 2.0) == {0, 1}
+    assert numbers(three[1:], 2.2) == {1, 2}

@@ -1,0 +1,274 @@
+"""The daemon's own work, with a daemon that only remembers; the real one is in tests/e2e."""
+
+import logging
+import threading
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.health import HealthBoard
+from inhand_runtime.pixels import encode_colour, encode_depth
+from inhand_schemas.keys import Site
+from inhand_schemas.messages import CameraInfo, Message, ObjectPose, Person, RgbdFrame, Skeletons
+from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS, AnyTopic
+from inhand_tracker.body.skeleton import skeleton as body
+from inhand_tracker.methods.darby2014.tracker import ParticleTracker
+from inhand_tracker.methods.darby2014.variants import VARIANTS
+from inhand_tracker.model.model_file import ModelError, save_model
+from inhand_tracker.people.watching import GivenObjects
+from inhand_tracker.service import TrackerService, TrackerSettings, load_trackers
+from people import FRAME_NS, unseen_wave, wave_model
+from pydantic import ValidationError
+
+SITE = Site()
+PUBLISHED = "gd-fallback"
+FRAMES = 5
+INFO_MESSAGE = CameraInfo(
+    sequence=0, time_ns=0, width=64, height=48, fx=52.0, fy=52.0, cx=31.5, cy=23.5
+)
+
+
+class Sample:
+    """A message as it came."""
+
+    def __init__(self, topic: AnyTopic, message: Message) -> None:
+        self.key = topic.key(SITE, "camera")
+        self.message = message
+
+
+class Rig:
+    """What a service needs of its daemon; ends when all was read."""
+
+    def __init__(self, *messages: tuple[AnyTopic, Message]) -> None:
+        self.site = SITE
+        self.stop = threading.Event()
+        self.health = HealthBoard("tracker", "test")
+        self.inbox = self
+        self.subscribed: list[AnyTopic] = []
+        self.poses: dict[str, list[ObjectPose]] = {}
+        self._samples = [Sample(topic, message) for topic, message in messages]
+
+    def publisher(self, topic: AnyTopic, name: str) -> "Publications":
+        assert topic is POSE
+        return Publications(self.poses.setdefault(name, []))
+
+    def subscribe(self, topic: AnyTopic, name: str, samples: int | None = None) -> None:
+        assert name == "camera"
+        self.subscribed.append(topic)
+
+    def get(self, _timeout: float) -> Sample | None:
+        if not self._samples:
+            self.stop.set()
+            return None
+        return self._samples.pop(0)
+
+    def decode(self, _topic: AnyTopic, sample: Sample) -> Message:
+        return sample.message
+
+
+class Publications:
+    def __init__(self, messages: list[ObjectPose]) -> None:
+        self._messages = messages
+
+    def put(self, message: ObjectPose) -> None:
+        self._messages.append(message)
+
+
+class Broken(ParticleTracker):
+    """Fails on its second frame, and only then."""
+
+    steps = 0
+
+    def step(self, *arguments: object, **options: object) -> object:
+        self.steps += 1
+        if self.steps == 2:
+            raise ZeroDivisionError("a bug")
+        return super().step(*arguments, **options)
+
+
+def tracker(kind: type[ParticleTracker] = ParticleTracker) -> ParticleTracker:
+    return kind(wave_model(), VARIANTS[PUBLISHED])
+
+
+def somebody(joints: np.ndarray) -> Person:
+    return Person(
+        id=4,
+        joints=tuple(map(tuple, joints.tolist())),
+        states=("tracked",) * 20,
+        confidences=(1.0,) * 20,
+    )
+
+
+def skeletons() -> list[tuple[AnyTopic, Message]]:
+    return [
+        (SKELETONS, Skeletons(sequence=n, time_ns=(n + 1) * FRAME_NS, people=(somebody(joints),)))
+        for n, joints in enumerate(unseen_wave(FRAMES))
+    ]
+
+
+def run(rig: Rig, trackers: dict[str, ParticleTracker], **settings: object) -> None:
+    TrackerService(rig, TrackerSettings(**settings), lambda: GivenObjects(trackers)).run()
+
+
+def places(poses: Sequence[ObjectPose]) -> list[tuple[float, float, float]]:
+    return [pose.camera_from_object.translation for pose in poses]
+
+
+def test_each_object_is_tracked_on_its_own_key_as_if_it_were_alone() -> None:
+    together, alone = Rig(*skeletons()), Rig(*skeletons())
+    run(together, {"mug": tracker(), "pan": tracker()})
+    run(alone, {"mug": tracker()})
+    assert set(together.poses) == {"mug", "pan"}
+    for name, poses in together.poses.items():
+        assert [pose.object for pose in poses] == [name] * FRAMES
+        assert [pose.sequence for pose in poses] == list(range(FRAMES))
+        assert places(poses) == places(alone.poses["mug"])
+
+
+def test_an_object_that_fails_is_lost_for_a_frame_and_stops_no_other(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    rig = Rig(*skeletons())
+    with caplog.at_level(logging.ERROR):
+        run(rig, {"mug": tracker(Broken), "pan": tracker()})
+    assert [pose.state for pose in rig.poses["mug"]] == ["tracked", "lost", *["tracked"] * 3]
+    assert [pose.state for pose in rig.poses["pan"]] == ["tracked"] * FRAMES
+    assert rig.health.report().last_error == "cannot track mug: ZeroDivisionError: a bug"
+    assert len(caplog.records) == 1
+
+
+def test_a_failure_that_lasts_is_told_once(caplog: pytest.LogCaptureFixture) -> None:
+    always = tracker()
+    always.step = lambda *_: 1 / 0
+    rig = Rig(*skeletons())
+    with caplog.at_level(logging.ERROR):
+        run(rig, {"mug": always})
+    assert [pose.state for pose in rig.poses["mug"]] == ["lost"] * FRAMES
+    assert len(caplog.records) == 1
+
+
+def frames(**pixels: object) -> list[tuple[AnyTopic, Message]]:
+    return [
+        (RGBD, RgbdFrame(sequence=n, time_ns=(n + 1) * FRAME_NS, **pixels)) for n in range(FRAMES)
+    ]
+
+
+def seen(monkeypatch: pytest.MonkeyPatch, **settings: object) -> list[tuple[bool, bool, bool]]:
+    """Whether the trackers got luminance, depth and colour, per frame; pixels come first."""
+    colour = encode_colour(np.full((48, 64, 3), 90, np.uint8))
+    depth = encode_depth(np.full((48, 64), 2500, np.uint16))
+    bodies, pixels = skeletons(), frames(colour=colour, depth=depth)
+    both = [message for pair in zip(pixels, bodies, strict=True) for message in pair]
+    images = []
+    step = ParticleTracker.step
+    monkeypatch.setattr(
+        ParticleTracker,
+        "step",
+        lambda self, j, t, image: images.append(image) or step(self, j, t, image),
+    )
+    run(Rig((INFO, INFO_MESSAGE), *both), {"mug": tracker(), "pan": tracker()}, **settings)
+    assert images[::2] == images[1::2]
+    assert all(first is second for first, second in zip(images[::2], images[1::2], strict=True))
+    return [
+        (
+            image is not None and image.grey is not None,
+            image is not None and image.depth is not None,
+            image is not None and image.colour is not None,
+        )
+        for image in images[::2]
+    ]
+
+
+@pytest.mark.parametrize(
+    ("method", "likelihood", "expected"),
+    [
+        (PUBLISHED, None, (True, False, False)),
+        (PUBLISHED, ("edges",), (True, False, False)),
+        (PUBLISHED, ("depth",), (False, True, False)),
+        (PUBLISHED, ("edges", "depth"), (True, True, False)),
+        (PUBLISHED, (), (False, False, False)),
+        ("fusion", None, (False, True, True)),
+        ("fusion", ("region",), (False, True, True)),
+        ("fusion", (), (False, False, False)),
+    ],
+)
+def test_pixels_are_decoded_once_a_frame_and_only_those_that_weigh(
+    monkeypatch: pytest.MonkeyPatch,
+    method: str,
+    likelihood: tuple[str, ...] | None,
+    expected: tuple[bool, bool, bool],
+) -> None:
+    assert seen(monkeypatch, method=method, likelihood=likelihood) == [expected] * FRAMES
+
+
+def test_pixels_are_not_asked_for_when_none_weigh() -> None:
+    blind, seeing = Rig(), Rig()
+    run(blind, {"mug": tracker()}, likelihood=())
+    run(seeing, {"mug": tracker()})
+    assert RGBD not in blind.subscribed
+    assert RGBD in seeing.subscribed
+
+
+# --- Settings
+
+
+@pytest.fixture
+def model(tmp_path: Path) -> Path:
+    path = tmp_path / "wave.model"
+    save_model(wave_model(), path)
+    return path
+
+
+def test_one_model_or_a_list_of_them(model: Path) -> None:
+    for settings in (TrackerSettings(model=model), TrackerSettings(models=(model,))):
+        assert list(load_trackers("mug", settings)) == ["wedge"]
+
+
+@pytest.mark.parametrize(
+    ("named", "line"),
+    [
+        ({}, r"\[tracker.mug\] names no model: write model = "),
+        ({"model": 1, "models": 1}, r"\[tracker.mug\] has model and models"),
+        ({"models": 2}, r"\[tracker.mug\] has two models of 'wedge'"),
+    ],
+)
+def test_models_that_cannot_be_meant_are_refused(
+    model: Path, named: dict[str, int], line: str
+) -> None:
+    values = {k: model if k == "model" else (model,) * count for k, count in named.items()}
+    with pytest.raises(SettingsError, match=line):
+        load_trackers("mug", TrackerSettings(**values))
+
+
+def test_only_terms_that_there_are_can_weigh() -> None:
+    with pytest.raises(ValidationError, match="'edges', 'region', 'interior' or 'depth'"):
+        TrackerSettings(likelihood=("colour",))
+
+
+def test_a_term_that_the_method_does_not_know_is_refused(model: Path) -> None:
+    settings = TrackerSettings(model=model, method=PUBLISHED, likelihood=("depth", "region"))
+    with pytest.raises(SettingsError, match="gd-fallback does not weigh 'region'; it knows: edges"):
+        load_trackers("mug", settings)
+
+
+def test_a_model_that_learned_no_prior_is_refused_for_the_default_method(tmp_path: Path) -> None:
+    old = replace(wave_model(), prior=None)
+    save_model(old, tmp_path / "old.model")
+    with pytest.raises(ModelError, match=r"wedge is of an older release .* train it again"):
+        load_trackers("mug", TrackerSettings(model=tmp_path / "old.model"))
+    settings = TrackerSettings(model=tmp_path / "old.model", method=PUBLISHED)
+    assert list(load_trackers("mug", settings)) == ["wedge"]
+
+
+def test_a_left_handed_person_is_a_setting(model: Path) -> None:
+    """The mirror image of a right-handed person's skeleton gives the mirrored place."""
+    places = []
+    for left in (False, True):
+        (one,) = load_trackers("mug", TrackerSettings(model=model, left_handed=left)).values()
+        joints = unseen_wave(1)[0]
+        estimate = one.step(body.mirror_joints(joints) if left else joints, FRAME_NS)
+        places.append(estimate.translation)
+    np.testing.assert_allclose(places[1], places[0] * [-1.0, 1.0, 1.0], atol=1e-9)
