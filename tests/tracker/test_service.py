@@ -14,7 +14,7 @@ from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import CameraInfo, Message, ObjectPose, Person, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS, AnyTopic
-from inhand_tracker.body.skeleton import skeleton as body
+from inhand_tracker.body import skeleton as body
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from inhand_tracker.model.model_file import ModelError, save_model

@@ -8,8 +8,8 @@ from inhand_lab.motions.performance import Contact
 from inhand_lab.people.joints import Joint
 from inhand_lab.people.person import Person, sample_person
 from inhand_lab.sensing.skeleton_noise import INFERRED, MISSING, TRACKED
+from inhand_lab.world import simulation as world
 from inhand_lab.world.simulation import INTERACTIONS, Simulation, simulate
-from inhand_lab.world.simulation import simulation as world
 from numpy.typing import NDArray
 
 

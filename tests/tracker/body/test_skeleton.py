@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis.extra.numpy import arrays
 from inhand_schemas.messages import JOINT_NAMES
-from inhand_tracker.body.skeleton import skeleton as body
+from inhand_tracker.body import skeleton as body
 from people import (
     STANDING,
     STANDING_HEIGHT,

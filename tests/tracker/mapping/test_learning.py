@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from inhand_tracker.mapping import mapping as mapping_module
+from inhand_tracker.mapping import radii as radii_module
 from inhand_tracker.mapping.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.mapping.mapping import Mapping
-from inhand_tracker.mapping.mapping import mapping as mapping_module
-from inhand_tracker.mapping.mapping import radii as radii_module
 from people import STANDING, held, move, quaternion_of, same_rotation, sequence, waving
 from scipy.spatial.transform import Rotation
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from inhand_tracker.prior import kernel_ridge
 from inhand_tracker.prior.kernel_ridge import JITTER, RIDGE, WIDTH, fit, gaussian, squared_distances
-from inhand_tracker.prior.prior import kernel_ridge
 from scipy.spatial.distance import cdist
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from inhand_tracker.body import skeleton as body
 from inhand_tracker.body.anchors import ANCHORS, find_anchors
-from inhand_tracker.body.skeleton import skeleton as body
 from inhand_tracker.body.window import VIEWS, BodyWindow
 from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.model.model_file import load_model, save_model

@@ -7,7 +7,7 @@ import pytest
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.recognition.answer import cascade as cascade_module
+from inhand_tracker.recognition import cascade as cascade_module
 from inhand_tracker.recognition.cascade import TURN, Cascade
 from inhand_tracker.recognition.presence import usual_presence
 from inhand_tracker.sight.support import Support

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from inhand_tracker.body.skeleton import skeleton as body
+from inhand_tracker.body import skeleton as body
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
