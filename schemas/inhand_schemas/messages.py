@@ -11,29 +11,6 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, Struct
 
-JOINT_NAMES = (
-    "HipCenter",
-    "Spine",
-    "ShoulderCenter",
-    "Head",
-    "ShoulderLeft",
-    "ElbowLeft",
-    "WristLeft",
-    "HandLeft",
-    "ShoulderRight",
-    "ElbowRight",
-    "WristRight",
-    "HandRight",
-    "HipLeft",
-    "KneeLeft",
-    "AnkleLeft",
-    "FootLeft",
-    "HipRight",
-    "KneeRight",
-    "AnkleRight",
-    "FootRight",
-)
-
 # Ends by a lookahead, since in some languages "$" also matches before a last newline.
 NAME_PATTERN = r"^[a-z0-9_]+(?![\s\S])"
 

@@ -6,11 +6,11 @@ import numpy as np
 import trimesh
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.people.figure import LIMBS
-from inhand_lab.people.joints import Joint
 from inhand_lab.people.kinematics import Body
 from inhand_lab.people.person import Person
 from inhand_lab.people.solids import belly, head_radii, pelvis, rib_cage
 from inhand_lab.world.interactions import INTERACTIONS
+from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array
 
 SPACING = 0.03

@@ -13,10 +13,10 @@ last longer than about a fifth of a second stay in it.
 from __future__ import annotations
 
 import numpy as np
+from inhand_schemas.joints import MIRRORED_JOINTS, PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array
 from scipy.linalg import solveh_banded
 
-from inhand_lab.people.joints import MIRRORED_JOINTS, PARENTS, Joint
 from inhand_lab.people.kinematics import FLEXION_LIMIT
 
 CUT_OFF = 5.0
@@ -50,7 +50,7 @@ def denoise(joints: Array, frame_rate: float) -> Array:
 def bone_lengths(joints: Array) -> Array:
     """Median length (19,) of the bone that ends at each joint but the first, of both sides."""
     lengths = _lengths(joints)
-    mirrored = MIRRORED_JOINTS[1:] - 1
+    mirrored = np.array(MIRRORED_JOINTS[1:]) - 1
     return np.asarray(np.nanmedian(np.concatenate([lengths, lengths[:, mirrored]]), axis=0))
 
 

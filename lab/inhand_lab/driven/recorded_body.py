@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
+from inhand_schemas.joints import MIRRORED_JOINTS, Joint
 from inhand_tracker.geometry.arrays import Array, Bytes
 
 from inhand_lab.driven.denoising import bone_lengths, denoise
@@ -26,7 +27,6 @@ from inhand_lab.geometry.transforms import (
     rotation_from_axes,
 )
 from inhand_lab.motions.timeline import drift
-from inhand_lab.people.joints import MIRRORED_JOINTS, Joint
 from inhand_lab.people.kinematics import Body
 from inhand_lab.people.person import Person, Proportions, sample_person, standing_height
 from inhand_lab.sensing.cameras import KINECT, Camera

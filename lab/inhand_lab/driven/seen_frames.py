@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from itertools import accumulate
 
 import numpy as np
+from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array
 from scipy.spatial.transform import Rotation
 
@@ -22,7 +23,6 @@ from inhand_lab.geometry.transforms import (
     rotation_about,
     rotation_from_axes,
 )
-from inhand_lab.people.joints import Joint
 
 STRAIGHT = 0.15
 """An elbow bent by this sine shows as much of the arm's plane as is known of it anyway."""

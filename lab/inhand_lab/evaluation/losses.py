@@ -8,7 +8,8 @@ the true joints are known, while a joint above the legs is more than 20 cm from 
 from dataclasses import dataclass
 
 import numpy as np
-from inhand_tracker.body.skeleton import JOINT, has_pelvis
+from inhand_schemas.joints import JOINT_NAMES
+from inhand_tracker.body.skeleton import has_pelvis
 from inhand_tracker.geometry.arrays import Array, Flags, Indices
 
 LOST_M = 0.20
@@ -16,7 +17,11 @@ FOUND_M = 0.10
 BODY_LOST_M = 0.20
 
 _UPPER_JOINTS = np.array(
-    [index for name, index in JOINT.items() if not name.startswith(("Knee", "Ankle", "Foot"))]
+    [
+        joint
+        for joint, name in enumerate(JOINT_NAMES)
+        if not name.startswith(("Knee", "Ankle", "Foot"))
+    ]
 )
 
 

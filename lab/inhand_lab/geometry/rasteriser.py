@@ -7,25 +7,11 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 from inhand_tracker.geometry.arrays import Bytes, Singles
+from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
 
 NEAREST = 0.10
 """Triangles with a corner nearer than this, in metres, are left out."""
-
-
-@dataclass(frozen=True)
-class Intrinsics:
-    """A pinhole camera: size in pixels, focal lengths and principal point in pixels."""
-
-    width: int
-    height: int
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-
-
-KINECT = Intrinsics(640, 480, 525.0, 525.0, 319.5, 239.5)
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.camera import Intrinsics
 
-from inhand_lab.geometry.rasteriser import NEAREST, Canvas, Intrinsics
+from inhand_lab.geometry.rasteriser import NEAREST, Canvas
 
 MARGIN = 1
 """Pixels around what is looked for."""

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from inhand_schemas.messages import JOINT_NAMES
+from inhand_schemas.joints import JOINT_NAMES
 from inhand_tracker.body.skeleton import PARTS, has_pelvis, part_lengths
 from inhand_tracker.geometry.arrays import Array
 from numpy.typing import NDArray

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 from inhand_runtime.pixels import encode_depth
-from inhand_schemas.messages import JOINT_NAMES, CameraInfo, Message, RgbdFrame
+from inhand_schemas.joints import JOINT_NAMES
+from inhand_schemas.messages import CameraInfo, Message, RgbdFrame
 from inhand_tracker.geometry.arrays import Array
 from numpy.typing import NDArray
 

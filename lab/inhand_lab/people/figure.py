@@ -8,11 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array, Indices
 
 from inhand_lab.geometry.surfaces import Colour, Surface, ellipsoid, joined, limb
 from inhand_lab.geometry.transforms import MIRROR, Transform, normalised
-from inhand_lab.people.joints import Joint
 from inhand_lab.people.kinematics import Body
 from inhand_lab.people.person import Person
 from inhand_lab.people.solids import belly, head_radii, pelvis, rib_cage

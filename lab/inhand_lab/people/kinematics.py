@@ -11,11 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_schemas.joints import MIRRORED_JOINTS
 from inhand_tracker.geometry.arrays import Array
 from scipy.spatial.transform import Rotation
 
 from inhand_lab.geometry.transforms import MIRROR, Transform, normalised, rotation_about
-from inhand_lab.people.joints import MIRRORED_JOINTS
 from inhand_lab.people.person import Person, Proportions
 from inhand_lab.people.solids import belly, rib_cage
 

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array, Indices
 from numpy.typing import NDArray
 from scipy.ndimage import binary_erosion, median_filter
 
-from inhand_lab.people.joints import Joint
 from inhand_lab.realism.skeletons import Figure
 
 PATCH = 6

@@ -11,9 +11,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array, Flags, Indices
-
-from inhand_lab.people.joints import PARENTS, Joint
 
 FRAME_RATE = 30.0
 REACH = 3

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from inhand_tracker.body.skeleton import JOINT
+from inhand_schemas.joints import Joint
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
@@ -42,7 +42,7 @@ def person_pixels(frames: Sequence[Frame], camera: Intrinsics) -> float:
     for frame in frames:
         for person in frame.people[:1]:
             pixels = camera.project(joints_of(person))
-            feet = pixels[[JOINT["AnkleLeft"], JOINT["AnkleRight"]], 1]
-            tall.append((feet.max() - pixels[JOINT["Head"], 1]) / HEAD_SHARE)
+            feet = pixels[[Joint.ANKLE_LEFT, Joint.ANKLE_RIGHT], 1]
+            tall.append((feet.max() - pixels[Joint.HEAD, 1]) / HEAD_SHARE)
     known = np.array(tall)[np.isfinite(tall)]
     return float(np.quantile(known, 0.9)) if len(known) else float("nan")

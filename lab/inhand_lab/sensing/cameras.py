@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from inhand_lab.geometry import rasteriser
-from inhand_lab.geometry.rasteriser import Intrinsics
+from inhand_tracker.geometry.camera import Intrinsics
 
 
 @dataclass(frozen=True)
@@ -19,11 +18,13 @@ class Camera:
     exposure: float
 
 
-KINECT = Camera("kinect", rasteriser.KINECT, "structured light", exposure=0.020)
+KINECT = Camera(
+    "kinect", Intrinsics(525.0, 525.0, 319.5, 239.5, 640, 480), "structured light", exposure=0.020
+)
 """Kinect for Xbox 360 at 640 x 480, in the light of a living room."""
 
 OAK_D = Camera(
-    "oak_d", Intrinsics(1280, 720, 1000.0, 1000.0, 639.5, 359.5), "stereo", exposure=0.015
+    "oak_d", Intrinsics(1000.0, 1000.0, 639.5, 359.5, 1280, 720), "stereo", exposure=0.015
 )
 """Luxonis OAK-D with depth aligned to colour at 1280 x 720.
 

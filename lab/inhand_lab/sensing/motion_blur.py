@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 from inhand_tracker.geometry.arrays import Array, Bytes, Flags, Singles
+from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
 
-from inhand_lab.geometry.rasteriser import Canvas, Intrinsics, draw
+from inhand_lab.geometry.rasteriser import Canvas, draw
 from inhand_lab.geometry.surfaces import Surface, lit
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.geometry.window import window_around

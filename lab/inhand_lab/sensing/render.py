@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Flags
+from inhand_tracker.geometry.camera import Intrinsics
 
-from inhand_lab.geometry.rasteriser import Canvas, Intrinsics, draw
+from inhand_lab.geometry.rasteriser import Canvas, draw
 from inhand_lab.geometry.surfaces import Surface, from_mesh, lit
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.geometry.window import Window, window_around

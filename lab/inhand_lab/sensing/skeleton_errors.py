@@ -13,11 +13,11 @@ by the realism table; none was chosen for what a method makes of it.
 from __future__ import annotations
 
 import numpy as np
+from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array, Indices
 from scipy.spatial.transform import Rotation
 
 from inhand_lab.geometry.recursion import leaky_sum
-from inhand_lab.people.joints import PARENTS, Joint
 
 _ARM, _LEG = (1.1, 20, 1.1, 13), (7.2, 13, 10, 6.3)
 MISTAKES = 1e-3 * np.array([0, 5, 10, 0.8, *_ARM, *_ARM, *_LEG, *_LEG], float)

@@ -11,11 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array, Bytes, Flags, Indices
 
 from inhand_lab.geometry.recursion import leaky_sum
 from inhand_lab.people.figure import LIMBS
-from inhand_lab.people.joints import PARENTS, Joint
 from inhand_lab.people.person import Person
 from inhand_lab.sensing.skeleton_errors import (
     flip_hands,

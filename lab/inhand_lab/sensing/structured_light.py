@@ -14,9 +14,10 @@ from __future__ import annotations
 
 import numba
 import numpy as np
+from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
 
-from inhand_lab.geometry.rasteriser import Canvas, Intrinsics
+from inhand_lab.geometry.rasteriser import Canvas
 from inhand_lab.sensing.noise_fields import FIELD, NoiseFields, Place, noise_fields
 
 BASELINE = 0.075

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from inhand_schemas.messages import JOINT_NAMES
-from inhand_tracker.body.skeleton import JOINT, PELVIS_JOINTS
+from inhand_schemas.joints import JOINT_NAMES, Joint
+from inhand_tracker.body.skeleton import PELVIS_JOINTS
 from inhand_tracker.geometry import rotations
 from inhand_tracker.mapping.learning import LabelledSequence
 
@@ -100,7 +100,7 @@ def _check_bodies(entry: Entry, sequence: LabelledSequence) -> None:
 
 def _share_at_dominant_hand(sequence: LabelledSequence) -> float:
     """The share of the frames in which the object is nearer to the dominant hand than the other."""
-    hands = sequence.joints[:, [JOINT["HandRight"], JOINT["HandLeft"]]]
+    hands = sequence.joints[:, [Joint.HAND_RIGHT, Joint.HAND_LEFT]]
     right, left = np.linalg.norm(hands - sequence.translations[:, None], axis=2).T
     known = np.isfinite(right) & np.isfinite(left)
     nearer = left < right if sequence.left_handed else right < left

@@ -12,10 +12,10 @@ from inhand_schemas.messages import (
     Vector3,
 )
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.wire.poses import pose_message
 
-from inhand_lab.geometry.rasteriser import Intrinsics
 from inhand_lab.objects.model import ObjectModel
 from inhand_lab.world.simulation import Frame, Simulation
 

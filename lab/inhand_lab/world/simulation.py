@@ -14,9 +14,10 @@ from functools import cached_property
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Array, Bytes
+from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
 
-from inhand_lab.geometry.rasteriser import Canvas, Intrinsics
+from inhand_lab.geometry.rasteriser import Canvas
 from inhand_lab.geometry.surfaces import Surface
 from inhand_lab.geometry.transforms import Transform, normalised, quaternions, rotation_about
 from inhand_lab.motions.furniture import Box

@@ -18,9 +18,9 @@ from inhand_lab.driven.recorded_body import RecordedBody, drive
 from inhand_lab.geometry.transforms import MIRROR
 from inhand_lab.importers.utd_mhad import import_utd_mhad
 from inhand_lab.motions.performance import Contact
-from inhand_lab.people.joints import MIRRORED_JOINTS, PARENTS, Joint
 from inhand_lab.world.messages import person_message
 from inhand_lab.world.simulation import Simulation, simulate
+from inhand_schemas.joints import MIRRORED_JOINTS, PARENTS, Joint
 from inhand_schemas.messages import Message, Skeletons
 from inhand_tracker.geometry.arrays import Array
 from performers import angles_at
@@ -64,7 +64,7 @@ def test_denoised_bones_have_one_length_on_both_sides() -> None:
     joints = denoise(recorded(source()).joints, 30.0)
     lengths = np.linalg.norm(joints[:, 1:] - joints[:, PARENTS[1:]], axis=2)
     assert np.ptp(lengths, axis=0).max() < 1e-9
-    assert np.allclose(lengths[0], lengths[0, MIRRORED_JOINTS[1:] - 1])
+    assert np.allclose(lengths[0], lengths[0, np.array(MIRRORED_JOINTS[1:]) - 1])
 
 
 def test_denoised_elbows_keep_within_their_limit() -> None:
@@ -267,4 +267,4 @@ def test_a_recording_without_a_body_is_refused(tmp_path: Path) -> None:
 def test_bones_are_measured_on_both_sides() -> None:
     lengths = bone_lengths(source().true_joints_in_camera)
     assert lengths.shape == (19,)
-    assert np.allclose(lengths, lengths[MIRRORED_JOINTS[1:] - 1])
+    assert np.allclose(lengths, lengths[np.array(MIRRORED_JOINTS[1:]) - 1])

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from inhand_lab.world.messages import shape_of
 from inhand_lab.world.simulation import Simulation, simulate
-from inhand_tracker.body.skeleton import JOINT, pelvis_basis
+from inhand_schemas.joints import JOINT_NAMES
+from inhand_tracker.body.skeleton import pelvis_basis
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.estimate import Estimate, vertex_error
 from inhand_tracker.mapping.learning import LabelledSequence, learn
@@ -127,7 +128,9 @@ def usual(method: str, seed: int = SEED) -> Run:
 
 def hand_joint(name: str, seed: int = SEED) -> int:
     """The joint of the arm that drinks."""
-    return JOINT[name + ("Left" if is_left_handed(drinking(STRANGER, seed)) else "Right")]
+    return JOINT_NAMES.index(
+        name + ("Left" if is_left_handed(drinking(STRANGER, seed)) else "Right")
+    )
 
 
 def with_flipped_wrist(joints: Joints) -> Joints:

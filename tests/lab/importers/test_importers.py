@@ -30,8 +30,9 @@ from inhand_lab.importers.ycb_video import import_ycb_video
 from inhand_runtime.errors import InhandError
 from inhand_runtime.pixels import decode_colour, decode_depth
 from inhand_runtime.recording import read_recording
-from inhand_schemas.messages import JOINT_NAMES, CameraInfo, ObjectPose
-from inhand_tracker.body.skeleton import JOINT, pelvis_basis
+from inhand_schemas.joints import JOINT_NAMES, Joint
+from inhand_schemas.messages import CameraInfo, ObjectPose
+from inhand_tracker.body.skeleton import pelvis_basis
 from inhand_tracker.geometry.rotations import to_matrix
 from real_data import DATA
 from scipy.spatial.transform import Rotation
@@ -86,7 +87,7 @@ def archive_values(frames: int = 48) -> dict[str, Any]:
         "joints": joints,
         "joint_names": np.array(JOINT_NAMES),
         "object_pose": np.hstack(
-            (joints[:, JOINT["HandRight"]], spin.as_quat(canonical=True, scalar_first=True))
+            (joints[:, Joint.HAND_RIGHT], spin.as_quat(canonical=True, scalar_first=True))
         ),
         "vertices": CUBE,
         "fps": np.array(240.0),
@@ -129,11 +130,11 @@ class TestMotion:
     ) -> None:
         dataset = import_motion([save_archive(tmp_path / "walk.npz")], tmp_path / "out")
         joints = labelled_sequence(dataset, only_entry(dataset)).joints
-        np.testing.assert_allclose(joints[0, JOINT["HipCenter"]], [0.0, 0.0, 3.0], atol=1e-9)
+        np.testing.assert_allclose(joints[0, Joint.HIP_CENTER], [0.0, 0.0, 3.0], atol=1e-9)
         axes = to_matrix(pelvis_basis(joints[0]).rotations)
         np.testing.assert_allclose(axes, np.diag([1.0, -1.0, -1.0]), atol=1e-9)
         # 5 kept frames later the person has come 8 × 5 cm nearer: one transform for all frames.
-        np.testing.assert_allclose(joints[5, JOINT["HipCenter"]], [0.0, 0.0, 2.6], atol=1e-9)
+        np.testing.assert_allclose(joints[5, Joint.HIP_CENTER], [0.0, 0.0, 2.6], atol=1e-9)
 
     def test_body_and_object_keep_their_places_to_each_other(self, tmp_path: Path) -> None:
         values = archive_values()
@@ -200,16 +201,16 @@ class TestMotion:
     ) -> None:
         values = archive_values()
         values["joints"][:8] = np.nan
-        values["joints"][16:, JOINT["WristLeft"], 1] = np.nan
+        values["joints"][16:, Joint.WRIST_LEFT, 1] = np.nan
         values["object_pose"][8, 5] = np.nan
         dataset = import_motion([save_archive(tmp_path / "gaps.npz", **values)], tmp_path / "out")
         frames = load_frames(dataset.path(only_entry(dataset)), "large_cube")
         assert frames[0].people == ()
-        assert frames[1].people[0].joints[JOINT["HipCenter"]] == pytest.approx((0, 0, 3))
+        assert frames[1].people[0].joints[Joint.HIP_CENTER] == pytest.approx((0, 0, 3))
         states = frames[2].people[0].states
         missing = [n for n, state in zip(JOINT_NAMES, states, strict=True) if state == "missing"]
         assert missing == ["WristLeft"]
-        assert frames[2].people[0].confidences[JOINT["WristLeft"]] == 0.0
+        assert frames[2].people[0].confidences[Joint.WRIST_LEFT] == 0.0
         assert [frame.label is None for frame in frames[:3]] == [False, True, False]
 
     def test_the_camera_says_that_it_has_no_pixels(self, tmp_path: Path) -> None:
@@ -253,7 +254,7 @@ class TestMotion:
     ) -> None:
         joints = archive_values()["joints"]
         exchanged = joints.copy()
-        names = [JOINT["Spine"], JOINT["AnkleLeft"]]
+        names = [Joint.SPINE, Joint.ANKLE_LEFT]
         exchanged[:, names] = joints[:, names[::-1]]
         with caplog.at_level(logging.WARNING):
             import_motion([save_archive(tmp_path / "walk.npz")], tmp_path / "a")
@@ -364,8 +365,8 @@ class TestUtdMhad:
         # A proper rotation of Kinect's frame keeps left and right apart.
         axes = to_matrix(pelvis_basis(joints).rotations)
         np.testing.assert_allclose(axes, np.diag([1.0, -1.0, -1.0]), atol=1e-9)
-        assert joints[JOINT["HandLeft"], 0] > joints[JOINT["HandRight"], 0]
-        assert joints[JOINT["Head"], 1] < joints[JOINT["FootLeft"], 1]
+        assert joints[Joint.HAND_LEFT, 0] > joints[Joint.HAND_RIGHT, 0]
+        assert joints[Joint.HEAD, 1] < joints[Joint.FOOT_LEFT, 1]
 
     def test_joints_project_onto_their_own_depth(self, tmp_path: Path) -> None:
         dataset = import_utd_mhad([save_trial(tmp_path, 1, 1)], tmp_path / "out")
@@ -666,7 +667,7 @@ class TestRealData:
             pixels = camera.project(sequence.joints)
             assert ((pixels >= 0.0) & (pixels < [camera.width, camera.height])).mean() > 0.99
             # The grip, 1 cm from the object's origin, stays in the hands.
-            hands = sequence.joints[:, [JOINT["HandLeft"], JOINT["HandRight"]]].mean(axis=1)
+            hands = sequence.joints[:, [Joint.HAND_LEFT, Joint.HAND_RIGHT]].mean(axis=1)
             assert np.linalg.norm(hands - sequence.translations, axis=1).max() < 0.5
 
     def test_a_box_has_its_mesh_and_its_misnamed_joints_are_warned_of(
@@ -695,7 +696,7 @@ class TestRealData:
             measured = np.where(depth[v, u] > 0, depth[v, u] / 1000.0, np.nan)
             behind.append(positions[:, 2] - measured)
         # Kinect puts joints into the body: 2 to 20 cm behind what it measures of them.
-        torso = np.array(behind)[:, : JOINT["Head"] + 1]
+        torso = np.array(behind)[:, : Joint.HEAD + 1]
         assert np.isfinite(torso).mean() > 0.99
         assert (np.nanmedian(torso, axis=0) > 0.02).all()
         assert (np.nanmedian(torso, axis=0) < 0.2).all()
@@ -705,7 +706,7 @@ class TestRealData:
         dataset = import_utd_mhad([source], tmp_path / "out")
         joints = labelled_sequence(dataset, only_entry(dataset)).joints
         paths = np.linalg.norm(np.diff(joints, axis=0), axis=-1).sum(axis=0)
-        assert paths[JOINT["WristRight"]] > 3.0 * paths[JOINT["WristLeft"]]
+        assert paths[Joint.WRIST_RIGHT] > 3.0 * paths[Joint.WRIST_LEFT]
 
     def test_a_mugs_surface_lies_where_the_camera_measures_it(self, tmp_path: Path) -> None:
         dataset = import_ycb_video([DATA / "ycb-video"], tmp_path / "out")

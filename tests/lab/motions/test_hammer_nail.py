@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from inhand_lab.motions.hammer_nail import BLOCK_SIZE, FACE, NAIL_STANDING
 from inhand_lab.motions.performance import Contact
-from inhand_lab.people.joints import Joint
+from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array
 from performers import performed
 from scipy.signal import find_peaks

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from inhand_lab.motions.performance import Contact
 from inhand_lab.objects.barbell import PLATE_RADIUS, barbell
-from inhand_lab.people.joints import Joint
+from inhand_schemas.joints import Joint
 from performers import angles_at, performed
 from scipy.signal import find_peaks
 

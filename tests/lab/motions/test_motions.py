@@ -7,10 +7,10 @@ import pytest
 from inhand_lab.motions.performance import Contact, mouth
 from inhand_lab.motions.timeline import Movement, Pause, minimum_jerk, schedule
 from inhand_lab.objects.mug import MUG_HEIGHT, MUG_RADIUS
-from inhand_lab.people.joints import PARENTS, Joint
 from inhand_lab.people.kinematics import BALL_HEIGHT, place_trunk
 from inhand_lab.people.person import sample_person
 from inhand_lab.world.interactions import INTERACTIONS
+from inhand_schemas.joints import PARENTS, Joint
 from performers import FRAME_RATE, angles_at, depth_in_head, object_points, performed
 from solids import placed, surface_points
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from inhand_lab.motions.paint_wall import BOARD_SIZE
 from inhand_lab.objects.paint_brush import BRISTLES_BELOW
-from inhand_lab.people.joints import Joint
 from inhand_lab.people.kinematics import Body
+from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array, Flags
 from performers import object_points, performed
 from scipy.spatial.transform import Rotation

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from inhand_lab.motions.performance import Contact
-from inhand_lab.people.joints import Joint
 from inhand_lab.people.kinematics import BALL_HEIGHT
+from inhand_schemas.joints import Joint
 from performers import FRAME_RATE, performed
 
 PARTICIPANTS = range(10)

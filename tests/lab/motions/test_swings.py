@@ -6,10 +6,10 @@ from inhand_lab.geometry.transforms import Transform
 from inhand_lab.motions.performance import Contact
 from inhand_lab.objects.golf_club import SOLE
 from inhand_lab.objects.racket import TIP
-from inhand_lab.people.joints import Joint
 from inhand_lab.people.kinematics import Body, place_body
 from inhand_lab.people.person import sample_person
 from inhand_lab.world.interactions import INTERACTIONS
+from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array, Bytes
 from real_data import DATA
 from scipy.spatial.transform import Rotation

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.performance import Stance, feet_apart, hanging_hands, stand
-from inhand_lab.people.joints import PARENTS, Joint
 from inhand_lab.people.kinematics import Posture, place_body, place_trunk
 from inhand_lab.people.person import HEIGHT_RANGE, Person, sample_person, standing_height
+from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array
 from performers import angles_at
 

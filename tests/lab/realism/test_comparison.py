@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import DatasetError
-from inhand_lab.people.joints import PARENTS, Joint
 from inhand_lab.realism.comparison import (
     LEFT_OUT,
     WITHIN,
@@ -19,6 +18,7 @@ from inhand_lab.realism.comparison import (
 )
 from inhand_lab.realism.depth import DepthPair, measure_depth, observe_depth
 from inhand_lab.realism.skeletons import Figure, Observed, hand_bends, measure_skeletons
+from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array
 from numpy.typing import NDArray
 from real_data import DATA

@@ -3,12 +3,15 @@
 import cv2
 import numpy as np
 import pytest
-from inhand_lab.geometry.rasteriser import KINECT, Canvas, draw
+from inhand_lab.geometry.rasteriser import Canvas, draw
 from inhand_lab.geometry.surfaces import Surface, ellipsoid, limb
 from inhand_lab.geometry.transforms import Transform
+from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.sensing.render import OBJECT, PERSON, Drawing
 from inhand_lab.world.simulation import INTERACTIONS, simulate
 from silhouettes import silhouette
+
+KINECT = CAMERAS["kinect"].intrinsics
 
 RED, BLUE = (200, 0, 0), (0, 0, 200)
 

@@ -5,7 +5,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from inhand_lab.people.joints import PARENTS, Joint
 from inhand_lab.realism.skeletons import hand_bends
 from inhand_lab.sensing.skeleton_errors import DEVIATIONS, wander
 from inhand_lab.sensing.skeleton_filter import smooth
@@ -17,6 +16,7 @@ from inhand_lab.sensing.skeleton_noise import (
     read_skeleton,
 )
 from inhand_lab.world.simulation import Simulation, simulate
+from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array
 
 FRAME_RATE = 30.0

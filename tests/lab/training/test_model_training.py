@@ -17,7 +17,7 @@ from inhand_lab.training.learned import learned_by
 from inhand_lab.training.model_training import entries_for, stages, train
 from inhand_runtime.errors import InhandError
 from inhand_runtime.recording import RecordingWriter, read_recording
-from inhand_tracker.body.skeleton import JOINT
+from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.model.model_file import load_model
 
@@ -45,7 +45,7 @@ def recording(frames: int = 20, *, left_handed: bool = False) -> LabelledSequenc
     """Somebody who stands with an object in the right hand."""
     joints = np.random.default_rng(0).normal(size=(20, 3)).repeat(frames, 0).reshape(20, frames, 3)
     joints = joints.swapaxes(0, 1).copy()
-    places = joints[:, JOINT["HandRight"]] + [0.0, 0.0, 0.05]
+    places = joints[:, Joint.HAND_RIGHT] + [0.0, 0.0, 0.05]
     turns = np.tile([1.0, 0.0, 0.0, 0.0], (frames, 1))
     return LabelledSequence("p0", left_handed, joints, places, turns)
 
@@ -58,7 +58,7 @@ def without_labels(sequence: LabelledSequence, frames: int) -> LabelledSequence:
 
 def without_joint(sequence: LabelledSequence, name: str, frames: int) -> LabelledSequence:
     joints = sequence.joints.copy()
-    joints[:frames, JOINT[name]] = np.nan
+    joints[:frames, JOINT_NAMES.index(name)] = np.nan
     return replace(sequence, joints=joints)
 
 
@@ -143,7 +143,7 @@ def test_the_only_one_who_uses_the_dominant_hand_is_named() -> None:
 
 def test_an_object_in_both_hands_tells_nothing_of_handedness() -> None:
     between = recording()
-    hands = between.joints[:, [JOINT["HandRight"], JOINT["HandLeft"]]]
+    hands = between.joints[:, [Joint.HAND_RIGHT, Joint.HAND_LEFT]]
     places = hands.mean(axis=1)
     places[::2] = hands[::2, 0]
     places[1::2] = hands[1::2, 1]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from inhand_lab.datasets.observations import observe_simulation
-from inhand_lab.people.joints import PARENTS, Joint
 from inhand_lab.world.idle_people import IDLENESS, Idleness, simulate_idle, watch_idle
+from inhand_schemas.joints import PARENTS, Joint
 
 
 @pytest.mark.parametrize("idleness", IDLENESS)

@@ -2,15 +2,17 @@
 
 import numpy as np
 import pytest
-from inhand_lab.geometry.rasteriser import KINECT
 from inhand_lab.geometry.transforms import MIRROR
 from inhand_lab.motions.performance import Contact
-from inhand_lab.people.joints import Joint
 from inhand_lab.people.person import Person, sample_person
+from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.sensing.skeleton_noise import INFERRED, MISSING, TRACKED
 from inhand_lab.world import simulation as world
 from inhand_lab.world.simulation import INTERACTIONS, Simulation, simulate
+from inhand_schemas.joints import Joint
 from numpy.typing import NDArray
+
+KINECT = CAMERAS["kinect"].intrinsics
 
 
 def bytes_of(simulation: Simulation) -> list[bytes]:

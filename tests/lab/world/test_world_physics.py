@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.motions.performance import Performance
-from inhand_lab.people.joints import Joint
 from inhand_lab.people.kinematics import Body, place_body
 from inhand_lab.people.person import Person, sample_person
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import simulate
+from inhand_schemas.joints import Joint
 from performers import angles_at
 from silhouettes import silhouette
 from solids import (

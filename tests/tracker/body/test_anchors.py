@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_tracker.body.anchors import ANCHORS, Anchors, find_anchors, trunk_axes
-from inhand_tracker.body.skeleton import JOINT
 from people import STANDING, move, waving
 from scipy.spatial.transform import Rotation
 
 small = st.floats(-3.0, 3.0)
 turns = st.tuples(small, small, small).map(Rotation.from_rotvec)
+joint_named = JOINT_NAMES.index
 shifts = st.tuples(small, small, small).map(np.array)
 
 
@@ -51,15 +52,15 @@ def test_the_trunk_s_axes_are_left_up_and_forwards() -> None:
 def test_a_forearm_s_anchor_turns_with_it_and_the_hand_s_does_not() -> None:
     still = find_anchors(STANDING)
     joints = STANDING.copy()
-    elbow = joints[JOINT["ElbowRight"]]
+    elbow = joints[Joint.ELBOW_RIGHT]
     turn = Rotation.from_rotvec([0.0, 0.0, 0.4])
     for name in ("WristRight", "HandRight"):
-        joints[JOINT[name]] = elbow + turn.apply(joints[JOINT[name]] - elbow)
+        joints[joint_named(name)] = elbow + turn.apply(joints[joint_named(name)] - elbow)
     turned = find_anchors(joints)
     along, before = (at("right forearm", one)[1][:, 2] for one in (turned, still))
     np.testing.assert_allclose(along, turn.apply(before), atol=1e-9)
     np.testing.assert_array_equal(at("right hand", turned)[1], at("right hand", still)[1])
-    palm = 0.5 * (joints[JOINT["WristRight"]] + joints[JOINT["HandRight"]])
+    palm = 0.5 * (joints[Joint.WRIST_RIGHT] + joints[Joint.HAND_RIGHT])
     np.testing.assert_allclose(at("right hand", turned)[0], palm)
     for name in ("trunk", "head", "left forearm", "left hand", "right shank", "left shank"):
         np.testing.assert_array_equal(at(name, turned)[0], at(name, still)[0])
@@ -68,7 +69,7 @@ def test_a_forearm_s_anchor_turns_with_it_and_the_hand_s_does_not() -> None:
 def test_the_hands_anchor_lies_between_them_and_points_to_the_left_one() -> None:
     origin, axes = at("hands", find_anchors(STANDING))
     right, left = (
-        0.5 * (STANDING[JOINT[f"Wrist{side}"]] + STANDING[JOINT[f"Hand{side}"]])
+        0.5 * (STANDING[joint_named(f"Wrist{side}")] + STANDING[joint_named(f"Hand{side}")])
         for side in ("Right", "Left")
     )
     np.testing.assert_allclose(origin, 0.5 * (right + left))
@@ -77,14 +78,18 @@ def test_the_hands_anchor_lies_between_them_and_points_to_the_left_one() -> None
 
 def with_joint_at(name: str, other: str) -> np.ndarray:
     joints = STANDING.copy()
-    joints[JOINT[name]] = joints[JOINT[other]]
+    joints[joint_named(name)] = joints[joint_named(other)]
     return joints
 
 
 def straight_arm() -> np.ndarray:
     joints = STANDING.copy()
     for share, name in enumerate(("Elbow", "Wrist", "Hand"), start=1):
-        joints[JOINT[name + "Right"]] = joints[JOINT["ShoulderRight"]] + [0.0, 0.2 * share, 0.0]
+        joints[joint_named(name + "Right")] = joints[Joint.SHOULDER_RIGHT] + [
+            0.0,
+            0.2 * share,
+            0.0,
+        ]
     return joints
 
 

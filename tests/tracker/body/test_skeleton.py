@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis.extra.numpy import arrays
-from inhand_schemas.messages import JOINT_NAMES
+from inhand_schemas.joints import JOINT_NAMES
 from inhand_tracker.body import skeleton as body
 from people import (
     STANDING,

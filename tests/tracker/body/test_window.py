@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from inhand_tracker.body.skeleton import JOINT
+from inhand_schemas.joints import Joint
 from inhand_tracker.body.window import (
     GAP_NS,
     LAGS_S,
@@ -24,7 +24,7 @@ from scipy.spatial.transform import Rotation
 small = st.floats(-3.0, 3.0)
 LAGS = len(LAGS_S)
 UPPER = len(UPPER_BODY)
-HAND_RIGHT = JOINT["HandRight"]
+HAND_RIGHT = Joint.HAND_RIGHT
 
 
 def described(joints: np.ndarray, step_ns: int = FRAME_NS) -> list[list[np.ndarray]]:

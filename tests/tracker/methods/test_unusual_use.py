@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from inhand_tracker.body.skeleton import JOINT
+from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
@@ -20,16 +20,16 @@ SIDES = (("Left", 1.0), ("Right", -1.0))
 def put_arms(joints: np.ndarray, raised: float | None) -> None:
     """Both hands before the body, from 0 at the belt to 1 at the eyes; None for arms that hang."""
     for side, sign in SIDES:
-        shoulder = joints[JOINT[f"Shoulder{side}"]]
+        shoulder = joints[JOINT_NAMES.index(f"Shoulder{side}")]
         if raised is None:
             hand = shoulder + np.array([0.05 * sign, 0.60, -0.03])
             elbow = shoulder + np.array([0.04 * sign, 0.28, 0.0])
         else:
             hand = np.array([0.07 * sign, -0.10 - 0.60 * raised, 2.12 + 0.13 * raised])
             elbow = 0.5 * (shoulder + hand) + np.array([0.06 * sign, 0.12, 0.0])
-        joints[JOINT[f"Hand{side}"]] = hand
-        joints[JOINT[f"Wrist{side}"]] = hand + 0.2 * (elbow - hand)
-        joints[JOINT[f"Elbow{side}"]] = elbow
+        joints[JOINT_NAMES.index(f"Hand{side}")] = hand
+        joints[JOINT_NAMES.index(f"Wrist{side}")] = hand + 0.2 * (elbow - hand)
+        joints[JOINT_NAMES.index(f"Elbow{side}")] = elbow
 
 
 def puts_on_glasses(seed: int, *, jumps: bool = False) -> LabelledSequence:
@@ -43,8 +43,8 @@ def puts_on_glasses(seed: int, *, jumps: bool = False) -> LabelledSequence:
         worn = frame >= WORN
         swings = jumps and JUMP.start <= frame < JUMP.stop
         put_arms(body, 0.4 if swings else None if worn else max(0.0, (frame - RAISING) / 30))
-        hands = body[[JOINT["HandLeft"], JOINT["HandRight"]]].mean(axis=0)
-        glasses[frame] = body[JOINT["Head"]] + np.array([0.0, 0.0, -0.12]) if worn else hands
+        hands = body[[Joint.HAND_LEFT, Joint.HAND_RIGHT]].mean(axis=0)
+        glasses[frame] = body[Joint.HEAD] + np.array([0.0, 0.0, -0.12]) if worn else hands
     joints += 0.008 * np.random.default_rng(seed).normal(size=joints.shape)
     return LabelledSequence(f"p{seed}", False, joints, glasses, np.tile(UPRIGHT, (FRAMES, 1)))
 

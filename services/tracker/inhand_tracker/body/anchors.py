@@ -9,8 +9,8 @@ at a limb's place, and one lies between the hands.
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_schemas.joints import JOINT_NAMES
 
-from inhand_tracker.body.skeleton import JOINT
 from inhand_tracker.geometry.arrays import Array
 
 ANCHORS = (
@@ -91,7 +91,7 @@ def _axes(z: Array, towards: Array) -> Array:
 
 
 def _joint(joints: Array, name: str) -> Array:
-    return joints[..., JOINT[name], :]
+    return joints[..., JOINT_NAMES.index(name), :]
 
 
 def _unit(vector: Array) -> Array:

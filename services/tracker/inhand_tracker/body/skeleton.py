@@ -1,56 +1,24 @@
 """The body: pelvis basis, body pose, part predictors, height (Darby et al. 2014, section 4).
 
 Joints are (..., 20, 3) in metres in the camera frame, in Kinect order
-(``inhand_schemas.messages.JOINT_NAMES``). A part is a joint with its parent: 19 of them, in the
+(``inhand_schemas.joints.JOINT_NAMES``). A part is a joint with its parent: 19 of them, in the
 order of ``PARTS``. Missing joints are NaN.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-from inhand_schemas.messages import JOINT_NAMES
+from inhand_schemas.joints import JOINT_NAMES, MIRRORED_JOINTS, PARENTS, SIDES, Joint
 
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 
-JOINT = {name: index for index, name in enumerate(JOINT_NAMES)}
-
-_PARENT_NAMES = {
-    "Spine": "HipCenter",
-    "ShoulderCenter": "Spine",
-    "Head": "ShoulderCenter",
-    "ShoulderLeft": "ShoulderCenter",
-    "ElbowLeft": "ShoulderLeft",
-    "WristLeft": "ElbowLeft",
-    "HandLeft": "WristLeft",
-    "ShoulderRight": "ShoulderCenter",
-    "ElbowRight": "ShoulderRight",
-    "WristRight": "ElbowRight",
-    "HandRight": "WristRight",
-    "HipLeft": "HipCenter",
-    "KneeLeft": "HipLeft",
-    "AnkleLeft": "KneeLeft",
-    "FootLeft": "AnkleLeft",
-    "HipRight": "HipCenter",
-    "KneeRight": "HipRight",
-    "AnkleRight": "KneeRight",
-    "FootRight": "AnkleRight",
-}
-
-PARTS = tuple(_PARENT_NAMES)
-PART = {name: index for index, name in enumerate(PARTS)}
-CHILD_JOINTS = np.array([JOINT[name] for name in PARTS])
-PARENT_JOINTS = np.array([JOINT[_PARENT_NAMES[name]] for name in PARTS])
-RIGHT_HAND = PART["HandRight"]
-LEFT_HAND = PART["HandLeft"]
-PELVIS_JOINTS = np.array([JOINT[n] for n in ("HipCenter", "Spine", "HipLeft", "HipRight")])
-
-MIRRORED_JOINTS = np.array(
-    [
-        JOINT[name.replace("Left", "Right") if "Left" in name else name.replace("Right", "Left")]
-        for name in JOINT_NAMES
-    ]
-)
+PARTS = JOINT_NAMES[1:]
+CHILD_JOINTS = np.arange(1, len(JOINT_NAMES))
+PARENT_JOINTS = np.array(PARENTS[1:])
+RIGHT_HAND = PARTS.index("HandRight")
+LEFT_HAND = PARTS.index("HandLeft")
+PELVIS_JOINTS = np.array([Joint.HIP_CENTER, Joint.SPINE, Joint.HIP_LEFT, Joint.HIP_RIGHT])
 
 # Shares of stature (Drillis and Contini 1966): from the ankle (3.9 %) to the hip (53 %), and from
 # the hip to the middle of the head (93.5 %).
@@ -61,9 +29,9 @@ HEIGHT_WINDOW = 300
 WILD = 2.0
 FARTHEST_M = 1000.0
 
-_LEG_PARTS = np.array(
-    [[PART["KneeLeft"], PART["AnkleLeft"]], [PART["KneeRight"], PART["AnkleRight"]]]
-)
+_MIRRORED = np.array(MIRRORED_JOINTS)
+_TRUNK_PARTS = [PARTS.index(name) for name in ("Spine", "ShoulderCenter", "Head")]
+_LEG_PARTS = [[PARTS.index(f"{name}{side}") for name in ("Knee", "Ankle")] for side in SIDES]
 
 
 @dataclass(frozen=True)
@@ -91,20 +59,20 @@ class Bases:
 
 def pelvis_basis(joints: Array) -> Bases:
     """H*: x from the right hip to the left, y up the spine, z forwards, origin at HipCenter."""
-    x = joints[..., JOINT["HipLeft"], :] - joints[..., JOINT["HipRight"], :]
-    upwards = joints[..., JOINT["Spine"], :] - joints[..., JOINT["HipCenter"], :]
+    x = joints[..., Joint.HIP_LEFT, :] - joints[..., Joint.HIP_RIGHT, :]
+    upwards = joints[..., Joint.SPINE, :] - joints[..., Joint.HIP_CENTER, :]
     z = np.cross(x, upwards)
     y = np.cross(z, x)
     axes = np.stack([_unit(axis) for axis in (x, y, z)], axis=-1)
-    return Bases(joints[..., JOINT["HipCenter"], :], rotations.from_matrix(axes))
+    return Bases(joints[..., Joint.HIP_CENTER, :], rotations.from_matrix(axes))
 
 
 def has_pelvis(joints: Array) -> bool:
     """Whether the pelvis basis of one person's (20, 3) joints is defined."""
     if not np.isfinite(joints[PELVIS_JOINTS]).all():
         return False
-    x = joints[JOINT["HipLeft"]] - joints[JOINT["HipRight"]]
-    upwards = joints[JOINT["Spine"]] - joints[JOINT["HipCenter"]]
+    x = joints[Joint.HIP_LEFT] - joints[Joint.HIP_RIGHT]
+    upwards = joints[Joint.SPINE] - joints[Joint.HIP_CENTER]
     return bool(np.linalg.norm(np.cross(x, upwards)) > 1e-6)
 
 
@@ -159,7 +127,7 @@ def standing_height(lengths: Array) -> float:
     # The same where nothing is missing, and np.nanmedian takes ten times as long.
     median = np.median if np.isfinite(known).all() else np.nanmedian
     typical[seen] = median(known, axis=0)
-    trunk = typical[[PART["Spine"], PART["ShoulderCenter"], PART["Head"]]].sum()
+    trunk = typical[_TRUNK_PARTS].sum()
     legs = typical[_LEG_PARTS].sum(axis=1)
     if not np.isfinite(legs).any():
         return float(trunk / TRUNK_SHARE)
@@ -207,7 +175,7 @@ def without_impossible(joints: Array) -> Array:
 
 def mirror_joints(joints: Array) -> Array:
     """The person as a mirror shows it: x negated, left and right exchanged, (..., 20, 3)."""
-    return joints[..., MIRRORED_JOINTS, :] * np.array([-1.0, 1.0, 1.0])
+    return joints[..., _MIRRORED, :] * np.array([-1.0, 1.0, 1.0])
 
 
 def mirror_pose(

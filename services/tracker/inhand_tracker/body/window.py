@@ -7,9 +7,9 @@ nothing of whether glasses are worn or lie on a table: that shows in what the ha
 from collections import deque
 
 import numpy as np
+from inhand_schemas.joints import JOINT_NAMES, Joint
 
 from inhand_tracker.body.anchors import trunk_axes
-from inhand_tracker.body.skeleton import JOINT
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
 
 LAGS_S = (0.13, 0.33)
@@ -21,15 +21,18 @@ GAP_NS = 500_000_000
 
 WHOLE_BODY = np.arange(20)
 UPPER_BODY = np.array(
-    [JOINT[name] for name in ("Spine", "ShoulderCenter", "Head")]
+    [Joint.SPINE, Joint.SHOULDER_CENTER, Joint.HEAD]
     + [
-        JOINT[part + side]
+        JOINT_NAMES.index(part + side)
         for side in ("Left", "Right")
         for part in ("Shoulder", "Elbow", "Wrist", "Hand")
     ]
 )
 REMEMBERED = np.array(
-    [JOINT[name] for name in ("Head", "HandLeft", "WristLeft", "HandRight", "WristRight")]
+    [
+        JOINT_NAMES.index(name)
+        for name in ("Head", "HandLeft", "WristLeft", "HandRight", "WristRight")
+    ]
 )
 VIEWS = 3
 """A description of the whole body, of the upper body (legs say little of most objects, and all of
@@ -55,7 +58,7 @@ def describe(joints: Array, earlier: Array, remembered: Array, height: float) ->
 
 def places(joints: Array, height: float) -> Array:
     """Joints (T, 20, 3) from the middle of the trunk, in its directions and in body heights."""
-    middle = 0.5 * (joints[:, JOINT["HipCenter"]] + joints[:, JOINT["ShoulderCenter"]])
+    middle = 0.5 * (joints[:, Joint.HIP_CENTER] + joints[:, Joint.SHOULDER_CENTER])
     return np.asarray((joints - middle[:, None]) @ trunk_axes(joints)) / height
 
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
+from inhand_schemas.joints import Joint
 from inhand_schemas.messages import Person
 
-from inhand_tracker.body.skeleton import JOINT
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.estimate import LOST
 from inhand_tracker.geometry.image import Image
@@ -34,7 +34,7 @@ class Follower:
 
 
 def _nearest(people: Sequence[Person]) -> Person | None:
-    hips = JOINT["HipCenter"]
+    hips = Joint.HIP_CENTER
     seen = [person for person in people if person.states[hips] != "missing"]
     return min(seen, key=lambda person: person.joints[hips][2], default=None)
 
@@ -123,4 +123,4 @@ def _gone(last_ns: int, time_ns: int) -> bool:
 
 
 def _depth(person: Person) -> float:
-    return person.joints[JOINT["HipCenter"]][2]
+    return person.joints[Joint.HIP_CENTER][2]

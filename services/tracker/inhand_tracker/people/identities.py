@@ -8,10 +8,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from inhand_schemas.joints import Joint
 from inhand_schemas.messages import Person
 from scipy.optimize import linear_sum_assignment
 
-from inhand_tracker.body.skeleton import JOINT, part_lengths
+from inhand_tracker.body.skeleton import part_lengths
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.wire.conversion import joints_of
 
@@ -29,7 +30,7 @@ SMOOTHING_S = 0.15
 LENGTH_FRAMES = 60
 """Bone lengths are means over about so many frames."""
 
-_CENTRE = np.array([JOINT[n] for n in ("HipCenter", "Spine", "ShoulderCenter")])
+_CENTRE = np.array([Joint.HIP_CENTER, Joint.SPINE, Joint.SHOULDER_CENTER])
 # Hands and feet are the least sure.
 _BONES = np.array([0, 1, 2, 3, 4, 5, 7, 8, 9, 11, 12, 13, 15, 16, 17])
 

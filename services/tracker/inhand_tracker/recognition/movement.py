@@ -3,9 +3,8 @@
 from collections import deque
 
 import numpy as np
-from inhand_schemas.messages import JOINT_NAMES
+from inhand_schemas.joints import JOINT_NAMES
 
-from inhand_tracker.body.skeleton import JOINT
 from inhand_tracker.geometry.arrays import Array
 
 RATE_HZ = 30.0
@@ -18,7 +17,7 @@ LONGEST = max(WINDOWS) + SPEED_LAG
 
 _JOINTS = np.array(
     [
-        JOINT[name]
+        JOINT_NAMES.index(name)
         for name in JOINT_NAMES
         if not name.startswith(("Hip", "Foot"))  # what the pelvis basis fixes, and the noisiest
     ]
@@ -38,8 +37,8 @@ _PAIRS = (
     ("HandRight", "HipCenter"),
     ("HandLeft", "HipCenter"),
 )
-_FROM = np.array([JOINT[first] for first, _ in _PAIRS])
-_TO = np.array([JOINT[second] for _, second in _PAIRS])
+_FROM = np.array([JOINT_NAMES.index(first) for first, _ in _PAIRS])
+_TO = np.array([JOINT_NAMES.index(second) for _, second in _PAIRS])
 
 PRESENT = 3 * len(_JOINTS) + len(_PAIRS)
 FEATURES = PRESENT * (1 + len(LAGS) + 3 * len(WINDOWS))

@@ -2,7 +2,7 @@
 
 import cv2
 import numpy as np
-from inhand_schemas.messages import JOINT_NAMES
+from inhand_schemas.joints import JOINT_NAMES
 
 from inhand_tracker.geometry.arrays import Array, Bytes, Singles
 from inhand_tracker.geometry.camera import NEAREST_M, Intrinsics
