@@ -10,8 +10,7 @@ from keyword import iskeyword
 from typing import Any
 
 from inhand_runtime.errors import InhandError, SettingsError
-
-DONE, FAILED, WRONG_USAGE, INTERRUPTED = 0, 1, 2, 130
+from inhand_runtime.exit_codes import DONE, FAILED, INTERRUPTED, WRONG_USAGE
 
 DAEMONS = {
     "capture": "publish frames and skeletons of one camera",

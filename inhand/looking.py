@@ -8,10 +8,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import zenoh
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.inbox import Inbox, Received
-from inhand_runtime.session import open_session, subscribe
+from inhand_runtime.session import Session, open_session, subscribe, watch_instances
 from inhand_runtime.settings import load_rig_file
 from inhand_runtime.signals import set_on_signals
 from inhand_schemas.errors import KeyFormatError
@@ -29,7 +28,7 @@ OTHER_VERSIONS = tuple(version for version in range(10) if version != VERSION)
 class Look:
     """Samples of one rig as they arrive, without taking part in its work."""
 
-    def __init__(self, session: zenoh.Session, site: Site, stop: threading.Event) -> None:
+    def __init__(self, session: Session, site: Site, stop: threading.Event) -> None:
         self.site = site
         self.skipped = 0
         self._stop = stop
@@ -49,20 +48,12 @@ class Look:
             self.follow(topic)
         lane = self._inbox.lane(samples=QUEUE_SAMPLES, size=QUEUE_BYTES, on_drop=self._skip)
         for version in OTHER_VERSIONS:
-            pattern = self.site.pattern().replace(f"/@v{VERSION}/", f"/@v{version}/")
+            pattern = self.site.pattern_of_version(version)
             self._subscribers.append(subscribe(self._session, pattern, BULK, lane.put))
 
     def follow_tokens(self, on_change: Callable[[str, str, bool], None]) -> None:
-        """Tell (service, instance, whether it lives) now and at each change, from any thread."""
-
-        def receive(sample: zenoh.Sample) -> None:
-            service, instance = str(sample.key_expr).split("/")[-2:]
-            on_change(service, instance, sample.kind == zenoh.SampleKind.PUT)
-
-        pattern = self.site.live_pattern()
-        self._subscribers.append(
-            self._session.liveliness().declare_subscriber(pattern, receive, history=True)
-        )
+        """Call ``on_change(service, instance, lives)`` now and at each change, from any thread."""
+        self._subscribers.append(watch_instances(self._session, self.site, on_change))
 
     def samples(self, seconds: float | None) -> Iterator[Received | None]:
         """What arrives within ``seconds`` (None = without end); None when nothing just did.

@@ -10,6 +10,8 @@ import time
 from collections.abc import Callable, Sequence
 from types import FrameType
 
+from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
+
 log = logging.getLogger(__name__)
 
 TICK_S = 0.05
@@ -19,7 +21,6 @@ UP_WITHIN_S = 20.0
 STOP_WITHIN_S = 4.0
 """What a daemon promises (2 s), and 2 s more for a busy machine."""
 
-DONE, FAILED, WRONG_SETTINGS = 0, 1, 2
 _PR_SET_PDEATHSIG = 1
 
 
@@ -51,7 +52,7 @@ class Child:
         if code is None:
             return None
         self._process = None
-        self.done = code in (DONE, WRONG_SETTINGS)
+        self.done = code in (DONE, WRONG_USAGE)
         if self.done:
             log.info("%s ended with exit code %d", self.name, code)
         else:
@@ -122,9 +123,9 @@ class Supervisor:
                 started += waiting.pop()
                 deadline = time.monotonic() + UP_WITHIN_S
             for child in started:
-                if child.tend() == WRONG_SETTINGS:
+                if child.tend() == WRONG_USAGE:
                     log.error("%s has wrong settings (see above): stopping everything", child.name)
-                    return WRONG_SETTINGS
+                    return WRONG_USAGE
             if not waiting and all(child.done for child in started):
                 return DONE
             time.sleep(TICK_S)

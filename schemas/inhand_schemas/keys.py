@@ -44,6 +44,10 @@ class Site:
         """All liveliness tokens of this rig, as a Zenoh key expression."""
         return f"{self._root}/@live/*/*"
 
+    def pattern_of_version(self, version: int) -> str:
+        """All that another version of Inhand publishes for this rig, as a Zenoh key expression."""
+        return f"{self.realm}/@v{version}/{self.rig}/*/*"
+
     @property
     def _root(self) -> str:
         return f"{self.realm}/@v{VERSION}/{self.rig}"
@@ -75,6 +79,16 @@ def parse_key(key: str) -> ParsedKey:
     require_name("stream", stream)
     require_name("name", name)
     return ParsedKey(Site(realm, rig), stream, name)
+
+
+def parse_live_key(key: str) -> tuple[str, str]:
+    """The service and instance of a liveliness token's key; raises KeyFormatError."""
+    chunks = key.split("/")
+    if len(chunks) != 6 or chunks[3] != "@live":
+        raise KeyFormatError(f"{key!r} is no key of a liveliness token")
+    require_name("service", chunks[4])
+    require_name("instance", chunks[5])
+    return chunks[4], chunks[5]
 
 
 def require_name(what: str, name: str) -> None:

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from inhand_schemas.errors import KeyFormatError, UnknownVersionError
-from inhand_schemas.keys import ParsedKey, Site, parse_key
+from inhand_schemas.keys import ParsedKey, Site, parse_key, parse_live_key
 from inhand_schemas.topics import POSE, TOPICS, topic_of
 from message_strategies import names
 
@@ -87,3 +87,19 @@ def test_patterns_cover_one_rig() -> None:
 def test_a_liveliness_key_is_no_stream() -> None:
     with pytest.raises(KeyFormatError):
         parse_key(Site().live_key("tracker", "a"))
+
+
+def test_a_liveliness_key_names_service_and_instance() -> None:
+    assert parse_live_key(Site().live_key("tracker", "a")) == ("tracker", "a")
+
+
+@pytest.mark.parametrize(
+    "key", ["inhand/@v1/rig/pose/mug", "inhand/@v1/rig/@live/tracker", "a/@v1/r/@live/Tracker/b"]
+)
+def test_another_key_is_of_no_instance(key: str) -> None:
+    with pytest.raises(KeyFormatError):
+        parse_live_key(key)
+
+
+def test_another_versions_pattern_differs_in_the_version_only() -> None:
+    assert Site("home", "kitchen").pattern_of_version(2) == "home/@v2/kitchen/*/*"

@@ -1,4 +1,4 @@
-"""The life of a daemon: start, tell its health, stop on a signal.
+"""The life of a daemon: start, publish its health, stop on a signal.
 
 ``with running_daemon("tracker", settings) as daemon`` gives a service its publishers, its inbox
 and the signal to stop; what a service does in between is its own.
@@ -10,7 +10,6 @@ import threading
 from collections.abc import Iterator
 from typing import TypeVar
 
-import zenoh
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import Health, Message
@@ -19,7 +18,15 @@ from inhand_schemas.topics import HEALTH, AnyTopic, Topic
 from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import UNBOUNDED, Inbox, Received
 from inhand_runtime.logs import configure_logs
-from inhand_runtime.session import Publisher, Subscription, open_session, subscribe
+from inhand_runtime.session import (
+    Publisher,
+    Session,
+    Subscription,
+    announced,
+    is_alone,
+    open_session,
+    subscribe,
+)
 from inhand_runtime.settings import Section, Settings, ZenohSettings
 from inhand_runtime.signals import set_on_signals
 
@@ -37,7 +44,7 @@ class Daemon:
     """What a running service works with."""
 
     def __init__(
-        self, session: zenoh.Session, site: Site, service: str, instance: str, stop: threading.Event
+        self, session: Session, site: Site, service: str, instance: str, stop: threading.Event
     ) -> None:
         self.site = site
         self.instance = instance
@@ -72,8 +79,7 @@ class Daemon:
 
     def is_alone(self) -> bool:
         """Whether no other process is connected now."""
-        info = self._session.info
-        return not (info.peers_zid() or info.routers_zid())
+        return is_alone(self._session)
 
     def decode(self, topic: Topic[T], sample: Received) -> T | None:
         """The sample's message; None when it is malformed, which is counted and logged."""
@@ -88,7 +94,7 @@ class Daemon:
 
 @contextlib.contextmanager
 def running_daemon(service: str, settings: Settings[Section]) -> Iterator[Daemon]:
-    """Open the session, announce the instance, and tell its health until the block ends.
+    """Open the session, announce the instance, and publish its health until the block ends.
 
     SIGTERM or SIGINT sets ``daemon.stop``; a second one ends the process at once. Raises
     SettingsError or InhandError when the session cannot be opened.
@@ -97,8 +103,10 @@ def running_daemon(service: str, settings: Settings[Section]) -> Iterator[Daemon
     stop = threading.Event()
     with set_on_signals(stop), open_session(settings.zenoh) as session:
         daemon = Daemon(session, settings.site, service, settings.instance, stop)
-        live_key = settings.site.live_key(service, settings.instance)
-        with session.liveliness().declare_token(live_key), _telling_health(daemon, settings.zenoh):
+        with (
+            announced(session, settings.site, service, settings.instance),
+            _publishing_health(daemon, settings.zenoh),
+        ):
             log.info("%s %s is up", service, settings.instance)
             try:
                 yield daemon
@@ -110,7 +118,7 @@ def running_daemon(service: str, settings: Settings[Section]) -> Iterator[Daemon
 
 
 @contextlib.contextmanager
-def _telling_health(daemon: Daemon, settings: ZenohSettings) -> Iterator[None]:
+def _publishing_health(daemon: Daemon, settings: ZenohSettings) -> Iterator[None]:
     """Publish the health once a second, and a last time at the end of the block."""
     publisher = daemon.publisher(HEALTH, daemon.instance)
     finished = threading.Event()

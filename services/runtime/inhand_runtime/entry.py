@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
 from inhand_runtime.settings import Section, Settings, load_settings
 
 S = TypeVar("S", bound=Section)
-
-DONE, FAILED, WRONG_USAGE = 0, 1, 2
 
 
 def daemon_main(

@@ -1,4 +1,4 @@
-"""Zenoh sessions, publishers and subscribers of typed topics: nothing else touches Zenoh.
+"""Zenoh sessions, publishers, subscribers and liveliness tokens: no other module imports Zenoh.
 
 Peers meet without multicast: the first process of a rig takes the meeting address and the later
 ones connect to it; gossip then connects each to all. When the one that holds the address goes
@@ -13,6 +13,8 @@ from typing import Any, Generic, TypeVar
 
 import zenoh
 import zenoh.ext
+from inhand_schemas.errors import KeyFormatError
+from inhand_schemas.keys import Site, parse_live_key
 from inhand_schemas.messages import Message
 from inhand_schemas.topics import Delivery, Topic
 
@@ -22,7 +24,10 @@ from inhand_runtime.settings import ZenohSettings
 
 T = TypeVar("T", bound=Message)
 
+Session = zenoh.Session
+
 Subscription = zenoh.Subscriber[None] | zenoh.ext.AdvancedSubscriber[None]
+"""A handle: what it subscribes to arrives as long as somebody keeps it."""
 
 HEARTBEAT_S = 0.5
 CLIENT_TIMEOUT_MS = 3_000
@@ -45,7 +50,7 @@ _CONGESTION = {
 
 
 @contextlib.contextmanager
-def open_session(settings: ZenohSettings) -> Iterator[zenoh.Session]:
+def open_session(settings: ZenohSettings) -> Iterator[Session]:
     """A session that is closed at the end; raises SettingsError or InhandError within seconds."""
     zenoh.init_log_from_env_or("off")
     session = _open_client(settings) if settings.mode == "client" else _open_peer(settings)
@@ -53,7 +58,7 @@ def open_session(settings: ZenohSettings) -> Iterator[zenoh.Session]:
         yield session
 
 
-def _open_client(settings: ZenohSettings) -> zenoh.Session:
+def _open_client(settings: ZenohSettings) -> Session:
     if not settings.connect:
         raise SettingsError('zenoh.mode = "client" needs zenoh.connect, the addresses of hubs')
     config = _config(settings, listen=(), connect=settings.connect)
@@ -66,7 +71,7 @@ def _open_client(settings: ZenohSettings) -> zenoh.Session:
         ) from None
 
 
-def _open_peer(settings: ZenohSettings) -> zenoh.Session:
+def _open_peer(settings: ZenohSettings) -> Session:
     with contextlib.suppress(zenoh.ZError):
         return zenoh.open(_config(settings, (settings.meeting, *settings.listen), settings.connect))
     listen = settings.listen or (_any_port(settings.meeting),)
@@ -112,7 +117,7 @@ class Publisher(Generic[T]):
 
     def __init__(
         self,
-        session: zenoh.Session,
+        session: Session,
         topic: Topic[T],
         key: str,
         on_put: Callable[[str], None],
@@ -155,7 +160,7 @@ class Publisher(Generic[T]):
 
 
 def subscribe(
-    session: zenoh.Session,
+    session: Session,
     pattern: str,
     delivery: Delivery,
     on_sample: Callable[[Received], None],
@@ -184,3 +189,32 @@ def subscribe(
         history=zenoh.ext.HistoryConfig(detect_late_publishers=True),
         recovery=zenoh.ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
     )
+
+
+def is_alone(session: Session) -> bool:
+    """Whether no other process is connected now."""
+    info = session.info
+    return not (info.peers_zid() or info.routers_zid())
+
+
+@contextlib.contextmanager
+def announced(session: Session, site: Site, service: str, instance: str) -> Iterator[None]:
+    """Show all who look that an instance lives, until the block ends or the process dies."""
+    with session.liveliness().declare_token(site.live_key(service, instance)):
+        yield
+
+
+def watch_instances(
+    session: Session, site: Site, on_change: Callable[[str, str, bool], None]
+) -> Subscription:
+    """Call ``on_change(service, instance, lives)`` for all who live now, and at each change.
+
+    It is called from Zenoh's threads; keep the returned handle.
+    """
+
+    def receive(sample: zenoh.Sample) -> None:
+        with contextlib.suppress(KeyFormatError):  # a foreign program's token is nobody of ours
+            service, instance = parse_live_key(str(sample.key_expr))
+            on_change(service, instance, sample.kind == zenoh.SampleKind.PUT)
+
+    return session.liveliness().declare_subscriber(site.live_pattern(), receive, history=True)
