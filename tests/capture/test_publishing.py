@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 from inhand_capture.publishing import CameraPublisher
 from inhand_runtime.pixels import decode_depth
-from inhand_runtime.source import Captured
+from inhand_runtime.source import Captured, Pixels
 from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, Message, RgbdFrame
 from inhand_schemas.topics import AnyTopic
-from inhand_tracker.geometry.arrays import Bytes
 from msgspec import structs
 from scripted_source import FIRST_NS, PERSON, moment
 
@@ -97,11 +96,11 @@ def test_raw_pixels_are_encoded() -> None:
 
 def test_encoded_pixels_pass_untouched() -> None:
     outlets = FakeOutlets({"rgbd"})
-    pixels = Bytes(ColourImage("jpeg", 2, 1, b"any"), DepthImage("z16-zstd", 2, 1, b"bytes"))
+    pixels = Pixels(ColourImage("jpeg", 2, 1, b"any"), DepthImage("z16-zstd", 2, 1, b"bytes"))
     CameraPublisher(outlets, "front").publish(Captured(1, 0, lambda: pixels, None))
     frame = outlets.sent[0][1]
     assert isinstance(frame, RgbdFrame)
-    assert Bytes(frame.colour, frame.depth) == pixels
+    assert Pixels(frame.colour, frame.depth) == pixels
 
 
 def test_every_introduction_is_sent_with_a_sequence_of_its_own() -> None:

@@ -10,9 +10,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from inhand_runtime.source import Captured, SourceError, SourceLostError
+from inhand_runtime.source import Captured, Pixels, SourceError, SourceLostError
 from inhand_schemas.messages import CameraInfo, ObjectPose, Person
-from inhand_tracker.geometry.arrays import Bytes
 
 WIDTH, HEIGHT = 64, 48
 FIRST_NS = 1_700_000_000_000_000_000
@@ -75,7 +74,7 @@ def moment(number: int) -> Captured:
     return Captured(
         time_ns=time_ns,
         time_uncertainty_ns=1000,
-        pixels=lambda: Bytes(
+        pixels=lambda: Pixels(
             np.zeros((HEIGHT, WIDTH, 3), np.uint8), np.full((HEIGHT, WIDTH), number, np.uint16)
         ),
         people=(PERSON,),

@@ -10,7 +10,6 @@ import pytest
 from inhand_capture.sources.replay import ReplaySource
 from inhand_runtime.source import Captured, SourceError
 from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS, AnyTopic
-from inhand_tracker.geometry.arrays import Bytes
 from played import (
     CAMERA_INFO,
     DEPTH,
@@ -54,7 +53,7 @@ def test_every_frame_comes_back_with_all_that_belongs_to_it(recording: Path) -> 
 def test_pictures_pass_untouched(recording: Path) -> None:
     pixels = _play(recording)[0].pixels
     assert pixels is not None
-    assert pixels() == Bytes(PICTURE, DEPTH)
+    assert pixels() == Pixels(PICTURE, DEPTH)
 
 
 def test_the_recorded_info_is_the_cameras(recording: Path) -> None:
