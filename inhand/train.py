@@ -12,7 +12,8 @@ from inhand_lab.training.presence_training import learn_presence
 from inhand_lab.training.recogniser_training import stages as recogniser_stages
 from inhand_lab.training.recogniser_training import train_recogniser
 from inhand_runtime.errors import SettingsError
-from inhand_tracker.model.model_file import Model, load_model, save_model
+from inhand_tracker.model.model import Model
+from inhand_tracker.model.model_file import load_model, save_model
 from inhand_tracker.recognition.recogniser_file import save_recogniser
 from rich.console import Console
 from rich.table import Table

@@ -44,7 +44,7 @@ class FakeOutlet:
         return self.stream in self.outlets.wanted_streams
 
 
-def _forbidden() -> Bytes:
+def _forbidden() -> Pixels:
     pytest.fail("rendered although nobody listens")
 
 

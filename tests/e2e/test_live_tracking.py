@@ -15,7 +15,8 @@ from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import ObjectPose
 from inhand_schemas.topics import POSE, RGBD, SKELETONS
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS, new_tracker
-from inhand_tracker.model.model_file import Model, load_model, save_model
+from inhand_tracker.model.model import Model
+from inhand_tracker.model.model_file import load_model, save_model
 from real_data import DATA
 from running_rig import RunningRig, eventually
 

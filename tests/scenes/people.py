@@ -6,7 +6,7 @@ import numpy as np
 import trimesh
 from inhand_schemas.messages import Person
 from inhand_tracker.mapping.learning import LabelledSequence, learn
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.shape import ObjectShape, Symmetry
 from inhand_tracker.shape.viewpoints import find_viewpoints

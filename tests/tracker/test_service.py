@@ -17,7 +17,8 @@ from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS, AnyTopic
 from inhand_tracker.body import skeleton as body
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
-from inhand_tracker.model.model_file import ModelError, save_model
+from inhand_tracker.model.model import ModelError
+from inhand_tracker.model.model_file import save_model
 from inhand_tracker.people.watching import GivenObjects
 from inhand_tracker.service import TrackerService, TrackerSettings, load_trackers
 from people import FRAME_NS, unseen_wave, wave_model

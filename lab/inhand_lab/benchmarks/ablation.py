@@ -9,7 +9,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.methods.fusion.search import Search
 from inhand_tracker.methods.fusion.tracker import FusionTracker
 from inhand_tracker.methods.registry import FUSION, METHODS
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.prior.prior import Prior
 from inhand_tracker.sight.sight import SIGHT_TERMS, SightTerm
 

@@ -12,7 +12,7 @@ import numpy as np
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.methods.fusion.tracker import FusionTracker
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.viewpoints import find_viewpoints
 

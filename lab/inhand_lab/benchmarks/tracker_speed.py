@@ -17,7 +17,7 @@ from inhand_tracker.mapping.learning import learn
 from inhand_tracker.methods.darby2014.edges import chamfer_of
 from inhand_tracker.methods.darby2014.likelihood import Likelihood
 from inhand_tracker.methods.darby2014.particles import Particles
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.shape.viewpoints import BOUNDARY_POINTS, Viewpoints, find_viewpoints
 from inhand_tracker.sight.frame import Region, prepare
 from inhand_tracker.sight.sight import Sight

@@ -11,7 +11,8 @@ from inhand_runtime.pixels import decode_colour
 from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import RgbdFrame, Skeletons
 from inhand_schemas.topics import RGBD, SKELETONS
-from inhand_tracker.model.model_file import Model, save_model
+from inhand_tracker.model.model import Model
+from inhand_tracker.model.model_file import save_model
 from inhand_tracker.people.following import Follower
 from inhand_tracker.wire.conversion import joints_of
 

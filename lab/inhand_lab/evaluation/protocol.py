@@ -14,7 +14,7 @@ import numpy as np
 from inhand_tracker.mapping.learning import LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import METHODS, AnyTerm, MethodName, new_tracker
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.shape.viewpoints import Viewpoints, find_viewpoints

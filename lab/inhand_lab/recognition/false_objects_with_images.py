@@ -8,7 +8,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import DEFAULT_METHOD, new_tracker
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.recognition.cascade import Cascade
 from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.presence import Presence

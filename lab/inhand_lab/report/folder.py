@@ -14,7 +14,7 @@ from typing import Any
 
 from inhand_runtime.errors import InhandError
 from inhand_tracker.methods.registry import METHODS
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from rich.console import Console
 
 from inhand_lab.datasets.dataset import load_frames

@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Sequence
 from inhand_schemas.errors import MessageError
 from inhand_tracker.mapping.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.methods.registry import DEFAULT_METHOD, new_tracker
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.viewpoints import find_viewpoints
 from inhand_tracker.sight.appearance import learn_appearance

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS, new_tracker
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.recognition.presence import (
     USUAL_PART_SPREADS,
     USUAL_SPREAD,

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from inhand_capture.sources.replay import ReplaySource
-from inhand_runtime.source import Captured, SourceError
+from inhand_runtime.source import Captured, Pixels, SourceError
 from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS, AnyTopic
 from played import (
     CAMERA_INFO,

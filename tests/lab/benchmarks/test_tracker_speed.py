@@ -15,7 +15,7 @@ from inhand_lab.benchmarks.tracker_speed import (
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.darby2014.likelihood import Likelihood
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.shape.viewpoints import find_viewpoints
 

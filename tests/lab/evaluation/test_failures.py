@@ -19,7 +19,7 @@ from inhand_tracker.geometry.estimate import Estimate, vertex_error
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from inhand_tracker.methods.registry import FUSION, new_tracker
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.viewpoints import Viewpoints
 

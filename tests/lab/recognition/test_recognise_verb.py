@@ -12,7 +12,8 @@ from inhand_lab.recognition.protocol import learn_from
 from inhand_runtime.errors import SettingsError
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
-from inhand_tracker.model.model_file import Model, ModelError, save_model
+from inhand_tracker.model.model import Model, ModelError
+from inhand_tracker.model.model_file import save_model
 from inhand_tracker.recognition.answer import Recognition
 from inhand_tracker.recognition.cascade import Cascade
 from inhand_tracker.recognition.darby2012.cascade import Cascade2012

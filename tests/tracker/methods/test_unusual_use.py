@@ -8,7 +8,7 @@ from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from people import FRAME_NS, STANDING, wave_model
 
 RAISING, WORN, FRAMES = 30, 60, 120

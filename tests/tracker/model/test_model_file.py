@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 from inhand_tracker.mapping.learning import learn
 from inhand_tracker.mapping.mapping import Mapping
-from inhand_tracker.model.model_file import Model, ModelError, load_model, save_model
+from inhand_tracker.model.model import Model, ModelError
+from inhand_tracker.model.model_file import load_model, save_model
 from inhand_tracker.shape.contours import find_contours
 from inhand_tracker.shape.viewpoints import Viewpoints
 from inhand_tracker.sight.appearance import Appearance

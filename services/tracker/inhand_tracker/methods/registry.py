@@ -13,7 +13,7 @@ from inhand_tracker.methods.darby2014.variants import VARIANTS, PublishedMethod
 from inhand_tracker.methods.fusion.search import Search
 from inhand_tracker.methods.fusion.tracker import FusionTracker
 from inhand_tracker.methods.object_tracker import ObjectTracker
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.sight.sight import SIGHT_TERMS
 from inhand_tracker.wire.conversion import Need
 

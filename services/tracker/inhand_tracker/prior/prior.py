@@ -8,11 +8,8 @@ weights of the best linear unbiased combination, and the covariance of what come
 
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import count
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inhand_tracker.body.anchors import ANCHORS, Anchors
 from inhand_tracker.geometry import rotations
@@ -209,49 +206,6 @@ def repeated(anchors: Anchors, times: int) -> Anchors:
     origins = anchors.origins.reshape(-1, len(ANCHORS), 3)
     axes = anchors.axes.reshape(-1, len(ANCHORS), 3, 3)
     return Anchors(np.tile(origins, (1, times, 1)), np.tile(axes, (1, times, 1, 1)))
-
-
-def prior_arrays(prior: Prior) -> dict[str, NDArray[Any]]:
-    """All of a prior as arrays by name, for a file."""
-    arrays: dict[str, NDArray[Any]] = {
-        "centre": prior.centre,
-        "spread": prior.spread,
-        "translation_products": prior.translation_products,
-        "rotation_products": prior.rotation_products,
-        "errors": prior.errors,
-        "calibration": np.array(prior.calibration),
-        "persistence_s": np.array(prior.persistence_s),
-    }
-    for view, regression in enumerate(prior.regressions):
-        for name in ("landmarks", "width", "coefficients", "offset"):
-            arrays[f"regression{view}.{name}"] = np.asarray(getattr(regression, name))
-    return arrays
-
-
-def prior_from_arrays(arrays: dict[str, NDArray[Any]]) -> Prior:
-    """The prior that ``prior_arrays`` took apart."""
-    regressions = []
-    for view in count():
-        if f"regression{view}.width" not in arrays:
-            break
-        regressions.append(
-            KernelRidge(
-                arrays[f"regression{view}.landmarks"].astype(np.float32),
-                float(arrays[f"regression{view}.width"]),
-                arrays[f"regression{view}.coefficients"],
-                arrays[f"regression{view}.offset"],
-            )
-        )
-    return Prior(
-        arrays["centre"],
-        arrays["spread"],
-        tuple(regressions),
-        arrays["translation_products"].astype(np.float32),
-        arrays["rotation_products"].astype(np.float32),
-        arrays["errors"],
-        float(arrays["calibration"]),
-        float(arrays["persistence_s"]),
-    )
 
 
 def rotation_error(estimated: Array, true: Array) -> Array:

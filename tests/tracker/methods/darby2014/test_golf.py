@@ -7,7 +7,7 @@ import pytest
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.shape.viewpoints import Viewpoints
 from real_data import DATA

@@ -10,7 +10,7 @@ from inhand_tracker.geometry.image import Image
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from people import (
     FRAME_NS,
     HAND,

@@ -12,7 +12,7 @@ from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.fusion.search import Search
 from inhand_tracker.methods.fusion.tracker import FusionTracker
-from inhand_tracker.model.model_file import Model, ModelError
+from inhand_tracker.model.model import Model, ModelError
 from people import (
     FRAME_NS,
     RIGHT_ARM,

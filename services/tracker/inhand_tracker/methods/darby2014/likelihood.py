@@ -10,7 +10,7 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.darby2014.depths import depth_log_weights, surfaces_of
 from inhand_tracker.methods.darby2014.edges import chamfer_of, weigh_by_edges
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.shape.view_grid import view_grid
 from inhand_tracker.shape.viewpoints import Viewpoints, VisiblePoints, find_surfaces
 

@@ -24,7 +24,7 @@ from inhand_tracker.methods.darby2014.particles import (
     systematic_resample,
 )
 from inhand_tracker.methods.darby2014.variants import Variant
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.shape.viewpoints import VisiblePoints
 from inhand_tracker.sight.support import Support
 

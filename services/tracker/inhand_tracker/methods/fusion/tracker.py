@@ -21,7 +21,7 @@ from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever
 from inhand_tracker.methods.fusion.belief import Belief, BodyExpectation, carry_over
 from inhand_tracker.methods.fusion.search import DEFAULT_SEARCH, ImageSearch, Search
-from inhand_tracker.model.model_file import Model, ModelError
+from inhand_tracker.model.model import Model, ModelError
 from inhand_tracker.shape.viewpoints import VisiblePoints
 from inhand_tracker.sight.sight import SIGHT_TERMS, Sight, SightTerm
 from inhand_tracker.sight.support import Support

@@ -16,7 +16,7 @@ from inhand_tracker.geometry.estimate import LOST, Estimate, normalised_weights,
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.darby2014.edges import chamfer_of, edge_log_weights
 from inhand_tracker.methods.darby2014.tracker import GAP_NS, PARTICLES
-from inhand_tracker.model.model_file import Model
+from inhand_tracker.model.model import Model
 from inhand_tracker.recognition.answer import Recognition, boxes_around, known_action
 from inhand_tracker.recognition.darby2012.action_particles import (
     ActionParticles,
