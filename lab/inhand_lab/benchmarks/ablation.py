@@ -1,12 +1,12 @@
 """What each part of ``fusion`` is worth: each taken out once, all on the same frames."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from inhand_tracker.body.anchors import ANCHORS
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.methods.fusion.search import Search
+from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
 from inhand_tracker.methods.fusion.tracker import FusionTracker
 from inhand_tracker.methods.registry import FUSION, METHODS
 from inhand_tracker.model.model import Model
@@ -31,7 +31,7 @@ class Variant:
 
     part: str
     without: str
-    search: Search = field(default_factory=Search)
+    parameters: FusionParameters = DEFAULT_FUSION
     terms: tuple[SightTerm, ...] = SIGHT_TERMS
     changed: Callable[[Prior], Prior] = lambda prior: prior
 
@@ -43,7 +43,7 @@ class Variant:
             replace(model, prior=self.changed(model.prior)),
             left_handed=left_handed,
             terms=self.terms,
-            search=self.search,
+            parameters=self.parameters,
         )
 
 
@@ -88,10 +88,10 @@ VARIANTS: tuple[Variant, ...] = (
         for term in SIGHT_TERMS
     ),
     Variant("likelihood", "all of it", terms=()),
-    Variant("search", "what was seen before", search=Search(carries=False)),
-    Variant("search", "an object that was left", search=Search(leaves=False)),
-    Variant("search", "a second, nearer round", search=Search(rounds=1)),
-    Variant("search", "refinement", search=Search(refines=False)),
+    Variant("search", "what was seen before", parameters=replace(DEFAULT_FUSION, carries=False)),
+    Variant("search", "an object that was left", parameters=replace(DEFAULT_FUSION, leaves=False)),
+    Variant("search", "a second, nearer round", parameters=replace(DEFAULT_FUSION, rounds=1)),
+    Variant("search", "refinement", parameters=replace(DEFAULT_FUSION, refines=False)),
 )
 
 

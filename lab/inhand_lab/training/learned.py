@@ -6,7 +6,7 @@ import numpy as np
 from inhand_tracker.body.skeleton import PARTS
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.mapping.mapping import Mapping
-from inhand_tracker.methods.darby2014.particles import ROTATION_VARIANCE, TRANSLATION_VARIANCE
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
 
 
 @dataclass(frozen=True)
@@ -30,14 +30,15 @@ class Learned:
 
 def learned_by(mapping: Mapping) -> Learned:
     """The numbers of a mapping."""
+    variances = DEFAULT_DARBY2014
     least, median, greatest = np.quantile(mapping.radii, [0.0, 0.5, 1.0]).tolist()
     return Learned(
         recordings=len(mapping.participants),
         participants=len(set(mapping.participants)),
         frames=len(mapping.body_poses),
         radii=(least, median, greatest),
-        good_rotations=_good(mapping.rotation_variation, ROTATION_VARIANCE),
-        good_translations=_good(mapping.translation_variation, TRANSLATION_VARIANCE),
+        good_rotations=_good(mapping.rotation_variation, variances.rotation_variance),
+        good_translations=_good(mapping.translation_variation, variances.translation_variance),
         translation_part=_most_used(mapping.proximate_part),
         rotation_part=_most_used(mapping.stable_rotation_part),
     )

@@ -3,7 +3,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis.extra.numpy import arrays
-from inhand_tracker.geometry.estimate import normalised_weights, vertex_error, weighted_estimate
+from inhand_tracker.geometry.estimate import vertex_error, weighted_estimate
+from inhand_tracker.geometry.weights import normalised_weights
 from people import quaternion_of, same_rotation, scipy_rotation
 from scipy.spatial.transform import Rotation
 

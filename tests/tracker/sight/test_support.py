@@ -7,7 +7,8 @@ import pytest
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
-from inhand_tracker.methods.fusion.search import DEFAULT_SEARCH, ImageSearch
+from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION
+from inhand_tracker.methods.fusion.search import ImageSearch
 from inhand_tracker.sight.appearance import Appearance
 from inhand_tracker.sight.support import Support
 from sights import EXTENTS, PLACE, TURN, appearance, draw, sight
@@ -28,7 +29,7 @@ def green() -> Image:
 def looked_at(image: Image, learned: Appearance | None, looks: int = 20) -> Support:
     """The last support of a box that is looked for where the one in the image is."""
     sphere = BoundingSphere(np.zeros(3), float(np.linalg.norm(EXTENTS)) / 2)
-    search = ImageSearch(sight(learned=learned), sphere, DEFAULT_SEARCH, seed=3)
+    search = ImageSearch(sight(learned=learned), sphere, DEFAULT_FUSION, seed=3)
     belief = PoseMixture((PoseGaussian(PLACE, TURN, SPREAD),), np.ones(1))
     for _ in range(looks):
         search.look(belief, image, FAR_AWAY, 1.0)

@@ -31,12 +31,6 @@ class Estimate:
 LOST = Estimate("lost", 0.0)
 
 
-def normalised_weights(log_weights: Array) -> Array:
-    """Weights (P,) that sum to 1."""
-    weights = np.exp(log_weights - log_weights.max())
-    return weights / weights.sum()
-
-
 def weighted_estimate(translations: Array, orientations: Array, weights: Array) -> Estimate:
     """The expected pose (equations 18 and 19; the rotation after Markley) of (P, 3), (P, 4)."""
     translation = weights @ translations

@@ -11,6 +11,7 @@ import numpy as np
 
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.weights import normalised_weights
 
 
 @dataclass(frozen=True)
@@ -86,8 +87,7 @@ class PoseMixture:
 
 def mixture(parts: Sequence[PoseGaussian], log_weights: Array) -> PoseMixture:
     """A mixture by unnormalised log-weights (K,)."""
-    weights = np.exp(log_weights - log_weights.max())
-    return PoseMixture(tuple(parts), weights / weights.sum())
+    return PoseMixture(tuple(parts), normalised_weights(log_weights))
 
 
 def lever(arm: Array) -> Array:

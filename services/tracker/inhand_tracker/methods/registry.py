@@ -1,16 +1,17 @@
 """Every method by name. To add one: give it a package, and a record in ``METHODS``."""
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal, get_args
 
 from inhand_runtime.errors import SettingsError
 
 from inhand_tracker.methods.darby2014.likelihood import DEFAULT_TERMS, TERMS
-from inhand_tracker.methods.darby2014.tracker import PARTICLES, ParticleTracker
-from inhand_tracker.methods.darby2014.variants import VARIANTS, PublishedMethod
-from inhand_tracker.methods.fusion.search import Search
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
+from inhand_tracker.methods.darby2014.tracker import ParticleTracker
+from inhand_tracker.methods.darby2014.variants import VARIANTS, PublishedMethod, Variant
+from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION
 from inhand_tracker.methods.fusion.tracker import FusionTracker
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.model.model import Model
@@ -27,7 +28,8 @@ ALL_TERMS: tuple[AnyTerm, ...] = get_args(AnyTerm)
 
 @dataclass(frozen=True)
 class TrackerOptions:
-    """What a tracker is told beside its model: ``particles`` is the method's own where None."""
+    """What a tracker is made with beside its model; ``particles`` is the method's own where
+    None."""
 
     left_handed: bool
     terms: tuple[AnyTerm, ...]
@@ -37,37 +39,40 @@ class TrackerOptions:
 
 @dataclass(frozen=True)
 class Method:
-    """How a method is made, and what it asks for.
-
-    ``terms`` of an image may weigh in it, ``usual_terms`` weigh where nobody chose; ``needs`` says
-    what of a frame must be decoded for terms; ``learns_prior`` whether its models hold a prior.
-    """
+    """How a method is made, and what it asks for."""
 
     name: MethodName
     terms: tuple[AnyTerm, ...]
+    """Terms of an image's likelihood that it can weigh."""
     usual_terms: tuple[AnyTerm, ...]
+    """Terms that it weighs where nobody chose."""
     needs: Callable[[Collection[AnyTerm]], tuple[Need, ...]]
+    """What of a frame must be decoded for some terms."""
     new: Callable[[Model, TrackerOptions], ObjectTracker]
+    """Makes a tracker."""
     learns_prior: bool
+    """Whether its models hold a prior."""
 
 
 def _new_fusion(model: Model, options: TrackerOptions) -> ObjectTracker:
+    hypotheses = options.particles or DEFAULT_FUSION.hypotheses
     return FusionTracker(
         model,
         left_handed=options.left_handed,
         terms=[term for term in SIGHT_TERMS if term in options.terms],
-        search=Search() if options.particles is None else Search(hypotheses=options.particles),
+        parameters=replace(DEFAULT_FUSION, hypotheses=hypotheses),
         seed=options.seed,
     )
 
 
-def _new_published(name: str, model: Model, options: TrackerOptions) -> ObjectTracker:
+def _new_published(variant: Variant, model: Model, options: TrackerOptions) -> ObjectTracker:
+    particles = options.particles or DEFAULT_DARBY2014.particles
     return ParticleTracker(
         model,
-        VARIANTS[name],
+        variant,
         left_handed=options.left_handed,
         terms=[term for term in TERMS if term in options.terms],
-        particles=options.particles or PARTICLES,
+        parameters=replace(DEFAULT_DARBY2014, particles=particles),
         seed=options.seed,
     )
 
@@ -80,27 +85,36 @@ def _published_terms(terms: Collection[AnyTerm]) -> tuple[Need, ...]:
     return tuple(term for term in TERMS if term in terms)
 
 
+def _published(variant: Variant) -> Method:
+    return Method(
+        name=variant.name,
+        terms=TERMS,
+        usual_terms=DEFAULT_TERMS,
+        needs=_published_terms,
+        new=partial(_new_published, variant),
+        learns_prior=False,
+    )
+
+
 METHODS: dict[str, Method] = {
-    FUSION: Method(
-        FUSION, SIGHT_TERMS, SIGHT_TERMS, _pixels_of_sight, _new_fusion, learns_prior=True
-    ),
-    **{
-        name: Method(
-            name,
-            TERMS,
-            DEFAULT_TERMS,
-            _published_terms,
-            partial(_new_published, name),
-            learns_prior=False,
-        )
-        for name in get_args(PublishedMethod)
-    },
+    method.name: method
+    for method in (
+        Method(
+            name=FUSION,
+            terms=SIGHT_TERMS,
+            usual_terms=SIGHT_TERMS,
+            needs=_pixels_of_sight,
+            new=_new_fusion,
+            learns_prior=True,
+        ),
+        *(_published(variant) for variant in VARIANTS.values()),
+    )
 }
 
 
 def new_tracker(
     model: Model,
-    method: MethodName,
+    method: MethodName = DEFAULT_METHOD,
     *,
     left_handed: bool = False,
     terms: Collection[AnyTerm] | None = None,

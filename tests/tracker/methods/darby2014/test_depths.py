@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 from inhand_tracker.geometry.camera import Intrinsics
-from inhand_tracker.methods.darby2014.depths import FARTHEST_M, MeasuredSurfaces, depth_log_weights
+from inhand_tracker.methods.darby2014.depths import MeasuredSurfaces, depth_log_weights
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_SURFACE
 
+FARTHEST_M = DEFAULT_SURFACE.farthest_surface_m
 CAMERA = Intrinsics(300.0, 300.0, 159.5, 119.5, 320, 240)
 
 

@@ -7,6 +7,7 @@ import pytest
 from inhand_tracker.body.skeleton import LEFT_HAND, RIGHT_HAND
 from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.methods.darby2014.nothing_near import draw_broadly, farthest_near
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
 from inhand_tracker.methods.darby2014.particles import Particles
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
@@ -57,7 +58,8 @@ def test_the_recordings_of_a_single_participant_stand_for_people() -> None:
 def broadly(mapping: Mapping, at: float, method: str = "gd-fallback") -> Particles:
     pose = np.zeros(60)
     pose[7] = at
-    return draw_broadly(5000, mapping, pose, VARIANTS[method], np.random.default_rng(0))
+    many = replace(DEFAULT_DARBY2014, particles=5000)
+    return draw_broadly(mapping, pose, VARIANTS[method], np.random.default_rng(0), many)
 
 
 def test_broad_draws_prefer_likely_frames_and_reach_far() -> None:

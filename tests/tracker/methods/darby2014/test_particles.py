@@ -6,14 +6,15 @@ import pytest
 from hypothesis import given
 from hypothesis.extra.numpy import arrays
 from inhand_tracker.body.skeleton import Bases
+from inhand_tracker.geometry.weights import systematic_resample
 from inhand_tracker.mapping.mapping import BodyPoseIndex, Mapping
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014, Darby2014Parameters
 from inhand_tracker.methods.darby2014.particles import (
     Particles,
     draw,
     mixing_fractions,
     propagate,
     redraw,
-    systematic_resample,
 )
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from people import quaternion_of, same_rotation
@@ -51,8 +52,12 @@ def all_at(frame: int, count: int = COUNT) -> Particles:
     return Particles(*(np.full(count, value) for value in (frame, frame, 3, 4)))
 
 
+def advancing(frames: float) -> Darby2014Parameters:
+    return replace(DEFAULT_DARBY2014, advance=frames)
+
+
 def walked(frame: int, advance: float, seed: int = 0) -> Particles:
-    return propagate(all_at(frame), make_mapping(), np.random.default_rng(seed), advance)
+    return propagate(all_at(frame), make_mapping(), np.random.default_rng(seed), advancing(advance))
 
 
 @pytest.mark.parametrize("advance", [0.0, 1.0])
@@ -99,7 +104,7 @@ def test_the_walk_stops_at_the_end_of_its_sequence(last: int) -> None:
 def test_the_walk_never_leaves_its_sequence(frames: list[int], advance: float, seed: int) -> None:
     start = np.array(frames)
     particles = Particles(start, start[::-1], start % 19, start % 7)
-    moved = propagate(particles, make_mapping(), np.random.default_rng(seed), advance)
+    moved = propagate(particles, make_mapping(), np.random.default_rng(seed), advancing(advance))
     for before, after in (
         (particles.translation_frames, moved.translation_frames),
         (particles.rotation_frames, moved.rotation_frames),

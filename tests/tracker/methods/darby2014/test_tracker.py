@@ -8,6 +8,7 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.estimate import Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.mapping.learning import LabelledSequence, learn
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from inhand_tracker.model.model import Model
@@ -334,7 +335,11 @@ def test_frames_that_are_sent_twice_do_no_harm() -> None:
 def test_one_particle_tracks_too(method: str) -> None:
     joints = unseen_person()
     places, _ = held(joints, seed=7)
-    for estimate, place in zip(tracked(method, joints, particles=1), places, strict=True):
+    for estimate, place in zip(
+        tracked(method, joints, parameters=replace(DEFAULT_DARBY2014, particles=1)),
+        places,
+        strict=True,
+    ):
         assert_proper(estimate)
         assert estimate.confidence == 1.0
         assert np.linalg.norm(estimate.translation - place) < 0.3
@@ -417,8 +422,11 @@ def two_sided_model() -> Model:
     return replace(wave_model(), mapping=learn(sequences, np.array([1.0, 0.0, 0.0])))
 
 
-def errors_at(side: int, method: str, *, seen: bool, advance: float = 0.0) -> np.ndarray:
-    tracker = ParticleTracker(two_sided_model(), VARIANTS[method], seed=1, advance=advance)
+STILL = replace(DEFAULT_DARBY2014, advance=0.0)
+
+
+def errors_at(side: int, method: str, *, seen: bool) -> np.ndarray:
+    tracker = ParticleTracker(two_sided_model(), VARIANTS[method], parameters=STILL, seed=1)
     image = Image(silhouette(SIDES[side], UPRIGHT), CAMERA) if seen else None
     return np.array(
         [

@@ -10,7 +10,7 @@ from inhand_tracker.body import skeleton as body
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.methods.fusion.search import Search
+from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.methods.fusion.tracker import FusionTracker
 from inhand_tracker.model.model import Model, ModelError
 from people import (
@@ -424,7 +424,9 @@ def test_each_term_can_weigh_by_itself(terms: tuple[str, ...]) -> None:
 
 
 def test_one_hypothesis_is_enough_to_go_on() -> None:
-    for estimate in follow(tracker(search=Search(hypotheses=1)), unseen_wave(4), images()[:4]):
+    for estimate in follow(
+        tracker(parameters=FusionParameters(hypotheses=1)), unseen_wave(4), images()[:4]
+    ):
         assert_sound(estimate)
 
 

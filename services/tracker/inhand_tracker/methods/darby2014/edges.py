@@ -8,24 +8,22 @@ from numpy.typing import NDArray
 from inhand_tracker.geometry.arrays import Array, Bytes, Singles
 from inhand_tracker.geometry.camera import NEAREST_M
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_EDGE_IMAGE, EdgeImageParameters
 from inhand_tracker.shape.view_grid import nearest_view
-
-GRADIENT_THRESHOLD = 100.0
-SMOOTHING_PIXELS = 2.0
 
 
 def chamfer_of(image: Image) -> Singles | None:
-    """How near each pixel (H, W) of an image is to an edge; None where there is no luminance."""
+    """Nearness of each pixel (H, W) of an image to an edge; None where there is no luminance."""
     return None if image.grey is None else chamfer_image(image.grey)
 
 
-def chamfer_image(grey: Bytes) -> Singles:
-    """How near each pixel of a luminance image (H, W) is to an edge: 1 on one, 0 far away."""
+def chamfer_image(grey: Bytes, parameters: EdgeImageParameters = DEFAULT_EDGE_IMAGE) -> Singles:
+    """Nearness of each pixel of a luminance image (H, W) to an edge: 1 on one, 0 far away."""
     across = cv2.Sobel(grey, cv2.CV_32F, 1, 0)
     down = cv2.Sobel(grey, cv2.CV_32F, 0, 1)
     strength = cv2.magnitude(across, down)
-    _, edges = cv2.threshold(strength, GRADIENT_THRESHOLD, 1.0, cv2.THRESH_BINARY)
-    smooth = np.asarray(cv2.GaussianBlur(edges, (0, 0), SMOOTHING_PIXELS), np.float32)
+    _, edges = cv2.threshold(strength, parameters.gradient_threshold, 1.0, cv2.THRESH_BINARY)
+    smooth = np.asarray(cv2.GaussianBlur(edges, (0, 0), parameters.smoothing_pixels), np.float32)
     top = float(smooth.max())
     return smooth / np.float32(top) if top > 0.0 else smooth
 

@@ -10,25 +10,27 @@ import numpy as np
 from inhand_tracker.body.skeleton import LEFT_HAND, RIGHT_HAND
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.mapping.mapping import Mapping
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014, Darby2014Parameters
 from inhand_tracker.methods.darby2014.particles import Particles, rotation_parts_at
 from inhand_tracker.methods.darby2014.variants import Variant
 
-NEAR_SHARE = 0.99
-ASKED, COMPARED = 512, 100_000
 CHUNK = 8192
-BREADTH = 10
+"""Number of training poses that are compared at once, to bound the memory."""
 
 
-def farthest_near(mapping: Mapping) -> float:
+def farthest_near(mapping: Mapping, parameters: Darby2014Parameters = DEFAULT_DARBY2014) -> float:
     """The distance, in body heights, beyond which no training pose counts as near.
 
-    Of the training poses themselves 99 % have a pose of other participants (of other recordings,
-    where there is one participant) that near.
+    A share ``parameters.near_share`` of the training poses has a pose of other participants (of
+    other recordings, where there is one participant) within it.
     """
     people = np.unique(mapping.participants, return_inverse=True)[1]
     if people.max() == 0:
         people = np.arange(len(people))
-    asked, among = (_spread(len(mapping.body_poses), most) for most in (ASKED, COMPARED))
+    asked, among = (
+        _spread(len(mapping.body_poses), most)
+        for most in (parameters.asked_poses, parameters.compared_poses)
+    )
     asked_poses, owners = mapping.body_poses[asked], people[mapping.sequence_of(asked)]
     nearest = np.full(len(asked), np.inf)
     for start in range(0, len(among), CHUNK):
@@ -38,24 +40,29 @@ def farthest_near(mapping: Mapping) -> float:
         squares[owners[:, None] == people[mapping.sequence_of(chunk)]] = np.inf
         np.minimum(nearest, squares.min(axis=1), out=nearest)
     nearest += np.square(asked_poses).sum(axis=1)
-    return float(np.sqrt(max(np.quantile(nearest, NEAR_SHARE), 0.0)))
+    return float(np.sqrt(max(np.quantile(nearest, parameters.near_share), 0.0)))
 
 
 def _spread(frames: int, most: int) -> Indices:
-    """All of so many frames, or as many as ``most``, evenly spaced."""
+    """Evenly spaced indices into ``frames`` frames: all, or ``most`` of them."""
     return np.linspace(0, frames - 1, min(frames, most)).astype(np.int64)
 
 
 def draw_broadly(
-    count: int, mapping: Mapping, pose: Array, method: Variant, random: np.random.Generator
+    mapping: Mapping,
+    pose: Array,
+    method: Variant,
+    random: np.random.Generator,
+    parameters: Darby2014Parameters = DEFAULT_DARBY2014,
 ) -> Particles:
-    """Particles for a body pose (60,): each from the likest of ten frames drawn from all.
+    """Particles for a body pose (60,): each from the likest of some frames drawn from all.
 
     Translations are predicted from the hand that the object was nearer to in that frame, rotations
     from the method's part.
     """
+    drawn = parameters.particles, parameters.breadth
     translation_frames, rotation_frames = (
-        _likest(mapping, random.integers(len(mapping.body_poses), size=(count, BREADTH)), pose)
+        _likest(mapping, random.integers(len(mapping.body_poses), size=drawn), pose)
         for _ in range(2)
     )
     return Particles(

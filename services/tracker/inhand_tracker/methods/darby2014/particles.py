@@ -10,14 +10,8 @@ import numpy as np
 from inhand_tracker.body.skeleton import PARTS, RIGHT_HAND, Bases
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.mapping.mapping import BodyPoseIndex, Mapping
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014, Darby2014Parameters
 from inhand_tracker.methods.darby2014.variants import PartRule, Variant
-
-# The printed equation 10 has advance = 0, its prose "increment, but noisy". With 1 the real golf
-# swings come out in the paper's order and clearly better for g-hand: `inhand evaluate`.
-ADVANCE = 1.0
-INDEX_SIGMA = 1.0
-ROTATION_VARIANCE = np.pi / 16.0
-TRANSLATION_VARIANCE = 0.1
 
 
 @dataclass(frozen=True)
@@ -51,20 +45,27 @@ class Particles:
 
 
 def propagate(
-    particles: Particles, mapping: Mapping, random: np.random.Generator, advance: float = ADVANCE
+    particles: Particles,
+    mapping: Mapping,
+    random: np.random.Generator,
+    parameters: Darby2014Parameters = DEFAULT_DARBY2014,
 ) -> Particles:
     """The generative step: both indices move through their sequences (equations 10 and 11)."""
     return replace(
         particles,
-        translation_frames=_walk(particles.translation_frames, mapping, random, advance),
-        rotation_frames=_walk(particles.rotation_frames, mapping, random, advance),
+        translation_frames=_walk(particles.translation_frames, mapping, random, parameters),
+        rotation_frames=_walk(particles.rotation_frames, mapping, random, parameters),
     )
 
 
-def mixing_fractions(mapping: Mapping, frame: int) -> tuple[float, float]:
-    """α and β: how likely rotation and translation are redrawn (equations 12 and 13)."""
-    rotation = mapping.rotation_variation[frame] ** 2 / (2.0 * ROTATION_VARIANCE)
-    translation = mapping.translation_variation[frame] ** 2 / (2.0 * TRANSLATION_VARIANCE)
+def mixing_fractions(
+    mapping: Mapping, frame: int, parameters: Darby2014Parameters = DEFAULT_DARBY2014
+) -> tuple[float, float]:
+    """α and β: the probabilities that rotation and translation are redrawn (equations 12, 13)."""
+    rotation = mapping.rotation_variation[frame] ** 2 / (2.0 * parameters.rotation_variance)
+    translation = mapping.translation_variation[frame] ** 2 / (
+        2.0 * parameters.translation_variance
+    )
     return float(np.exp(-rotation)), float(np.exp(-translation))
 
 
@@ -104,20 +105,16 @@ def draw(
     return Particles(translation_frames, rotation_frames, translation_parts, rotation_parts)
 
 
-def systematic_resample(weights: Array, random: np.random.Generator) -> Indices:
-    """Indices (P,) of the particles that survive, in proportion to their weights."""
-    positions = (random.random() + np.arange(len(weights))) / len(weights)
-    positions = np.minimum(positions, np.nextafter(1.0, 0.0))  # rounding may give 1
-    cumulative = np.cumsum(weights)
-    return np.searchsorted(cumulative / cumulative[-1], positions, side="right")
-
-
 def _walk(
-    frames: Indices, mapping: Mapping, random: np.random.Generator, advance: float
+    frames: Indices,
+    mapping: Mapping,
+    random: np.random.Generator,
+    parameters: Darby2014Parameters,
 ) -> Indices:
     sequences = mapping.sequence_of(frames)
     first, end = mapping.starts[sequences], mapping.starts[sequences + 1]
-    local = np.abs(random.normal(frames - first + advance, INDEX_SIGMA))
+    advanced = frames - first + parameters.advance
+    local = np.abs(random.normal(advanced, parameters.index_sigma))
     return first + np.minimum(np.rint(local).astype(np.int64), end - first - 1)
 
 

@@ -1,39 +1,39 @@
 """The tracker: predict, re-initialise, weigh, estimate (Darby et al. 2014, TE1 to TE5)."""
 
 from collections.abc import Collection
+from dataclasses import dataclass
 
 import numpy as np
 
 from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.body.skeleton import mirror_pose
-from inhand_tracker.geometry.ageing import coasted
+from inhand_tracker.body.window import GAP_NS
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.camera import Intrinsics
-from inhand_tracker.geometry.estimate import LOST, Estimate, normalised_weights, weighted_estimate
+from inhand_tracker.geometry.estimate import Estimate, weighted_estimate
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.mapping.mapping import BodyPoseIndex
+from inhand_tracker.geometry.weights import even_weights, normalised_weights, systematic_resample
+from inhand_tracker.mapping.mapping import BodyPoseIndex, Mapping
 from inhand_tracker.methods.darby2014.likelihood import DEFAULT_TERMS, Likelihood, Term
 from inhand_tracker.methods.darby2014.nothing_near import draw_broadly, farthest_near
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014, Darby2014Parameters
 from inhand_tracker.methods.darby2014.particles import (
-    ADVANCE,
     Particles,
     draw,
     mixing_fractions,
     propagate,
     redraw,
-    systematic_resample,
 )
 from inhand_tracker.methods.darby2014.variants import Variant
+from inhand_tracker.methods.follower import Follower, FollowingTracker
 from inhand_tracker.model.model import Model
-from inhand_tracker.shape.viewpoints import VisiblePoints
-from inhand_tracker.sight.support import Support
-
-PARTICLES = 100
-GAP_NS = 500_000_000
 
 
-class ParticleTracker:
-    """Follows one object of one person through the frames of one camera."""
+class ParticleTracker(FollowingTracker):
+    """Follows one object of one person through the frames of one camera.
+
+    Without an image the particles weigh the same. A single frame's particles are all
+    discriminative (section 7).
+    """
 
     def __init__(
         self,
@@ -42,116 +42,102 @@ class ParticleTracker:
         *,
         left_handed: bool = False,
         terms: Collection[Term] = DEFAULT_TERMS,
-        particles: int = PARTICLES,
+        parameters: Darby2014Parameters = DEFAULT_DARBY2014,
         seed: int = 0,
-        advance: float = ADVANCE,
     ) -> None:
-        self._mapping = model.mapping
-        self._mirror_normal = model.shape.mirror_normal
-        self._method = method
-        self._left_handed = left_handed
-        self._count = particles
-        self._advance = advance
+        super().__init__(model, left_handed=left_handed)
+        self._object = _LearnedObject(
+            model.mapping,
+            BodyPoseIndex(model.mapping),
+            farthest_near(model.mapping, parameters) if method.falls_back else np.inf,
+            Likelihood(model, terms),
+            method,
+            parameters,
+            model.shape.mirror_normal if left_handed else None,
+        )
         self._seed = seed
         self._random = np.random.default_rng(seed)
-        self._index = BodyPoseIndex(model.mapping)
-        self._farthest_near = farthest_near(model.mapping) if method.falls_back else np.inf
-        self._likelihood = Likelihood(model, terms)
-        self._outline = VisiblePoints(model.viewpoints.directions, model.viewpoints.boundaries)
         self.restart()
 
-    def restart(self) -> None:
-        """Forget the person and the object: somebody else comes into view."""
-        self._reader = self.new_reader()
+    def _start(self, *, alone: bool) -> Follower:
+        random = np.random.default_rng(self._seed) if alone else self._random
+        return ParticleFollower(self._object, random, self.new_reader())
+
+
+@dataclass(frozen=True)
+class _LearnedObject:
+    """What all followers of a tracker share.
+
+    No training pose farther away than ``farthest_near`` counts as near. ``mirror_normal`` (3,) is
+    the object's for left-handed people, None for others.
+    """
+
+    mapping: Mapping
+    index: BodyPoseIndex
+    farthest_near: float
+    likelihood: Likelihood
+    method: Variant
+    parameters: Darby2014Parameters
+    mirror_normal: Array | None
+
+
+class ParticleFollower(Follower):
+    """Follows one object of one person, from when they came into view."""
+
+    def __init__(
+        self, tracked: _LearnedObject, random: np.random.Generator, reader: BodyReader
+    ) -> None:
+        super().__init__(reader)
+        self._object = tracked
+        self._random = random
         self._particles: Particles | None = None
-        self._weights = np.full(self._count, 1.0 / self._count)
-        self._estimate = LOST
-        self._time_ns = 0
-        self.support: Support | None = None
+        self._weights = even_weights(tracked.parameters.particles)
 
-    def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
-        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
-
-        Missing joints are NaN. Without an image the particles weigh the same. While the body is
-        not seen the last pose stands for a second, as predicted; then the object is lost.
-        """
-        body = None if joints is None else self._reader.read(joints)
-        return self.step_body(body, time_ns, image)
-
-    def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
-        """One frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
-        if body is None:
-            return self._coast(time_ns)
+    def estimate(self, body: Body, time_ns: int, image: Image | None) -> Estimate:
         particles = self._reinitialise(self._predict(time_ns), body)
-        translations, orientations = self._place(particles, body)
-        weights = self._weigh(translations, orientations, image)
-        self._particles, self._weights, self._time_ns = particles, weights, time_ns
-        self._estimate = weighted_estimate(translations, orientations, weights)
-        return self._estimate
+        poses = self._place(particles, body)
+        weights = self._weigh(poses, image)
+        self._particles, self._weights = particles, weights
+        return weighted_estimate(*poses, weights)
 
     def remember(self, body: Body, time_ns: int) -> None:
-        """A frame in which the object is not looked for: what the body did before says nothing."""
-
-    def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
-        """The object's pose in a frame by itself: every particle is discriminative (section 7).
-
-        ``joints`` (20, 3) as in ``step``; what is tracked is neither used nor changed.
-        """
-        body = self.new_reader().read(joints)
-        if body is None:
-            return LOST
-        random = np.random.default_rng(self._seed)
-        fresh = self._draw(body, *self._index.nearest(body.pose), random)
-        translations, orientations = self._place(fresh, body)
-        weights = self._weigh(translations, orientations, image)
-        return weighted_estimate(translations, orientations, weights)
-
-    def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:
-        """Pixels (B, 2) of the boundary of the object at an estimate; None for a lost one."""
-        if estimate.translation is None or estimate.rotation is None:
-            return None
-        points = self._outline.place(estimate.translation[None], estimate.rotation[None])
-        return camera.project(points[0])
-
-    def new_reader(self) -> BodyReader:
-        """A reader of bodies for trackers of this model and handedness."""
-        return BodyReader(self._mapping, left_handed=self._left_handed)
+        """Take nothing: what the body did before says nothing here."""
 
     def _predict(self, time_ns: int) -> Particles | None:
         """The particles a frame on; None at first and after a gap."""
         if self._particles is None or not 0 < time_ns - self._time_ns <= GAP_NS:
             return None
         survivors = self._particles.take(systematic_resample(self._weights, self._random))
-        return propagate(survivors, self._mapping, self._random, self._advance)
+        return propagate(survivors, self._object.mapping, self._random, self._object.parameters)
 
     def _reinitialise(self, particles: Particles | None, body: Body) -> Particles:
-        if particles is not None and not self._method.reinitialises:
+        """The particles with some, or all where there are none, drawn for this body pose."""
+        tracked = self._object
+        if particles is not None and not tracked.method.reinitialises:
             return particles
-        nearest, distance = self._index.nearest(body.pose)
-        fresh = self._draw(body, nearest, distance, self._random)
+        nearest, distance = tracked.index.nearest(body.pose)
+        fresh = self._draw(body, nearest, distance)
         if particles is None:
             return fresh
-        return redraw(particles, fresh, mixing_fractions(self._mapping, nearest), self._random)
+        fractions = mixing_fractions(tracked.mapping, nearest, tracked.parameters)
+        return redraw(particles, fresh, fractions, self._random)
 
-    def _draw(
-        self, body: Body, nearest: int, distance: float, random: np.random.Generator
-    ) -> Particles:
-        if distance > self._farthest_near:
-            return draw_broadly(self._count, self._mapping, body.pose, self._method, random)
-        return draw(self._count, self._mapping, self._index, nearest, self._method, random)
+    def _draw(self, body: Body, nearest: int, distance: float) -> Particles:
+        tracked, random = self._object, self._random
+        if distance > tracked.farthest_near:
+            return draw_broadly(
+                tracked.mapping, body.pose, tracked.method, random, tracked.parameters
+            )
+        count = tracked.parameters.particles
+        return draw(count, tracked.mapping, tracked.index, nearest, tracked.method, random)
 
     def _place(self, particles: Particles, body: Body) -> tuple[Array, Array]:
         """The particles' poses in the camera frame, (P, 3) and (P, 4)."""
-        poses = particles.poses(self._mapping, body.parts, body.height)
-        return mirror_pose(*poses, self._mirror_normal) if self._left_handed else poses
+        poses = particles.poses(self._object.mapping, body.parts, body.height)
+        normal = self._object.mirror_normal
+        return poses if normal is None else mirror_pose(*poses, normal)
 
-    def _weigh(self, translations: Array, orientations: Array, image: Image | None) -> Array:
+    def _weigh(self, poses: tuple[Array, Array], image: Image | None) -> Array:
         if image is None:
-            return np.full(self._count, 1.0 / self._count)
-        return normalised_weights(self._likelihood.log_weights(translations, orientations, image))
-
-    def _coast(self, time_ns: int) -> Estimate:
-        predicted = coasted(self._estimate, time_ns - self._time_ns)
-        if predicted.state == "lost":
-            self._estimate = LOST
-        return predicted
+            return even_weights(len(poses[0]))
+        return normalised_weights(self._object.likelihood.log_weights(*poses, image))

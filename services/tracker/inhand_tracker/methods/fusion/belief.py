@@ -17,16 +17,8 @@ from inhand_tracker.body.window import BodyWindow
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, mixture
+from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.prior.prior import Prior, predict
-
-CARRIED, AFRESH, LEFT = 0.6, 0.2, 0.2
-"""How likely the difference stays, is another one, or the object stays where it is."""
-DOUBT = 4.0
-"""By how much the prior's covariance is stretched where it speaks against what was believed."""
-LEFT_DEVIATIONS = np.array([0.01, 0.01, 0.01, 0.05, 0.05, 0.05])
-"""By how much an object that was left, or the camera, moves from frame to frame."""
-FORGETTING_S = 0.3
-"""How long what was seen makes sure of a pose: one frame errs as the next does."""
 
 
 @dataclass(frozen=True)
@@ -39,18 +31,18 @@ class BodyExpectation:
 
     @property
     def centre(self) -> Array:
-        """Of the object (3,), in its frame."""
+        """The object's centre (3,), in its frame."""
         centre, normal = self.prior.centre, self.mirror_normal
         return centre - 2.0 * (centre @ normal) * normal if self.left_handed else centre
 
     def expect(self, body: Body, window: BodyWindow, time_ns: int) -> PoseGaussian:
-        """What the body alone makes one expect; the window takes the frame."""
+        """Return the pose that the body alone makes likely; the window takes the frame."""
         descriptions = window.add(body.joints, time_ns, body.height)
         predicted = predict(self.prior, descriptions, find_anchors(body.joints), body.height)
         centre, covariance = predicted.centre, predicted.covariance
         rotation = rotations.from_matrix(predicted.rotation)
         if self.left_handed:
-            # A rotation vector is mirrored as an axis is: what x keeps of it, y and z turn round.
+            # A rotation vector is mirrored as an axis is: its x stays, its y and z change sign.
             signs = np.array([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
             origin = centre - rotations.rotate(rotation, self.prior.centre)
             origin, rotation = mirror_pose(origin, rotation, self.mirror_normal)
@@ -61,7 +53,7 @@ class BodyExpectation:
 
 @dataclass(frozen=True)
 class Belief:
-    """At the end of a frame: what the body alone made one expect, and what was believed."""
+    """The end of a frame: what the body alone made likely, and what was believed at last."""
 
     expected: PoseGaussian
     believed: PoseGaussian
@@ -69,28 +61,51 @@ class Belief:
 
 
 def carry_over(
-    before: Belief, expected: PoseGaussian, time_ns: int, persistence_s: float, *, leaves: bool
+    before: Belief,
+    expected: PoseGaussian,
+    time_ns: int,
+    persistence_s: float,
+    parameters: FusionParameters,
 ) -> PoseMixture:
-    """What is expected now, after what was believed before; first, that the difference stays.
+    """Mix what is expected now with what was believed before.
 
-    ``leaves`` tells whether the object may have been left somewhere.
+    The parts are, in this order: the difference from the prior stays; it is another one; and, where
+    ``parameters.leaves``, the object stays where it was. ``persistence_s`` is the time constant
+    with which a difference fades.
     """
     elapsed_s = (time_ns - before.time_ns) / 1e9
-    believed = before.believed
+    parts = [_stays(before, expected, elapsed_s, persistence_s, parameters.forgetting_s), expected]
+    if parameters.leaves:
+        parts.append(_left(before.believed, parameters))
+    shares = [parameters.stays_share, parameters.afresh_share, parameters.left_share]
+    off = np.array([expected.square_distance(part) for part in parts])
+    return mixture(parts, np.log(shares)[: len(parts)] - 0.5 * off / parameters.doubt)
+
+
+def _stays(
+    before: Belief,
+    expected: PoseGaussian,
+    elapsed_s: float,
+    persistence_s: float,
+    forgetting_s: float,
+) -> PoseGaussian:
+    """The pose that differs from the expected one as it did before, a little less."""
     kept = float(np.exp(-elapsed_s / persistence_s))
     inverse = rotations.conjugate(before.expected.rotation)
-    moved = rotations.rotate(inverse, believed.centre - before.expected.centre)
-    turned = rotations.to_vector(rotations.multiply(inverse, believed.rotation))
+    moved = rotations.rotate(inverse, before.believed.centre - before.expected.centre)
+    turned = rotations.to_vector(rotations.multiply(inverse, before.believed.rotation))
     rotation = rotations.multiply(expected.rotation, rotations.from_vector(kept * turned))
-    turn = rotations.multiply(rotation, rotations.conjugate(believed.rotation))
+    turn = rotations.multiply(rotation, rotations.conjugate(before.believed.rotation))
     axes = np.kron(np.eye(2), rotations.to_matrix(turn))
-    sure = float(np.exp(-elapsed_s / FORGETTING_S))
-    carried = PoseGaussian(
+    sure = float(np.exp(-elapsed_s / forgetting_s)) ** 2
+    return PoseGaussian(
         expected.centre + rotations.rotate(expected.rotation, kept * moved),
         rotation,
-        sure**2 * axes @ believed.covariance @ axes.T + (1.0 - sure**2) * expected.covariance,
+        sure * axes @ before.believed.covariance @ axes.T + (1.0 - sure) * expected.covariance,
     )
-    left = replace(believed, covariance=believed.covariance + np.diag(np.square(LEFT_DEVIATIONS)))
-    parts = (carried, expected, left) if leaves else (carried, expected)
-    off = np.array([expected.square_distance(part) for part in parts])
-    return mixture(parts, np.log([CARRIED, AFRESH, LEFT])[: len(parts)] - 0.5 * off / DOUBT)
+
+
+def _left(believed: PoseGaussian, parameters: FusionParameters) -> PoseGaussian:
+    """The pose of an object that stays where it was believed to be."""
+    deviations = np.repeat([parameters.left_deviation_m, parameters.left_deviation_rad], 3)
+    return replace(believed, covariance=believed.covariance + np.diag(np.square(deviations)))

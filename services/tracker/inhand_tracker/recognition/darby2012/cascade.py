@@ -10,12 +10,14 @@ import numpy as np
 
 from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.body.skeleton import Bases, mirror_pose
+from inhand_tracker.body.window import GAP_NS
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
-from inhand_tracker.geometry.estimate import LOST, Estimate, normalised_weights, weighted_estimate
+from inhand_tracker.geometry.estimate import LOST, Estimate, weighted_estimate
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.geometry.weights import normalised_weights
 from inhand_tracker.methods.darby2014.edges import chamfer_of, edge_log_weights
-from inhand_tracker.methods.darby2014.tracker import GAP_NS, PARTICLES
+from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
 from inhand_tracker.model.model import Model
 from inhand_tracker.recognition.answer import Recognition, boxes_around, known_action
 from inhand_tracker.recognition.darby2012.action_particles import (
@@ -46,7 +48,7 @@ class Cascade2012:
         models: Sequence[Model],
         *,
         left_handed: bool = False,
-        particles: int = PARTICLES,
+        particles: int = DEFAULT_DARBY2014.particles,
         seed: int = 0,
     ) -> None:
         self._svm = recogniser.svm

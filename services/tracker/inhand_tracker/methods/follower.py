@@ -1,0 +1,109 @@
+"""What trackers of every method do alike: read bodies, age estimates, draw outlines.
+
+A method gives its part as a ``Follower``: the estimate of one frame.
+"""
+
+from abc import ABC, abstractmethod
+
+from inhand_tracker.body.reader import Body, BodyReader
+from inhand_tracker.geometry.ageing import coasted
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.estimate import LOST, Estimate
+from inhand_tracker.geometry.image import Image
+from inhand_tracker.model.model import Model
+from inhand_tracker.shape.viewpoints import VisiblePoints
+from inhand_tracker.sight.support import Support
+
+
+class Follower(ABC):
+    """Follows one object of one person, from when they came into view."""
+
+    def __init__(self, reader: BodyReader) -> None:
+        self._reader = reader
+        self._estimate = LOST
+        self._time_ns = 0
+        self.support: Support | None = None
+
+    @abstractmethod
+    def estimate(self, body: Body, time_ns: int, image: Image | None) -> Estimate:
+        """Estimate the object's pose in a frame in which the body is seen."""
+
+    @abstractmethod
+    def remember(self, body: Body, time_ns: int) -> None:
+        """Take a frame in which the object is not looked for."""
+
+    def step(self, joints: Array | None, time_ns: int, image: Image | None) -> Estimate:
+        body = None if joints is None else self._reader.read(joints)
+        return self.step_body(body, time_ns, image)
+
+    def step_body(self, body: Body | None, time_ns: int, image: Image | None) -> Estimate:
+        self.support = None
+        if body is None:
+            return self._coast(time_ns)
+        self._estimate = self.estimate(body, time_ns, image)
+        self._time_ns = time_ns
+        return self._estimate
+
+    def _coast(self, time_ns: int) -> Estimate:
+        predicted = coasted(self._estimate, time_ns - self._time_ns)
+        if predicted.state == "lost":
+            self._estimate = LOST
+        return predicted
+
+
+class FollowingTracker(ABC):
+    """An ``ObjectTracker`` that starts a follower whenever somebody comes into view.
+
+    A method's tracker calls ``restart`` when it has made itself.
+    """
+
+    def __init__(self, model: Model, *, left_handed: bool) -> None:
+        self._mapping = model.mapping
+        self._left_handed = left_handed
+        self._outline = VisiblePoints(model.viewpoints.directions, model.viewpoints.boundaries)
+        self._follower: Follower
+
+    @abstractmethod
+    def _start(self, *, alone: bool) -> Follower:
+        """A follower of somebody new; ``alone`` for one frame that leaves no trace in others."""
+
+    def restart(self) -> None:
+        """Forget the person and the object: somebody else comes into view."""
+        self._follower = self._start(alone=False)
+
+    def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
+        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
+
+        Missing joints are NaN. While the body is not seen the last pose stands for a second, as
+        predicted; then the object is lost.
+        """
+        return self._follower.step(joints, time_ns, image)
+
+    def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
+        """One frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
+        return self._follower.step_body(body, time_ns, image)
+
+    @property
+    def support(self) -> Support | None:
+        """What the last image says for the object; None where it says nothing."""
+        return self._follower.support
+
+    def remember(self, body: Body, time_ns: int) -> None:
+        """A frame in which the object is not looked for; what the body did before counts later."""
+        self._follower.remember(body, time_ns)
+
+    def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
+        """The object's pose in a frame by itself; what is tracked is neither used nor changed."""
+        return self._start(alone=True).step(joints, 1, image)
+
+    def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:
+        """Pixels (B, 2) of the boundary of the object at an estimate; None for a lost one."""
+        if estimate.translation is None or estimate.rotation is None:
+            return None
+        points = self._outline.place(estimate.translation[None], estimate.rotation[None])
+        return camera.project(points[0])
+
+    def new_reader(self) -> BodyReader:
+        """A reader of bodies for trackers of this model and handedness."""
+        return BodyReader(self._mapping, left_handed=self._left_handed)

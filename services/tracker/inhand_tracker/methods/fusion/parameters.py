@@ -1,0 +1,82 @@
+"""Every number of fusion that can be tuned.
+
+The same numbers serve every object and every interaction. They were chosen on simulated people;
+what one of them is worth on a dataset shows `inhand bench ablation DATASET --vary FIELD=VALUE`.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class FusionParameters:
+    """How fusion believes, searches an image, and states what it found."""
+
+    # What is believed before an image is seen (belief).
+    carries: bool = True
+    """Whether what was seen before is carried over. False only to show what that is worth."""
+    leaves: bool = True
+    """Whether an object may have been left where it was. False only to show what that is worth."""
+    stays_share: float = 0.6
+    """Probability that the pose differs from the prior's as it did a frame before."""
+    afresh_share: float = 0.2
+    """Probability that the pose differs from the prior's in a new way."""
+    left_share: float = 0.2
+    """Probability that the object stays where it was, whatever the body does."""
+    doubt: float = 4.0
+    """Factor on the prior's covariance where it speaks against what was believed."""
+    left_deviation_m: float = 0.01
+    """Standard deviation, in metres, of a frame's movement of an object that was left, or of the
+    camera."""
+    left_deviation_rad: float = 0.05
+    """Standard deviation, in radians, of a frame's turn of an object that was left, or of the
+    camera."""
+    forgetting_s: float = 0.3
+    """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
+
+    # How an image is searched (search, posterior).
+    hypotheses: int = 250
+    """Number of hypotheses in each round; cost grows with it (`inhand bench tracker`)."""
+    rounds: int = 2
+    """Number of rounds of hypotheses; each after the first is nearer to the best so far."""
+    best_hypotheses: int = 20
+    """Number of hypotheses, best first, around which the next round is drawn."""
+    round_shrinkage: float = 0.35
+    """Factor, each round, on the spread of what is believed that new hypotheses are drawn with."""
+    refines: bool = True
+    """Whether the best hypotheses are refined. False only to show what that is worth."""
+    refined_hypotheses: int = 3
+    """Number of hypotheses, best first, that are refined, beside the mean of each part believed."""
+    image_temper: float = 0.4
+    """Share of an image's log-likelihood that counts: one frame's errors are the next one's too."""
+    refinement_temper: float = 0.1
+    """Share of the image's information that refinement keeps; neighbouring pixels are not
+    independent."""
+    least_sharpness: float = 1e-3
+    """Sharpness below which no image is taken to be, so that none is divided by nothing."""
+    blurred_pixels: float = 20.0
+    """Pixels that an object goes from frame to frame where its image counts half: its outline is a
+    smear. Decided on real bodies (`inhand simulate --bodies`), where a fast club misled."""
+    region_margin: float = 1.3
+    """Radius, in the object's radii, of what is prepared of an image around each hypothesis."""
+    same_mode_m: float = 0.01
+    """Metres within which two refined poses are the same one, if they agree in rotation."""
+    same_mode_rad: float = 0.1
+    """Radians within which two refined poses are the same one, if they agree in translation."""
+
+    # What an image teaches (search).
+    around_rate: float = 0.3
+    """Share of the newest frame in the learned colours of the surroundings."""
+    learning_rate: float = 0.05
+    """Share of the newest frame in the learned colours of the object."""
+    learning_log_likelihood: float = 3.0
+    """Log-likelihood ratio by which an image must support an estimate to teach its colours."""
+
+    # What is stated (tracker).
+    seen_covariance_scale: float = 0.7
+    """Factor on the covariance of an estimate that used an image: Laplace's approximation is too
+    wide. The share of truths within the 90 % region shows it (`inhand evaluate`)."""
+    confidence_samples: int = 256
+    """Number of poses drawn from an estimate to find its confidence."""
+
+
+DEFAULT_FUSION = FusionParameters()
