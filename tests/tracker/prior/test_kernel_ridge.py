@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from inhand_tracker.prior import kernel_ridge
-from inhand_tracker.prior.kernel_ridge import JITTER, RIDGE, WIDTH, fit, gaussian, squared_distances
+from inhand_tracker.prior.kernel_ridge import fit, gaussian, squared_distances
+from inhand_tracker.prior.parameters import DEFAULT_PRIOR_LEARNING
 from scipy.spatial.distance import cdist
 
 
@@ -21,11 +22,12 @@ def dense(
 ) -> tuple[np.ndarray, float]:
     """Weights and kernel width of the subset of regressors, by its normal equations in double
     precision: (K_nm' K_nm + ridge (K_mm + jitter)) a = K_nm' y."""
+    ridge, jitter = DEFAULT_PRIOR_LEARNING.ridge, DEFAULT_PRIOR_LEARNING.jitter
     between = cdist(landmarks, landmarks, "sqeuclidean")
-    width = WIDTH**2 * np.median(between)
-    small = np.exp(-between / (2 * width)) + JITTER * np.eye(len(landmarks))
+    width = DEFAULT_PRIOR_LEARNING.kernel_width**2 * np.median(between)
+    small = np.exp(-between / (2 * width)) + jitter * np.eye(len(landmarks))
     tall = np.exp(-cdist(inputs, landmarks, "sqeuclidean") / (2 * width))
-    weights = np.linalg.solve(tall.T @ tall + RIDGE * small, tall.T @ (targets - offset))
+    weights = np.linalg.solve(tall.T @ tall + ridge * small, tall.T @ (targets - offset))
     return weights, width
 
 

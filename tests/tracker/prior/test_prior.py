@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,19 +11,9 @@ from inhand_tracker.body import skeleton as body
 from inhand_tracker.body.anchors import ANCHORS, find_anchors
 from inhand_tracker.body.window import VIEWS, BodyWindow
 from inhand_tracker.mapping.learning import LabelledSequence
-from inhand_tracker.model.model_file import load_model, save_model
+from inhand_tracker.prior.combination import fuse, repeated
 from inhand_tracker.prior.learning import CHI_SQUARE_90, learn_prior
-from inhand_tracker.prior.prior import (
-    TARGETS,
-    Prediction,
-    Prior,
-    fuse,
-    locality,
-    nearest_rotation,
-    predict,
-    repeated,
-    weights_at,
-)
+from inhand_tracker.prior.prior import TARGETS, Prediction, Prior, predict
 from people import (
     FRAME_NS,
     HAND,
@@ -171,7 +160,7 @@ def single_predictions(prior: Prior, joints: np.ndarray) -> tuple[np.ndarray, np
         anchors = repeated(find_anchors(one), VIEWS)
         alone = np.eye(VIEWS * len(ANCHORS))
         placed = [
-            fuse(said[None], anchors, height, only[None], only[None], prior.spread)
+            fuse(said[None], anchors, height, (only[None], only[None]), prior.spread)
             for only in alone
         ]
         centres.append([place[0] for place, _ in placed])
@@ -231,44 +220,7 @@ def test_a_pose_like_none_learned_is_less_sure() -> None:
     assert np.linalg.det(odd.covariance) > 10.0 * np.linalg.det(usual.covariance)
 
 
-def test_landmarks_that_are_all_out_of_reach_say_the_same() -> None:
-    local, nearness = locality(np.array([[0.0, 0.0, 0.0, 0.0], [1e-320, 0.0, 0.0, 0.0]]))
-    np.testing.assert_allclose(local, 0.25)
-    np.testing.assert_allclose(nearness, 0.0)
-
-
-def test_independent_predictions_weigh_by_their_inverse_variance() -> None:
-    variances = np.array([0.01, 0.02, 0.04])
-    weights = weights_at(np.ones((1, 1)), np.diag(variances)[None].astype(np.float32))
-    np.testing.assert_allclose(weights[0], np.array([4, 2, 1]) / 7, rtol=1e-5)
-
-
-@given(st.integers(0, 200), st.integers(1, 8))
-def test_weights_are_shares(seed: int, rank: int) -> None:
-    errors = np.random.default_rng(seed).normal(size=(5, 6, rank))
-    products = (errors @ np.swapaxes(errors, 1, 2)).astype(np.float32)
-    weights = weights_at(np.full((2, 5), 0.2), products)
-    assert (weights >= 0.0).all()
-    np.testing.assert_allclose(weights.sum(axis=1), 1.0)
-
-
-def test_predictions_without_error_weigh_the_same() -> None:
-    weights = weights_at(np.ones((1, 1)), np.zeros((1, 4, 4), np.float32))
-    np.testing.assert_allclose(weights, 0.25)
-
-
-@given(st.integers(0, 200))
-def test_no_rotation_is_nearer_than_the_nearest(seed: int) -> None:
-    random = np.random.default_rng(seed)
-    matrix = random.normal(size=(3, 3))
-    found = nearest_rotation(matrix)
-    assert np.linalg.det(found) == pytest.approx(1.0)
-    others = Rotation.random(200, random_state=seed).as_matrix()
-    distances = np.linalg.norm(others - matrix, axis=(1, 2))
-    assert np.linalg.norm(found - matrix) <= distances.min() + 1e-9
-
-
-# --- Handedness, gaps, files
+# --- Handedness, gaps
 
 
 def mirrored(one: LabelledSequence) -> LabelledSequence:
@@ -308,26 +260,3 @@ def test_one_person_s_recordings_hold_each_other_out() -> None:
     (one,) = strangers(1)
     off = deviations(predictions(prior, one.joints), one)
     assert np.linalg.norm(off[:, :3], axis=1).mean() < 0.02
-
-
-def test_a_prior_comes_back_from_its_file_as_it_was(tmp_path: Path) -> None:
-    save_model(wave_model(), tmp_path / "wave.model")
-    loaded = load_model(tmp_path / "wave.model").prior
-    assert loaded is not None
-    assert wave_model().prior is not None
-    assert loaded.persistence_s == wave_model().prior.persistence_s
-    for one, other in zip(
-        predictions(loaded, unseen_wave(5)),
-        predictions(wave_model().prior, unseen_wave(5)),
-        strict=True,
-    ):
-        np.testing.assert_array_equal(one.centre, other.centre)
-        np.testing.assert_array_equal(one.rotation, other.rotation)
-        np.testing.assert_array_equal(one.covariance, other.covariance)
-
-
-def test_a_model_of_a_release_without_priors_still_loads(tmp_path: Path) -> None:
-    save_model(replace(wave_model(), prior=None), tmp_path / "old.model")
-    with np.load(tmp_path / "old.model") as archive:
-        assert not [name for name in archive.files if name.startswith("prior")]
-    assert load_model(tmp_path / "old.model").prior is None

@@ -12,13 +12,10 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
+from inhand_tracker.prior.parameters import DEFAULT_PRIOR_LEARNING, PriorLearningParameters
 
-WIDTH = 0.5
-"""Of the Gaussian kernel, as a share of the usual distance between landmarks."""
-RIDGE = 0.1
-"""How much regression is held back: the variance of noise over that of the signal."""
 CHUNK = 8192
-JITTER = 1e-4
+"""Number of samples that are summed up at once, to bound the memory."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +43,8 @@ def gaussian(inputs: Singles, landmarks: Singles, width: float) -> Array:
 
 
 def squared_distances(inputs: Singles, others: Singles) -> Array:
-    """(T, L), in double precision: nearly equal poses must not come out at a distance below 0."""
+    """Squared distances (T, L), in double precision, so that those of nearly equal poses are not
+    below 0."""
     one, other = inputs.astype(np.float64), others.astype(np.float64)
     products = one @ other.T
     sums = np.square(one).sum(axis=1)[:, None] + np.square(other).sum(axis=1)
@@ -54,17 +52,22 @@ def squared_distances(inputs: Singles, others: Singles) -> Array:
 
 
 def fit(
-    inputs: Singles, targets: Singles, groups: Indices, landmark_rows: Indices
+    inputs: Singles,
+    targets: Singles,
+    groups: Indices,
+    landmark_rows: Indices,
+    parameters: PriorLearningParameters = DEFAULT_PRIOR_LEARNING,
 ) -> tuple[KernelRidge, Array]:
     """Learn from inputs (N, D) and targets (N, M); also the landmarks' held-out residuals (L, M).
 
-    ``groups`` (N,) tells what is held out together: a landmark's residual, target less prediction,
-    is that of a regression without any sample of its group.
+    Samples of one of ``groups`` (N,) are held out together: a landmark's residual, target less
+    prediction, is that of a regression without any sample of its group.
     """
     landmarks = inputs[landmark_rows]
     between = squared_distances(landmarks, landmarks)
-    width = max(float(np.median(between)), 1e-12) * WIDTH**2
-    root = np.linalg.cholesky(np.exp(between / (-2.0 * width)) + JITTER * np.eye(len(landmarks)))
+    width = max(float(np.median(between)), 1e-12) * parameters.kernel_width**2
+    jitter = parameters.jitter * np.eye(len(landmarks))
+    root = np.linalg.cholesky(np.exp(between / (-2.0 * width)) + jitter)
     offset = targets.mean(axis=0, dtype=np.float64)
 
     def features(rows: Indices) -> Array:
@@ -78,10 +81,10 @@ def fit(
     residuals = np.empty((len(landmarks), targets.shape[1]))
     for name, (group_scatter, group_cross) in zip(names, sums, strict=True):
         held_out = np.flatnonzero(groups[landmark_rows] == name)
-        weights = _solve(scatter - group_scatter, cross - group_cross)
+        weights = _solve(scatter - group_scatter, cross - group_cross, parameters.ridge)
         rows = landmark_rows[held_out]
         residuals[held_out] = targets[rows] - offset - features(rows) @ weights
-    coefficients = solve_triangular(root.T, _solve(scatter, cross), lower=False)
+    coefficients = solve_triangular(root.T, _solve(scatter, cross, parameters.ridge), lower=False)
     return KernelRidge(landmarks, width, np.asarray(coefficients), offset), residuals
 
 
@@ -103,5 +106,5 @@ def _chunks(rows: Indices) -> Sequence[Indices]:
     return [rows[start : start + CHUNK] for start in range(0, len(rows), CHUNK)]
 
 
-def _solve(scatter: Array, cross: Array) -> Array:
-    return np.asarray(np.linalg.solve(scatter + RIDGE * np.eye(len(scatter)), cross), np.float64)
+def _solve(scatter: Array, cross: Array, ridge: float) -> Array:
+    return np.asarray(np.linalg.solve(scatter + ridge * np.eye(len(scatter)), cross), np.float64)

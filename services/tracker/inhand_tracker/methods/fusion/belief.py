@@ -18,6 +18,7 @@ from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, mixture
 from inhand_tracker.methods.fusion.parameters import FusionParameters
+from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
 from inhand_tracker.prior.prior import Prior, predict
 
 
@@ -28,6 +29,7 @@ class BodyExpectation:
     prior: Prior
     mirror_normal: Array
     left_handed: bool
+    parameters: PriorParameters = DEFAULT_PRIOR
 
     @property
     def centre(self) -> Array:
@@ -38,7 +40,8 @@ class BodyExpectation:
     def expect(self, body: Body, window: BodyWindow, time_ns: int) -> PoseGaussian:
         """Return the pose that the body alone makes likely; the window takes the frame."""
         descriptions = window.add(body.joints, time_ns, body.height)
-        predicted = predict(self.prior, descriptions, find_anchors(body.joints), body.height)
+        anchors = find_anchors(body.joints)
+        predicted = predict(self.prior, descriptions, anchors, body.height, self.parameters)
         centre, covariance = predicted.centre, predicted.covariance
         rotation = rotations.from_matrix(predicted.rotation)
         if self.left_handed:

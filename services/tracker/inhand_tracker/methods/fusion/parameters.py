@@ -6,10 +6,15 @@ what one of them is worth on a dataset shows `inhand bench ablation DATASET --va
 
 from dataclasses import dataclass
 
+from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
+
 
 @dataclass(frozen=True)
 class FusionParameters:
     """How fusion believes, searches an image, and states what it found."""
+
+    prior: PriorParameters = DEFAULT_PRIOR
+    """How the body's predictions are combined."""
 
     # What is believed before an image is seen (belief).
     carries: bool = True

@@ -46,7 +46,9 @@ class FusionTracker(FollowingTracker):
                 "train it again, or choose another method"
             )
         super().__init__(model, left_handed=left_handed)
-        expectation = BodyExpectation(model.prior, model.shape.mirror_normal, left_handed)
+        expectation = BodyExpectation(
+            model.prior, model.shape.mirror_normal, left_handed, parameters.prior
+        )
         radius = np.linalg.norm(model.shape.vertices - model.prior.centre, axis=1).max()
         sphere = BoundingSphere(expectation.centre, float(radius))
         self._object = _FusedObject(expectation, sphere, parameters)
