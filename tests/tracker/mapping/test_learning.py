@@ -5,10 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from inhand_tracker.mapping import mapping as mapping_module
-from inhand_tracker.mapping import radii as radii_module
 from inhand_tracker.mapping.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.mapping.mapping import Mapping
+from inhand_tracker.mapping.parameters import DEFAULT_MAPPING
 from people import STANDING, held, move, quaternion_of, same_rotation, sequence, waving
 from scipy.spatial.transform import Rotation
 
@@ -341,20 +340,21 @@ def test_frames_without_a_pelvis_are_left_out() -> None:
     assert np.isfinite(mapping.rotations).all()
 
 
-def test_every_stage_is_told_once_a_sequence() -> None:
-    told: Counter[str] = Counter()
-    learn(CASES["three participants"](), NORMAL, lambda stage: told.update([stage]))
-    assert told == dict.fromkeys(STAGES, 3)
+def test_every_stage_is_reported_once_a_sequence() -> None:
+    reported: Counter[str] = Counter()
+    learn(CASES["three participants"](), NORMAL, lambda stage: reported.update([stage]))
+    assert reported == dict.fromkeys(STAGES, 3)
 
 
-def test_clusters_of_a_long_sequence_are_those_of_its_stretches(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def learned(recordings: list[LabelledSequence], **parameters: int) -> Mapping:
+    return learn(recordings, NORMAL, parameters=replace(DEFAULT_MAPPING, **parameters))
+
+
+def test_clusters_of_a_long_sequence_are_those_of_its_stretches() -> None:
     """Cut into stretches, frames measure as if each stretch had been learned by itself."""
     whole = [sequence(f"p{i}", 48, seed=i) for i in range(2)]
     uncut = learn(whole, NORMAL)
-    monkeypatch.setattr(mapping_module, "LONGEST_STRETCH", 24)
-    cut = learn(whole, NORMAL)
+    cut = learned(whole, longest_stretch=24)
     np.testing.assert_array_equal(cut.starts, uncut.starts)
     np.testing.assert_array_equal(cut.radii, uncut.radii)
     assert not np.allclose(cut.translation_variation, uncut.translation_variation)
@@ -369,23 +369,17 @@ def test_clusters_of_a_long_sequence_are_those_of_its_stretches(
 
 
 @pytest.mark.parametrize("participants", [2, 5, 11])
-def test_radii_of_many_frames_are_hardly_larger(
-    participants: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_radii_of_many_frames_are_hardly_larger(participants: int) -> None:
     people = [sequence(f"p{i}", 60, seed=i) for i in range(participants)]
     exact = learn(people, NORMAL).radii
-    monkeypatch.setattr(radii_module, "EXACT_FRAMES", 0)
-    grouped = learn(people, NORMAL).radii
+    grouped = learned(people, exact_frames=0).radii
     assert (grouped >= exact * (1.0 - 1e-5)).all()
-    if participants <= radii_module.GROUPS:
+    if participants <= DEFAULT_MAPPING.groups:
         np.testing.assert_allclose(grouped, exact, rtol=1e-5)
     assert np.median(grouped) <= 1.05 * np.median(exact)
 
 
-def test_many_frames_of_one_participant_are_compared_between_recordings(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_many_frames_of_one_participant_are_compared_between_recordings() -> None:
     recordings = CASES["a single participant"]()
     exact = learn(recordings, NORMAL).radii
-    monkeypatch.setattr(radii_module, "EXACT_FRAMES", 0)
-    np.testing.assert_allclose(learn(recordings, NORMAL).radii, exact, rtol=1e-5)
+    np.testing.assert_allclose(learned(recordings, exact_frames=0).radii, exact, rtol=1e-5)

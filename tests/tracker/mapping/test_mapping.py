@@ -1,7 +1,10 @@
 import numpy as np
 import pytest
-from inhand_tracker.mapping.mapping import LONGEST_STRETCH, BodyPoseIndex, Mapping, stretches
-from inhand_tracker.mapping.pose_search import LIST_LENGTH, PROBES, PoseSearch
+from inhand_tracker.mapping.mapping import BodyPoseIndex, Mapping, stretches
+from inhand_tracker.mapping.parameters import DEFAULT_MAPPING
+from inhand_tracker.mapping.pose_search import PoseSearch
+
+LONGEST_STRETCH = DEFAULT_MAPPING.longest_stretch
 
 
 def mapping_of(poses: list[np.ndarray], radii: list[float]) -> Mapping:
@@ -120,7 +123,7 @@ def test_a_cluster_does_not_leave_its_stretch() -> None:
 
 
 def test_no_nearest_pose_is_missed_while_all_lists_are_looked_through() -> None:
-    count = LIST_LENGTH * PROBES // 4
+    count = DEFAULT_MAPPING.list_length * DEFAULT_MAPPING.probes // 4
     poses, asked = walking(count), walking(count, seed=1)[::400]
     frames, distances = PoseSearch(poses).nearest(asked)
     for pose, frame, distance in zip(asked, frames, distances, strict=True):

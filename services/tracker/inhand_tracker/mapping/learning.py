@@ -1,12 +1,12 @@
 """Learning from labelled sequences (Darby et al. 2014, TR1 to TR3).
 
-For every training frame: how much the object's pose varies among frames of like body pose (a low
-variation is a good moment to re-initialise), and how stable and how close the object is relative
-to each of the 19 parts.
+Each training frame is measured: how much the object's pose varies among frames of like body pose
+(a low variation is a good moment to re-initialise), and how stable and how close the object is
+relative to each of the 19 parts.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
@@ -24,14 +24,16 @@ from inhand_tracker.body.skeleton import (
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.mapping.mapping import Mapping
-from inhand_tracker.mapping.measures import Measures, RelativePoses, measure
+from inhand_tracker.mapping.measures import Measures, RelativePoses, measure_sequence
+from inhand_tracker.mapping.parameters import DEFAULT_MAPPING, MappingParameters
 from inhand_tracker.mapping.radii import cluster_radii
 
 Stage = Literal["relative poses", "cluster radii", "clusters"]
 STAGES: tuple[Stage, ...] = ("relative poses", "cluster radii", "clusters")
-"""What learning goes through, one after the other, each sequence by sequence."""
+"""The stages of learning, in their order; each goes through all sequences."""
 
 PIECE = 8192
+"""Number of frames that are made relative to the parts at once, to bound the memory."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,25 @@ class LabelledSequence:
     rotations: Array
     frame_rate: float = 30.0
 
+    def right_handed(self, mirror_normal: Array) -> "LabelledSequence":
+        """The sequence with unit quaternions, and mirrored where the person is left-handed.
+
+        ``mirror_normal`` (3,) is the object's.
+        """
+        with np.errstate(invalid="ignore", divide="ignore"):
+            unit = replace(self, rotations=rotations.normalise(self.rotations))
+        if not self.left_handed:
+            return unit
+        translations, turns = mirror_pose(unit.translations, unit.rotations, mirror_normal)
+        return LabelledSequence(
+            self.participant,
+            False,
+            mirror_joints(self.joints),
+            translations,
+            turns,
+            self.frame_rate,
+        )
+
 
 class UnusableSequenceError(ValueError):
     """A sequence, or a set of them, that nothing can be learned from."""
@@ -59,6 +80,7 @@ def learn(
     sequences: Sequence[LabelledSequence],
     mirror_normal: Array,
     on_sequence: Callable[[Stage], None] = lambda stage: None,
+    parameters: MappingParameters = DEFAULT_MAPPING,
 ) -> Mapping:
     """Learn a mapping; left-handed people are mirrored, so that every mapping is right-handed.
 
@@ -66,8 +88,8 @@ def learn(
     stage is done with a sequence. Raises UnusableSequenceError.
 
     Time and memory grow with the number of frames. Exact up to 20,000 frames in sequences of up
-    to 2,048; beyond, radii and clusters come from a part of the frames (``cluster_radii``,
-    ``stretches``).
+    to 2,048 (``parameters``); beyond, radii and clusters come from a part of the frames
+    (``cluster_radii``, ``stretches``).
     """
     if len(sequences) < 2:
         raise UnusableSequenceError(
@@ -76,9 +98,10 @@ def learn(
     participants = tuple(sequence.participant for sequence in sequences)
     poses, starts = _relative_poses(sequences, mirror_normal, on_sequence)
     radii = cluster_radii(
-        poses.body_poses, starts, participants, lambda: on_sequence("cluster radii")
+        poses.body_poses, starts, participants, lambda: on_sequence("cluster radii"), parameters
     )
-    measures = _measures(poses, starts, radii, on_sequence)
+    longest = parameters.longest_stretch
+    measures = _measures(poses, starts, radii, longest, lambda: on_sequence("clusters"))
     return Mapping(
         participants=participants,
         starts=starts,
@@ -113,12 +136,8 @@ def _relative_poses(
 
 def _pieces(sequence: LabelledSequence, mirror_normal: Array) -> Iterator[RelativePoses]:
     """TR1 of the usable frames of a sequence, in pieces that need little memory."""
+    sequence = sequence.right_handed(mirror_normal)
     joints, translations = sequence.joints, sequence.translations
-    with np.errstate(invalid="ignore", divide="ignore"):
-        orientations = rotations.normalise(sequence.rotations)
-    if sequence.left_handed:
-        joints = mirror_joints(joints)
-        translations, orientations = mirror_pose(translations, orientations, mirror_normal)
     height = standing_height(part_lengths(joints))
     with np.errstate(invalid="ignore", divide="ignore"):
         pelvis = pelvis_basis(joints)
@@ -127,7 +146,7 @@ def _pieces(sequence: LabelledSequence, mirror_normal: Array) -> Iterator[Relati
         np.isfinite(poses).all(axis=1)
         & np.isfinite(pelvis.rotations).all(axis=1)
         & np.isfinite(translations).all(axis=1)
-        & np.isfinite(orientations).all(axis=1)
+        & np.isfinite(sequence.rotations).all(axis=1)
     )
     if len(usable) < 2:
         raise UnusableSequenceError(
@@ -139,7 +158,7 @@ def _pieces(sequence: LabelledSequence, mirror_normal: Array) -> Iterator[Relati
         frames = usable[start : start + PIECE]
         bases = part_bases(joints[frames], pelvis_basis(joints[frames]))
         relative_translations, relative_rotations = bases.from_camera(
-            translations[frames, None, :], orientations[frames, None, :]
+            translations[frames, None, :], sequence.rotations[frames, None, :]
         )
         yield RelativePoses(
             poses[frames],
@@ -153,12 +172,14 @@ def _measures(
     poses: RelativePoses,
     starts: Indices,
     radii: Array,
-    on_sequence: Callable[[Stage], None],
+    longest_stretch: int,
+    on_sequence: Callable[[], None],
 ) -> Measures:
     """TR2 and TR3 of all frames."""
     measures = Measures.empty(len(poses.body_poses))
     for (start, end), radius in zip(pairwise(starts), radii, strict=True):
-        for rows, of_stretch in measure(poses.rows(slice(start, end)), radius):
+        sequence = poses.rows(slice(start, end))
+        for rows, of_stretch in measure_sequence(sequence, radius, longest_stretch):
             measures.put(slice(start + rows.start, start + rows.stop), of_stretch)
-        on_sequence("clusters")
+        on_sequence()
     return measures

@@ -6,9 +6,8 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from inhand_tracker.geometry.arrays import Array, Indices
+from inhand_tracker.mapping.parameters import DEFAULT_MAPPING
 from inhand_tracker.mapping.pose_search import PoseSearch
-
-LONGEST_STRETCH = 2048
 
 
 @dataclass(frozen=True)
@@ -38,14 +37,14 @@ class Mapping:
         return np.searchsorted(self.starts, frames, side="right") - 1
 
 
-def stretches(frames: int) -> Indices:
-    """Where the stretches of a sequence of so many frames begin, and its end, (K + 1,).
+def stretches(frames: int, longest: int = DEFAULT_MAPPING.longest_stretch) -> Indices:
+    """The starts of the stretches of a sequence with a number of frames, and its end, (K + 1,).
 
-    A frame's cluster is looked for in its own stretch: the whole sequence, up to 2,048 frames (68 s
-    at 30 Hz; the paper's have 360), and otherwise one of equal parts. So a cluster stays small
-    where somebody pauses for long, and is found as quickly in an hour as in a minute.
+    A frame's cluster is looked for in its own stretch: the whole sequence, where it is no longer
+    than the longest, and otherwise one of equal parts. So a cluster stays small where somebody
+    pauses for long, and is found as quickly in an hour as in a minute.
     """
-    count = -(-frames // LONGEST_STRETCH)
+    count = -(-frames // longest)
     return np.arange(count + 1) * frames // count
 
 

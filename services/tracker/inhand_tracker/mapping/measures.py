@@ -23,7 +23,7 @@ class RelativePoses:
     """TR1 of a sequence: ``body_poses`` b (N, 60), and the object relative to each part, in body
     heights, ``translations`` (N, 19, 3) and ``rotations`` (N, 19, 4).
 
-    ``consecutive`` (N,) tells whether the next row is the next frame.
+    ``consecutive`` (N,) is true where the next row is the next frame.
     """
 
     body_poses: Array
@@ -33,7 +33,7 @@ class RelativePoses:
 
     @staticmethod
     def empty(frames: int) -> "RelativePoses":
-        """Room for so many frames."""
+        """Room for a number of frames."""
         return RelativePoses(
             np.empty((frames, 60)),
             np.empty((frames, 19, 3)),
@@ -60,7 +60,8 @@ class RelativePoses:
 
 @dataclass(frozen=True)
 class Measures:
-    """Of the frames of a stretch, each (N,): φᵉ, φᶿ, and the parts of least ψᵉ, ψᶿ and ψ'ᵉ."""
+    """What is measured of a stretch's frames, each (N,): φᵉ, φᶿ, and the parts of least ψᵉ, ψᶿ and
+    ψ'ᵉ."""
 
     translation_variation: Array
     rotation_variation: Array
@@ -70,7 +71,7 @@ class Measures:
 
     @staticmethod
     def empty(frames: int) -> "Measures":
-        """Room for so many frames."""
+        """Room for a number of frames."""
         variations, parts = np.empty((2, frames)), np.empty((3, frames), np.int64)
         return Measures(*variations, *parts)
 
@@ -83,27 +84,29 @@ class Measures:
         self.proximate_part[rows] = measures.proximate_part
 
 
-def measure(poses: RelativePoses, radius: float) -> Iterator[tuple[slice, Measures]]:
+def measure_sequence(
+    poses: RelativePoses, radius: float, longest_stretch: int
+) -> Iterator[tuple[slice, Measures]]:
     """The measures of a sequence's frames, a stretch at a time, with the rows they are of.
 
     ``radius`` is the sequence's δ.
     """
     steps = _Steps.of(poses)
-    for start, end in pairwise(stretches(len(poses.body_poses)).tolist()):
+    for start, end in pairwise(stretches(len(poses.body_poses), longest_stretch).tolist()):
         yield slice(start, end), _measure_stretch(poses, steps, slice(start, end), radius)
 
 
 @dataclass(frozen=True)
 class _Steps:
-    """How far the object moves relative to each part from a frame to the next: ``translations``
-    and ``rotations`` (N, 19), and ``known`` (N,), whether the next row is the next frame.
+    """Steps of the object relative to each part from a frame to the next: ``translations`` and
+    ``rotations`` (N, 19), and ``consecutive`` (N,), whether the next row is the next frame.
 
     The last frame has the step that leads to it.
     """
 
     translations: Array
     rotations: Array
-    known: Flags
+    consecutive: Flags
 
     @staticmethod
     def of(poses: RelativePoses) -> "_Steps":
@@ -124,10 +127,10 @@ def _measure_stretch(poses: RelativePoses, steps: _Steps, rows: slice, radius: f
     sizes = clusters.sum(axis=1)
 
     moved, turned = steps.translations[rows], steps.rotations[rows]
-    has_step = steps.known[rows, None]
+    has_step = steps.consecutive[rows, None]
     moves, turns = clusters @ (moved * has_step), clusters @ (turned * has_step)
     # A cluster without any step is judged by the frame's own, across the gap.
-    alone = ~near[:, steps.known[rows]].any(axis=1, keepdims=True)
+    alone = ~near[:, steps.consecutive[rows]].any(axis=1, keepdims=True)
     distances = np.linalg.norm(translations, axis=-1)
     return Measures(
         _translation_variation(clusters, sizes, translations),

@@ -7,13 +7,11 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from inhand_tracker.geometry.arrays import Array, Indices
+from inhand_tracker.mapping.parameters import DEFAULT_MAPPING, MappingParameters
 from inhand_tracker.mapping.pose_search import PoseSearch
 
-EXACT_FRAMES = 20_000
-GROUPS = 8
-PROBES = 4
-
 CHUNK = 128
+"""Number of body poses that are compared with all others at once, to bound the memory."""
 
 
 def cluster_radii(
@@ -21,21 +19,24 @@ def cluster_radii(
     starts: Indices,
     participants: Sequence[str],
     on_sequence: Callable[[], None],
+    parameters: MappingParameters = DEFAULT_MAPPING,
 ) -> Array:
-    """δ of each of S sequences, (S,): how far its body poses are from other participants'.
+    """δ of each of S sequences, (S,): the usual distance of its body poses from other
+    participants'.
 
     ``body_poses`` (N, 60) of the sequences that begin at ``starts`` (S + 1,). It is the median,
     over the sequence, of the distance to the nearest body pose of all other participants; of the
     other recordings, where there is one participant only.
 
-    Exact up to 20,000 frames. Beyond, participants are dealt into eight groups, and a body pose
-    is compared with the seven that its participant is not in, by approximate search. That makes
-    δ larger by about a hundredth (docs/training.md).
+    Exact up to ``exact_frames``. Beyond, participants are dealt into groups, and a body pose is
+    compared with those that its participant is not in, by approximate search. That makes δ larger
+    by about a hundredth (docs/training.md).
     """
     owners = _owners(participants)
     owner_of = np.repeat(owners, np.diff(starts))
-    comparison = _Exact if len(body_poses) <= EXACT_FRAMES else _Grouped
-    others = comparison(body_poses, owner_of)
+    others: _Exact | _Grouped = _Exact(body_poses, owner_of)
+    if len(body_poses) > parameters.exact_frames:
+        others = _Grouped(body_poses, owner_of, parameters)
     radii = []
     for (start, end), owner in zip(pairwise(starts), owners, strict=True):
         radii.append(np.median(others.distances(body_poses[start:end], owner)))
@@ -68,19 +69,21 @@ class _Exact:
 class _Grouped:
     """Distances to the nearest found among the groups that an owner is not in."""
 
-    def __init__(self, body_poses: Array, owner_of: Indices) -> None:
-        groups = owner_of % GROUPS
+    def __init__(self, body_poses: Array, owner_of: Indices, parameters: MappingParameters) -> None:
+        self._parameters = parameters
+        groups = owner_of % parameters.groups
         self._searches = {
-            int(group): PoseSearch(body_poses[groups == group]) for group in np.unique(groups)
+            int(group): PoseSearch(body_poses[groups == group], parameters)
+            for group in np.unique(groups)
         }
 
     def distances(self, poses: Array, owner: int) -> Array:
         """(M,) of an owner's body poses (M, 60)."""
         return np.min(
             [
-                search.nearest(poses, PROBES)[1]
+                search.nearest(poses, self._parameters.group_probes)[1]
                 for group, search in self._searches.items()
-                if group != owner % GROUPS
+                if group != owner % self._parameters.groups
             ],
             axis=0,
         )

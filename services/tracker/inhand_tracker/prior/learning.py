@@ -7,13 +7,7 @@ import numpy as np
 from scipy.special import ndtri, stdtrit
 
 from inhand_tracker.body.anchors import ANCHORS, Anchors, find_anchors
-from inhand_tracker.body.skeleton import (
-    has_pelvis,
-    mirror_joints,
-    mirror_pose,
-    part_lengths,
-    standing_height,
-)
+from inhand_tracker.body.skeleton import has_pelvis, part_lengths, standing_height
 from inhand_tracker.body.window import VIEWS, describe, earlier_frames, places, remember
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
@@ -130,14 +124,11 @@ def _samples_of(
 ) -> _Samples:
     """The usable frames of the sequence of a number, which is held out with a group."""
     usable = _usable_frames(sequence)
-    joints, translations = sequence.joints[usable], sequence.translations[usable]
-    orientations = rotations.normalise(sequence.rotations[usable])
-    if sequence.left_handed:
-        joints = mirror_joints(joints)
-        translations, orientations = mirror_pose(translations, orientations, shape.mirror_normal)
+    right_handed = sequence.right_handed(shape.mirror_normal)
+    joints = right_handed.joints[usable]
     height = standing_height(part_lengths(joints))
-    turns = rotations.to_matrix(orientations)
-    centres = translations + turns @ centre
+    turns = rotations.to_matrix(right_handed.rotations[usable])
+    centres = right_handed.translations[usable] + turns @ centre
     anchors = find_anchors(joints)
     times = usable / sequence.frame_rate
     remembered = remember(places(joints, height), times, 1.0 / sequence.frame_rate)
