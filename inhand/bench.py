@@ -6,7 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from inhand_lab.benchmarks.ablation import Worth, ablate
+from inhand_lab.benchmarks.ablation import Worth, ablate, varied
 from inhand_lab.benchmarks.likelihood import ObjectCheck, check_likelihood
 from inhand_lab.benchmarks.tracker_speed import TrackerSpeed, measure_tracker
 from inhand_lab.benchmarks.training_cost import SIZES, TrainingCost, benchmark_training, steps
@@ -31,6 +31,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="SOURCE",
         help="for likelihood: a folder of YCB-Video, or of an excerpt; for ablation: a dataset",
     )
+    parser.add_argument(
+        "--vary",
+        action="append",
+        default=[],
+        metavar="FIELD=VALUE",
+        help="for ablation: a parameter of fusion with another value, in place of the parts taken "
+        "out; may be repeated",
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
 
 
@@ -40,7 +48,9 @@ def run(arguments: argparse.Namespace) -> int:
         raise SettingsError(
             f"{' and '.join(MEASURED_ON)}, and nothing else, are measured on a SOURCE: name it"
         )
-    table, result = SUBJECTS[arguments.subject](arguments.source)
+    if arguments.vary and arguments.subject != "ablation":
+        raise SettingsError("--vary is for ablation, and for nothing else: leave it out")
+    table, result = SUBJECTS[arguments.subject](arguments)
     Console().print(table)
     if arguments.json is not None:
         write_json(arguments.json, result)
@@ -134,13 +144,13 @@ def _short(value: float) -> str:
     return f"{value:,.0f}" if value >= 100.0 else f"{value:.2g}"
 
 
-def _tracker(_: Path | None) -> tuple[RenderableType, dict[str, Any]]:
+def _tracker(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     speed = measure_tracker()
     return Group(tracker_table(speed), frames_table(speed), fusion_table(speed)), asdict(speed)
 
 
-def _likelihood(source: Path) -> tuple[RenderableType, dict[str, Any]]:
-    checks = check_likelihood(source)
+def _likelihood(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    checks = check_likelihood(arguments.source)
     return likelihood_table(checks), {"objects": [asdict(check) for check in checks]}
 
 
@@ -149,29 +159,34 @@ def ablation_table(worths: Sequence[Worth]) -> Table:
     table = Table("of", "without", "vertex error, cm", "ratio", title="fusion, a part taken out")
     whole = worths[0].vertex_error_cm
     for worth in worths:
-        error = worth.vertex_error_cm
+        error, variant = worth.vertex_error_cm, worth.variant
+        instead = f" (instead: {variant.instead})" if variant.instead else ""
         table.add_row(
-            worth.variant.part, worth.variant.without, f"{error:.2f}", f"{error / whole:.2f}"
+            variant.part, variant.without + instead, f"{error:.2f}", f"{error / whole:.2f}"
         )
     return table
 
 
-def _ablation(source: Path) -> tuple[RenderableType, dict[str, Any]]:
-    dataset = load_dataset(source)
+def _ablation(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    varied(arguments.vary)  # a wrong setting is refused before anything is loaded
+    dataset = load_dataset(arguments.source)
     with progress_bar("evaluating", len(leave_one_out(dataset))) as advance:
-        worths = ablate(dataset, usable_cores(), advance)
-    rows = [
-        {
-            "part": worth.variant.part,
-            "without": worth.variant.without,
-            "vertex_error_cm": worth.vertex_error_cm,
-        }
-        for worth in worths
-    ]
-    return ablation_table(worths), {"variants": rows}
+        worths = ablate(dataset, usable_cores(), advance, arguments.vary)
+    return ablation_table(worths), {"variants": [_ablation_row(worth) for worth in worths]}
 
 
-def _training(_: Path | None) -> tuple[RenderableType, dict[str, Any]]:
+def _ablation_row(worth: Worth) -> dict[str, Any]:
+    variant = worth.variant
+    instead = {"instead": variant.instead} if variant.instead else {}
+    return {
+        "part": variant.part,
+        "without": variant.without,
+        **instead,
+        "vertex_error_cm": worth.vertex_error_cm,
+    }
+
+
+def _training(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     with progress_bars(steps(SIZES)) as advance:
         costs = list(benchmark_training(SIZES, usable_cores(), advance))
     sizes = [{**asdict(cost.learning), **asdict(cost.asking)} for cost in costs]

@@ -1,6 +1,9 @@
-"""What each part of ``fusion`` is worth: each taken out once, all on the same frames."""
+"""What each part of ``fusion`` is worth: each taken out once, all on the same frames.
 
-from collections.abc import Callable, Iterator
+What another value of a parameter is worth is found in the same way (``variation``).
+"""
+
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +16,7 @@ from inhand_tracker.model.model import Model
 from inhand_tracker.prior.prior import Prior
 from inhand_tracker.sight.sight import SIGHT_TERMS, SightTerm
 
+from inhand_lab.benchmarks.variation import vary
 from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, load_frames
 from inhand_lab.datasets.observations import track_together
 from inhand_lab.evaluation.folds import Fold, leave_one_out
@@ -27,10 +31,11 @@ NOT_TRUSTED = 1e6
 
 @dataclass(frozen=True)
 class Variant:
-    """``fusion`` with something taken out."""
+    """``fusion`` with something taken out, or ``instead`` of it something else."""
 
     part: str
     without: str
+    instead: str = ""
     parameters: FusionParameters = DEFAULT_FUSION
     terms: tuple[SightTerm, ...] = SIGHT_TERMS
     changed: Callable[[Prior], Prior] = lambda prior: prior
@@ -95,6 +100,15 @@ VARIANTS: tuple[Variant, ...] = (
 )
 
 
+def varied(settings: Sequence[str]) -> tuple[Variant, ...]:
+    """Fusion as it is, and with each ``FIELD=VALUE`` by itself; raises SettingsError."""
+    variants = [VARIANTS[0]]
+    for setting in settings:
+        parameters, usual = vary(setting)
+        variants.append(Variant("parameter", usual, setting, parameters))
+    return tuple(variants)
+
+
 @dataclass(frozen=True)
 class Worth:
     """A variant's mean vertex error in cm over interactions."""
@@ -104,37 +118,50 @@ class Worth:
 
 
 def ablate(
-    dataset: Dataset, processes: int, on_progress: Callable[[], None] = lambda: None
+    dataset: Dataset,
+    processes: int,
+    on_progress: Callable[[], None] = lambda: None,
+    settings: Sequence[str] = (),
 ) -> list[Worth]:
     """Leave one participant out, with every variant; ``on_progress`` is called once a fold.
 
-    Raises DatasetError or RecordingError.
+    The variants are ``VARIANTS``, or, where there are ``settings``, what those make of fusion.
+    Raises DatasetError, RecordingError or SettingsError.
     """
+    variants = _variants(settings)
     folds = leave_one_out(dataset)
-    tasks = [(dataset, fold) for fold in folds]
+    tasks = [(dataset, fold, settings) for fold in folds]
     errors = in_processes(_try_fold, tasks, processes, lambda _: on_progress())
     by_interaction: dict[str, list[Array]] = {}
     for fold, of_fold in zip(folds, errors, strict=True):
         by_interaction.setdefault(fold.interaction, []).append(of_fold)
     means = np.mean([np.mean(cell, axis=0) for cell in by_interaction.values()], axis=0)
-    return [Worth(one, 100.0 * float(m)) for one, m in zip(VARIANTS, means, strict=True)]
+    return [Worth(one, 100.0 * float(m)) for one, m in zip(variants, means, strict=True)]
 
 
-def _try_fold(task: tuple[Dataset, Fold]) -> Array:
+def _variants(settings: Sequence[str]) -> tuple[Variant, ...]:
+    return varied(settings) if settings else VARIANTS
+
+
+def _try_fold(task: tuple[Dataset, Fold, Sequence[str]]) -> Array:
     """The vertex error of each variant, in metres."""
-    dataset, fold = task
+    dataset, fold, settings = task
     model = fold_model(dataset, fold, images=True, fused=True)
-    gauge = ErrorGauge(model.shape)
-    return np.mean([list(_errors(dataset, entry, model, gauge)) for entry in fold.tested], axis=0)
+    variants = _variants(settings)
+    errors = [list(_errors(dataset, entry, model, variants)) for entry in fold.tested]
+    return np.mean(errors, axis=0)
 
 
-def _errors(dataset: Dataset, entry: Entry, model: Model, gauge: ErrorGauge) -> Iterator[float]:
+def _errors(
+    dataset: Dataset, entry: Entry, model: Model, variants: Sequence[Variant]
+) -> Iterator[float]:
+    """The vertex error of each variant in one recording, in metres."""
     path = dataset.path(entry)
     frames = load_frames(path, entry.object)
     left_handed = entry.handedness == "left"
-    trackers = [variant.tracker(model, left_handed=left_handed) for variant in VARIANTS]
+    trackers = [variant.tracker(model, left_handed=left_handed) for variant in variants]
     joints, tracks = track_together(trackers, path, frames, METHODS[FUSION].needs(SIGHT_TERMS))
-    judge = Judge(frames, joints, gauge)
+    judge = Judge(frames, joints, ErrorGauge(model.shape))
     for track in tracks:
         score = judge.score(track)
         if score is None:

@@ -12,7 +12,25 @@ from inhand.__main__ import main
 pytestmark = pytest.mark.long
 
 
-def test_every_part_is_taken_out_once_and_the_table_tells_what_that_costs(
+def test_other_values_of_parameters_stand_beside_the_whole(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_dataset(tmp_path / "data", frames=20, images=True)
+    written = tmp_path / "worths.json"
+    varied = ["--vary", "refines=false", "--vary", "image_temper=0.1"]
+    command = ["bench", "ablation", str(tmp_path / "data"), *varied, "--json", str(written)]
+    assert main(command) == 0
+    whole, *others = json.loads(written.read_text())["variants"]
+    assert whole["without"] == "nothing"
+    assert [(row["part"], row["without"], row["instead"]) for row in others] == [
+        ("parameter", "refines=true", "refines=false"),
+        ("parameter", "image_temper=0.4", "image_temper=0.1"),
+    ]
+    assert len({row["vertex_error_cm"] for row in (whole, *others)}) == 3
+    assert "image_temper=0.1" in capsys.readouterr().out
+
+
+def test_every_part_is_taken_out_once_and_the_table_shows_what_that_costs(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_dataset(tmp_path / "data", frames=20, images=True)
