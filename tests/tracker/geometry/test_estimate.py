@@ -1,10 +1,6 @@
-import hypothesis.strategies as st
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis.extra.numpy import arrays
 from inhand_tracker.geometry.estimate import vertex_error, weighted_estimate
-from inhand_tracker.geometry.weights import normalised_weights
 from people import quaternion_of, same_rotation, scipy_rotation
 from scipy.spatial.transform import Rotation
 
@@ -13,19 +9,6 @@ IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
 def about_z(degrees: float) -> np.ndarray:
     return quaternion_of(Rotation.from_euler("z", degrees, degrees=True))
-
-
-def test_log_weights_become_shares() -> None:
-    weights = normalised_weights(np.log([1.0, 3.0, 4.0]))
-    np.testing.assert_allclose(weights, [0.125, 0.375, 0.5])
-
-
-@given(arrays(float, 7, elements=st.floats(-1e6, 0.0)))
-def test_weights_sum_to_one_however_small_they_are(log_weights: np.ndarray) -> None:
-    weights = normalised_weights(log_weights)
-    assert weights.sum() == pytest.approx(1.0)
-    assert (weights >= 0).all()
-    assert weights[np.argmax(log_weights)] == weights.max()
 
 
 def scattered(count: int = 40, spread: float = 0.2) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

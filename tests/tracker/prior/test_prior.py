@@ -1,38 +1,34 @@
 """The prior on objects that are fixed to a hand, so that what is right is known."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from inhand_tracker.body import skeleton as body
 from inhand_tracker.body.anchors import ANCHORS, find_anchors
 from inhand_tracker.body.window import VIEWS, BodyWindow
 from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.prior.combination import fuse, repeated
 from inhand_tracker.prior.learning import CHI_SQUARE_90, learn_prior
-from inhand_tracker.prior.prior import TARGETS, Prediction, Prior, predict
+from inhand_tracker.prior.prior import TARGETS, Prior, predict
 from people import (
     FRAME_NS,
     HAND,
     STANDING,
     STANDING_HEIGHT,
     WRIST,
-    held,
     move,
     quaternion_of,
-    scipy_rotation,
     sequence,
     unseen_wave,
     wave_model,
     waving,
     wedge,
 )
+from predictions import MIDDLE, deviations, height_of, middle, predictions, strangers
 from scipy.spatial.transform import Rotation
 
-MIDDLE = wedge().marked_vertices.mean(axis=0)
 SHIFT = np.array([0.02, -0.05, 0.10])
 TWIST = Rotation.from_rotvec([0.3, -0.2, 0.5])
 
@@ -65,30 +61,6 @@ def fixed(joints: np.ndarray, name: str = "p") -> LabelledSequence:
 @cache
 def fixed_prior() -> Prior:
     return learn_prior([fixed(waving(50, seed=s), f"p{s}") for s in range(3)], wedge())
-
-
-def height_of(joints: np.ndarray) -> float:
-    return body.standing_height(body.part_lengths(joints))
-
-
-def predictions(prior: Prior, joints: np.ndarray) -> list[Prediction]:
-    """Frame after frame, as a tracker asks for them."""
-    window, height = BodyWindow(), height_of(joints)
-    return [
-        predict(prior, window.add(one, (n + 1) * FRAME_NS, height), find_anchors(one), height)
-        for n, one in enumerate(joints)
-    ]
-
-
-def middle(one: LabelledSequence) -> np.ndarray:
-    return one.translations + scipy_rotation(one.rotations).apply(MIDDLE)
-
-
-def deviations(told: list[Prediction], true: LabelledSequence) -> np.ndarray:
-    """(T, 6): translation of the middle and rotation vector on the left."""
-    centres = np.array([one.centre for one in told]) - middle(true)
-    turns = Rotation.from_matrix([one.rotation for one in told])
-    return np.column_stack((centres, (turns * scipy_rotation(true.rotations).inv()).as_rotvec()))
 
 
 def test_an_object_fixed_to_a_hand_is_predicted_exactly() -> None:
@@ -133,16 +105,6 @@ def test_a_person_half_as_big_holds_it_half_as_far_away() -> None:
 
 
 # --- Fusion
-
-
-def strangers(count: int) -> list[LabelledSequence]:
-    """They wave as fast as those learned from, and are others."""
-    found = []
-    for number in range(count):
-        joints = waving(60, seed=20 + number, speed=0.2 + 0.02 * number)
-        places, turns = held(joints, seed=20 + number)
-        found.append(LabelledSequence(f"s{number}", False, joints, places, turns))
-    return found
 
 
 def single_predictions(prior: Prior, joints: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -218,45 +180,3 @@ def test_a_pose_like_none_learned_is_less_sure() -> None:
     joints[:, [9, 10, 11]] += [0.0, -0.9, 0.3]
     odd = predictions(prior, joints)[-1]
     assert np.linalg.det(odd.covariance) > 10.0 * np.linalg.det(usual.covariance)
-
-
-# --- Handedness, gaps
-
-
-def mirrored(one: LabelledSequence) -> LabelledSequence:
-    places, turns = body.mirror_pose(one.translations, one.rotations, wedge().mirror_normal)
-    return LabelledSequence(one.participant, True, body.mirror_joints(one.joints), places, turns)
-
-
-def test_left_handed_people_teach_what_their_mirror_images_do() -> None:
-    sequences = [sequence(f"p{seed}", seed=seed) for seed in range(3)]
-    right = learn_prior(sequences, wedge())
-    left = learn_prior([mirrored(one) for one in sequences], wedge())
-    joints = unseen_wave(5)
-    for one, other in zip(predictions(right, joints), predictions(left, joints), strict=True):
-        np.testing.assert_allclose(other.centre, one.centre, atol=1e-4)
-        np.testing.assert_allclose(other.rotation, one.rotation, atol=1e-4)
-        np.testing.assert_allclose(other.covariance, one.covariance, atol=1e-5)
-
-
-def test_frames_that_are_not_usable_are_left_out() -> None:
-    sequences = [sequence(f"p{seed}", seed=seed) for seed in range(3)]
-    random, holed = np.random.default_rng(0), []
-    for one in sequences:
-        joints, places = one.joints.copy(), one.translations.copy()
-        joints[random.choice(60, 8, replace=False), 11] = np.nan
-        places[random.choice(60, 8, replace=False)] = np.nan
-        holed.append(replace(one, joints=joints, translations=places))
-    whole, rest = learn_prior(sequences, wedge()), learn_prior(holed, wedge())
-    joints = unseen_wave(20)
-    for one, other in zip(predictions(whole, joints), predictions(rest, joints), strict=True):
-        assert np.linalg.norm(other.centre - one.centre) < 0.01
-
-
-def test_one_person_s_recordings_hold_each_other_out() -> None:
-    prior = learn_prior([sequence("p", seed=seed) for seed in range(3)], wedge())
-    assert np.isfinite(prior.errors).all()
-    assert prior.calibration > 0.0
-    (one,) = strangers(1)
-    off = deviations(predictions(prior, one.joints), one)
-    assert np.linalg.norm(off[:, :3], axis=1).mean() < 0.02

@@ -59,8 +59,8 @@ def learn_prior(
         regressions,
         *products,
         errors,
-        _calibration(covariances, errors, landmarks.groups),
-        _persistence(
+        calibration_of(covariances, errors, landmarks.groups),
+        persistence_of(
             errors, landmarks.sequences, landmarks.times, parameters.longest_persistence_s
         ),
     )
@@ -213,7 +213,7 @@ def _errors(
     )
 
 
-def _calibration(covariances: Array, errors: Array, groups: Indices) -> float:
+def calibration_of(covariances: Array, errors: Array, groups: Indices) -> float:
     """The factor on covariances (L, 6, 6) by which they hold nine in ten errors (L, 6).
 
     A few people say less of the next one than it seems, as Student's t has it: one person's errors
@@ -225,7 +225,7 @@ def _calibration(covariances: Array, errors: Array, groups: Indices) -> float:
     return float(of_these * np.square(stdtrit(people, 0.95) / ndtri(0.95)))
 
 
-def _persistence(errors: Array, sequences: Indices, times: Array, longest_s: float) -> float:
+def persistence_of(errors: Array, sequences: Indices, times: Array, longest_s: float) -> float:
     """Seconds that an error (L, 6) lasts: the time constant of its correlation with itself."""
     follows = np.flatnonzero(np.diff(sequences) == 0)
     if len(follows) == 0:

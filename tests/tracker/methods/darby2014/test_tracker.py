@@ -1,12 +1,10 @@
 from dataclasses import replace
 from functools import lru_cache
 
-import cv2
 import numpy as np
 import pytest
-from inhand_tracker.geometry.camera import Intrinsics
+from followed import assert_proper, follow
 from inhand_tracker.geometry.estimate import Estimate
-from inhand_tracker.geometry.image import Image
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
@@ -26,8 +24,8 @@ from people import (
     waving,
 )
 from scipy.spatial.transform import Rotation
+from two_sides import UPRIGHT
 
-CAMERA = Intrinsics(525.0, 525.0, 319.5, 239.5, 640, 480)
 OTHER_SIDE = [0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 16, 17, 18, 19, 12, 13, 14, 15]
 MIRROR = np.diag([-1.0, 1.0, 1.0])
 BEST = VARIANTS["gd-stable-proximate"]
@@ -37,22 +35,8 @@ def unseen_person(frames: int = 20) -> np.ndarray:
     return waving(frames, seed=7, speed=0.23)
 
 
-def follow(tracker: ParticleTracker, joints: np.ndarray, first: int = 1) -> list[Estimate]:
-    return [tracker.step(frame, (first + number) * FRAME_NS) for number, frame in enumerate(joints)]
-
-
 def tracked(method: str, joints: np.ndarray, **options: object) -> list[Estimate]:
     return follow(ParticleTracker(wave_model(), VARIANTS[method], **options), joints)
-
-
-def assert_proper(estimate: Estimate) -> None:
-    """A pose of finite numbers, a unit quaternion and a covariance that is one."""
-    assert estimate.state == "tracked"
-    assert 0.0 <= estimate.confidence <= 1.0
-    assert np.isfinite(estimate.translation).all()
-    assert np.linalg.norm(estimate.rotation) == pytest.approx(1.0)
-    np.testing.assert_allclose(estimate.covariance, estimate.covariance.T, atol=1e-12)
-    assert np.linalg.eigvalsh(estimate.covariance).min() > -1e-12
 
 
 def angle(first: np.ndarray, second: np.ndarray) -> float:
@@ -158,16 +142,6 @@ def test_a_single_frame_without_a_body_is_lost() -> None:
     assert tracker.estimate_single_frame(np.full((20, 3), np.nan)).state == "lost"
 
 
-def test_edges_weigh_a_single_frame_too() -> None:
-    tracker = ParticleTracker(two_sided_model(), VARIANTS["gd-hand"], seed=1)
-    image = Image(silhouette(SIDES[0], UPRIGHT), CAMERA)
-    away = [
-        np.linalg.norm(tracker.estimate_single_frame(STANDING, shown).translation - SIDES[0])
-        for shown in (None, image)
-    ]
-    assert away[1] < away[0]
-
-
 def test_absurd_joints_are_taken_for_missing_ones() -> None:
     joints = unseen_person(6)
     absurd, missing = joints.copy(), joints.copy()
@@ -234,30 +208,6 @@ def test_the_hand_that_holds_the_object_may_be_missing_from_the_start() -> None:
         assert np.linalg.norm(estimate.translation - STANDING[HAND]) < 0.5
 
 
-@pytest.mark.parametrize("gone", [None, np.full((20, 3), np.nan)])
-def test_without_a_body_the_pose_is_predicted_for_a_second_and_then_lost(
-    gone: np.ndarray | None,
-) -> None:
-    tracker = ParticleTracker(wave_model(), BEST)
-    last = follow(tracker, unseen_person(10))[-1]
-    confidences, spreads = [last.confidence], [np.trace(last.covariance)]
-    for number in range(11, 41):
-        estimate = tracker.step(gone, number * FRAME_NS)
-        if number * FRAME_NS - 10 * FRAME_NS > 1_000_000_000:
-            break
-        assert estimate.state == "predicted"
-        np.testing.assert_array_equal(estimate.translation, last.translation)
-        np.testing.assert_array_equal(estimate.rotation, last.rotation)
-        confidences.append(estimate.confidence)
-        spreads.append(np.trace(estimate.covariance))
-    assert (np.diff(confidences) < 0).all()
-    assert (np.diff(spreads) > 0).all()
-    assert 0.0 <= confidences[-1] < 0.1
-    lost = tracker.step(gone, 45 * FRAME_NS)
-    assert (lost.state, lost.confidence, lost.translation) == ("lost", 0.0, None)
-    assert tracker.step(gone, 46 * FRAME_NS).state == "lost"
-
-
 @pytest.mark.parametrize("away", [3, 20, 200])
 @pytest.mark.parametrize("method", VARIANTS)
 def test_the_object_is_found_again_when_the_body_returns(method: str, away: int) -> None:
@@ -275,13 +225,6 @@ def test_the_object_is_found_again_when_the_body_returns(method: str, away: int)
         for estimate, place in zip(back, places[10 + away :], strict=False)
     ]
     assert np.mean(errors) < (0.06 if method == "gd-random" else 0.04)
-
-
-def test_a_body_that_was_never_seen_is_lost() -> None:
-    tracker = ParticleTracker(wave_model(), BEST)
-    assert tracker.step(None, FRAME_NS).state == "lost"
-    assert tracker.step(np.full((20, 3), np.nan), 2 * FRAME_NS).state == "lost"
-    assert_proper(tracker.step(STANDING, 3 * FRAME_NS))
 
 
 LAMP = np.array([0.1, -0.3, 2.1])
@@ -316,12 +259,6 @@ def test_after_a_jump_of_time_all_particles_are_drawn_afresh(jump: int) -> None:
 def test_a_few_frames_that_lack_are_no_jump(jump: int) -> None:
     """g-hand's particles live on, and cannot follow the leap."""
     assert error_after_a_leap(jump) > 0.30
-
-
-def test_going_back_in_time_without_a_body_loses_the_object() -> None:
-    tracker = ParticleTracker(wave_model(), BEST)
-    follow(tracker, unseen_person(3), first=100)
-    assert tracker.step(None, 50 * FRAME_NS).state == "lost"
 
 
 def test_frames_that_are_sent_twice_do_no_harm() -> None:
@@ -392,109 +329,3 @@ def test_a_person_of_unknown_height_is_not_tracked_until_the_head_is_seen() -> N
 def test_a_degenerate_body_is_not_tracked() -> None:
     for joints in (np.zeros((20, 3)), np.full((20, 3), 2.0), np.full((20, 3), np.inf)):
         assert ParticleTracker(wave_model(), BEST).step(joints, FRAME_NS).state == "lost"
-
-
-# --- Edges
-
-
-def silhouette(translation: np.ndarray, rotation: np.ndarray, value: int = 220) -> np.ndarray:
-    """The wedge (which is convex) drawn bright on black."""
-    corners = scipy_rotation(rotation).apply(wave_model().shape.vertices) + translation
-    pixels = corners[:, :2] / corners[:, 2:] * 525.0 + [319.5, 239.5]
-    grey = np.zeros((480, 640), np.uint8)
-    cv2.fillConvexPoly(grey, cv2.convexHull(np.rint(pixels).astype(np.int32)), value)
-    return grey
-
-
-SIDES = (np.array([-0.16, -0.13, 2.0]), np.array([-0.32, -0.13, 2.0]))
-UPRIGHT = quaternion_of(Rotation.from_rotvec([0.5, 0.3, 0.2]))
-
-
-@lru_cache(maxsize=1)
-def two_sided_model() -> Model:
-    """A person who stands still, while the object is at one of two places 16 cm apart."""
-    joints = np.repeat(STANDING[None], 40, axis=0)
-    turns = np.tile(UPRIGHT, (40, 1))
-    sequences = [
-        LabelledSequence(f"p{i}", False, joints, np.repeat(SIDES, 20, axis=0)[:: 1 - 2 * i], turns)
-        for i in range(2)
-    ]
-    return replace(wave_model(), mapping=learn(sequences, np.array([1.0, 0.0, 0.0])))
-
-
-STILL = replace(DEFAULT_DARBY2014, advance=0.0)
-
-
-def errors_at(side: int, method: str, *, seen: bool) -> np.ndarray:
-    tracker = ParticleTracker(two_sided_model(), VARIANTS[method], parameters=STILL, seed=1)
-    image = Image(silhouette(SIDES[side], UPRIGHT), CAMERA) if seen else None
-    return np.array(
-        [
-            np.linalg.norm(
-                tracker.step(STANDING, (number + 1) * FRAME_NS, image).translation - SIDES[side]
-            )
-            for number in range(40)
-        ]
-    )
-
-
-@pytest.mark.parametrize("side", [0, 1])
-def test_edges_pull_each_estimate_towards_the_truth(side: int) -> None:
-    """Discriminative particles take both places alike; the weights of one frame decide."""
-    blind, seen = (errors_at(side, "gd-hand", seen=seen) for seen in (False, True))
-    assert blind.mean() == pytest.approx(0.08, abs=0.01)
-    assert seen.mean() < 0.8 * blind.mean()
-
-
-@pytest.mark.parametrize("side", [0, 1])
-def test_edges_decide_over_time_where_particles_live_on(side: int) -> None:
-    seen = errors_at(side, "g-hand", seen=True)[-10:]
-    assert seen.mean() < 0.02
-    blind = [errors_at(s, "g-hand", seen=False)[-10:].mean() for s in (0, 1)]
-    assert np.mean(blind) > 0.06
-
-
-def test_an_image_without_edges_changes_nothing() -> None:
-    joints = unseen_person(8)
-    blank = Image(np.full((480, 640), 90, np.uint8), CAMERA)
-    plain, shown = (ParticleTracker(wave_model(), BEST, seed=2) for _ in range(2))
-    for number, frame in enumerate(joints):
-        without = plain.step(frame, (number + 1) * FRAME_NS)
-        with_image = shown.step(frame, (number + 1) * FRAME_NS, blank)
-        np.testing.assert_allclose(with_image.translation, without.translation, atol=1e-12)
-
-
-def test_an_object_behind_the_camera_is_still_estimated() -> None:
-    image = Image(silhouette(SIDES[0], UPRIGHT), CAMERA)
-    tracker = ParticleTracker(wave_model(), BEST)
-    for number, frame in enumerate(unseen_person(5) - [0.0, 0.0, 4.0]):
-        assert_proper(tracker.step(frame, (number + 1) * FRAME_NS, image))
-
-
-def test_the_mirrored_image_of_a_left_handed_person_gives_the_mirrored_pose() -> None:
-    joints = unseen_person(10)
-    places, turns = held(joints, seed=7)
-    right = ParticleTracker(wave_model(), VARIANTS["gd-random"])
-    left = ParticleTracker(wave_model(), VARIANTS["gd-random"], left_handed=True)
-    centred = replace(CAMERA)  # cx = (640 - 1) / 2: mirroring the pixels mirrors the scene
-    for number, frame in enumerate(joints):
-        grey = silhouette(places[number], turns[number])
-        time_ns = (number + 1) * FRAME_NS
-        expected = right.step(frame, time_ns, Image(grey, centred))
-        flipped = Image(np.ascontiguousarray(grey[:, ::-1]), centred)
-        estimate = left.step(frame[OTHER_SIDE] @ MIRROR, time_ns, flipped)
-        # The boundary's points begin elsewhere in the mirrored view: not to the last digit.
-        np.testing.assert_allclose(estimate.translation, MIRROR @ expected.translation, atol=0.02)
-
-
-def test_the_outline_lies_on_the_drawn_silhouette() -> None:
-    tracker = ParticleTracker(wave_model(), BEST)
-    pose = Estimate("tracked", 1.0, SIDES[0], UPRIGHT, np.zeros((6, 6)))
-    outline = tracker.outline(pose, CAMERA)
-    assert outline is not None
-    contour = cv2.findContours(
-        silhouette(SIDES[0], UPRIGHT), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE
-    )[0][0]
-    away = [abs(cv2.pointPolygonTest(contour, tuple(p), True)) for p in outline.tolist()]
-    assert np.mean(away) < 1.5
-    assert tracker.outline(Estimate("lost", 0.0), CAMERA) is None

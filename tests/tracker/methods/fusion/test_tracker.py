@@ -2,12 +2,11 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
+from followed import follow
 from inhand_tracker.body import skeleton as body
-from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.fusion.parameters import FusionParameters
@@ -15,53 +14,18 @@ from inhand_tracker.methods.fusion.tracker import FusionTracker
 from inhand_tracker.model.model import Model, ModelError
 from people import (
     FRAME_NS,
-    RIGHT_ARM,
     held,
     scipy_rotation,
     unseen_wave,
     wave_model,
     waving,
 )
-
-FRAMES = 25
-CAMERA = Intrinsics(260.0, 260.0, 159.5, 119.5, 320, 240)
-RED, GREY = (200, 30, 30), (110, 110, 110)
-
-
-def draw(place: np.ndarray, turn: np.ndarray) -> Image:
-    """The wedge as red dots of its box before a grey wall, with its depth."""
-    colour = np.full((240, 320, 3), GREY, np.uint8)
-    depth = np.full((240, 320), 3.5, np.float32)
-    steps = np.linspace(-0.5, 0.5, 60)
-    inside = np.stack(np.meshgrid(steps, steps, steps), axis=-1).reshape(-1, 3)
-    points = scipy_rotation(turn).apply(inside * [0.06, 0.09, 0.24]) + place
-    columns, rows = np.rint(CAMERA.project(points)).astype(int).T
-    shown = (columns >= 0) & (rows >= 0) & (columns < 320) & (rows < 240)
-    rows, columns, nearness = rows[shown], columns[shown], points[shown, 2]
-    colour[rows, columns] = RED
-    np.minimum.at(depth, (rows, columns), nearness.astype(np.float32))
-    return Image(None, CAMERA, depth, colour)
-
-
-@cache
-def images() -> tuple[Image, ...]:
-    """Of somebody who is not known, holding the wedge."""
-    joints = unseen_wave(FRAMES)
-    return tuple(draw(*pose) for pose in zip(*held(joints, seed=7), strict=True))
+from wedges import CAMERA, FRAMES, draw, images
+from wrong_bodies import FAULTS
 
 
 def tracker(**options: object) -> FusionTracker:
     return FusionTracker(wave_model(), **options)
-
-
-def follow(
-    one: FusionTracker, joints: np.ndarray, seen: Sequence[Image | None] | None = None
-) -> list[Estimate]:
-    given = [None] * len(joints) if seen is None else seen
-    return [
-        one.step(pose, (n + 1) * FRAME_NS, image)
-        for n, (pose, image) in enumerate(zip(joints, given, strict=True))
-    ]
 
 
 def assert_same(first: Sequence[Estimate], second: Sequence[Estimate]) -> None:
@@ -208,74 +172,6 @@ def test_a_left_handed_person_is_the_mirror_image(seen: bool) -> None:
 
 
 # --- What it withstands
-
-
-def nobody(joints: np.ndarray) -> np.ndarray:
-    return np.full_like(joints, np.nan)
-
-
-def no_arm(joints: np.ndarray) -> np.ndarray:
-    joints[:, [9, *RIGHT_ARM]] = np.nan
-    return joints
-
-
-def pelvis_only(joints: np.ndarray) -> np.ndarray:
-    joints[:, [n for n in range(20) if n not in (0, 12, 16)]] = np.nan
-    return joints
-
-
-def one_point(joints: np.ndarray) -> np.ndarray:
-    return np.tile([0.0, 0.0, 2.0], (len(joints), 20, 1))
-
-
-def at_the_camera(joints: np.ndarray) -> np.ndarray:
-    return joints - [0.0, 0.0, 2.2]
-
-
-def behind_the_camera(joints: np.ndarray) -> np.ndarray:
-    return joints * [1.0, 1.0, -1.0]
-
-
-def out_of_the_image(joints: np.ndarray) -> np.ndarray:
-    return joints + np.array([40.0, 0.0, 0.0])
-
-
-def infinite(joints: np.ndarray) -> np.ndarray:
-    joints[:, 11] = np.inf
-    return joints
-
-
-def enormous(joints: np.ndarray) -> np.ndarray:
-    return 1e150 * joints
-
-
-def flickering(joints: np.ndarray) -> np.ndarray:
-    joints[np.random.default_rng(0).random(joints.shape[:2]) < 0.4] = np.nan
-    return joints
-
-
-def scattered(metres: float) -> Callable[[np.ndarray], np.ndarray]:
-    def scatter(joints: np.ndarray) -> np.ndarray:
-        return joints + metres * np.random.default_rng(0).normal(size=joints.shape)
-
-    return scatter
-
-
-FAULTS = [
-    nobody,
-    no_arm,
-    pelvis_only,
-    one_point,
-    at_the_camera,
-    behind_the_camera,
-    out_of_the_image,
-    infinite,
-    enormous,
-    flickering,
-    scattered(0.3),
-    scattered(3.0),
-    scattered(50.0),
-]
 
 
 @pytest.mark.parametrize("seen", [False, True])
@@ -439,33 +335,6 @@ def test_who_jumps_away_takes_the_object_along() -> None:
     assert errors(estimates, places)[5:].max() < 0.10
     for estimate in estimates:
         assert_sound(estimate)
-
-
-def test_an_unseen_body_s_object_is_predicted_for_a_second_and_then_lost() -> None:
-    one, joints = tracker(), unseen_wave(4)
-    last = follow(one, joints[:3])[-1]
-    states = [one.step(None, 3 * FRAME_NS + 200_000_000 * n) for n in range(1, 8)]
-    assert [estimate.state for estimate in states] == ["predicted"] * 5 + ["lost"] * 2
-    np.testing.assert_array_equal(states[0].translation, last.translation)
-    assert states[0].confidence > states[4].confidence
-    assert one.step(joints[3], 10**10).state == "tracked"
-
-
-def test_a_tracker_that_saw_nobody_has_lost_it() -> None:
-    assert tracker().step(None, FRAME_NS) == LOST
-    assert tracker().estimate_single_frame(np.full((20, 3), np.nan)) == LOST
-    assert tracker().outline(LOST, CAMERA) is None
-
-
-def test_the_outline_is_about_the_object() -> None:
-    one = tracker()
-    (estimate,) = follow(one, unseen_wave(1))
-    outline = one.outline(estimate, CAMERA)
-    corners = scipy_rotation(estimate.rotation).apply(wave_model().shape.vertices)
-    corners = CAMERA.project(corners + estimate.translation)
-    assert outline is not None
-    assert (outline >= corners.min(axis=0) - 1.0).all()
-    assert (outline <= corners.max(axis=0) + 1.0).all()
 
 
 def test_a_model_of_an_older_release_says_to_train_again() -> None:

@@ -1,0 +1,118 @@
+"""The search in an image whose likelihood is known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from gaussian_sight import TRUE, GaussianSight
+from inhand_tracker.geometry.bounding_sphere import BoundingSphere
+from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.image import Image
+from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
+from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
+from inhand_tracker.methods.fusion.search import ImageSearch
+from people import STANDING
+
+CAMERA = Intrinsics(260.0, 260.0, 159.5, 119.5, 320, 240)
+BLANK = Image(None, CAMERA, None, np.zeros((240, 320, 3), np.uint8))
+AWAY = np.array([0.10, 0.05, -0.08])
+SPHERE = BoundingSphere(np.zeros(3), 0.1)
+ONE_ROUND = replace(DEFAULT_FUSION, rounds=1)
+
+
+def belief(centre: np.ndarray) -> PoseMixture:
+    part = PoseGaussian(centre, TRUE.rotation, np.diag([0.1**2] * 3 + [0.3**2] * 3))
+    return PoseMixture((part,), np.ones(1))
+
+
+def search(sight: GaussianSight, parameters: FusionParameters = DEFAULT_FUSION) -> ImageSearch:
+    return ImageSearch(sight, SPHERE, parameters, seed=1)
+
+
+def looked(
+    sight: GaussianSight,
+    parameters: FusionParameters = DEFAULT_FUSION,
+    *,
+    sharpness: float = 1.0,
+    off: np.ndarray = AWAY,
+) -> PoseGaussian:
+    pose = search(sight, parameters).look(belief(TRUE.centre + off), BLANK, STANDING, sharpness)
+    assert pose is not None
+    return pose
+
+
+def away(pose: PoseGaussian) -> float:
+    return float(np.linalg.norm(pose.centre - TRUE.centre))
+
+
+def test_the_pose_goes_where_the_image_is_likeliest() -> None:
+    assert away(looked(GaussianSight())) < 0.01
+    assert away(looked(GaussianSight(refines=False))) < 0.5 * np.linalg.norm(AWAY)
+
+
+def test_a_smear_counts_less_than_a_sharp_image() -> None:
+    sharp, blurred = (
+        looked(GaussianSight(refines=False), sharpness=sharpness) for sharpness in (1.0, 0.01)
+    )
+    assert away(sharp) < away(blurred)
+    assert np.trace(sharp.covariance) < np.trace(blurred.covariance)
+
+
+def test_an_image_counts_by_its_temper_and_never_for_nothing() -> None:
+    sight = GaussianSight()
+    for sharpness in (1.0, 0.5, 0.0):
+        looked(sight, sharpness=sharpness)
+    assert sight.trusts == pytest.approx([0.4, 0.2, 0.4e-3])
+
+
+def test_each_round_weighs_as_many_hypotheses_and_gets_nearer() -> None:
+    counts, errors = [], []
+    for rounds in (1, 2, 3):
+        sight = GaussianSight(refines=False)
+        parameters = replace(DEFAULT_FUSION, rounds=rounds)
+        errors.append(away(looked(sight, parameters)))
+        counts.append(sight.weighed)
+    assert np.diff(counts).tolist() == [250, 250]
+    assert errors[2] < errors[0]
+
+
+def test_without_refinement_poses_stay_hypotheses() -> None:
+    parameters = replace(ONE_ROUND, refines=False)
+    assert 0.0 < away(looked(GaussianSight(), parameters)) < np.linalg.norm(AWAY)
+
+
+@pytest.mark.parametrize(
+    "centre", [[0.0, 0.0, -1.5], [5.0, 0.0, 1.5], [0.0, -5.0, 1.5], [np.nan, 0.0, 1.5]]
+)
+def test_an_object_out_of_the_image_is_not_looked_for(centre: list[float]) -> None:
+    sight = GaussianSight()
+    one = search(sight)
+    assert one.look(belief(np.array(centre)), BLANK, STANDING, 1.0) is None
+    assert one.support is None
+    assert sight.weighed == 0
+
+
+def test_colours_are_learned_where_the_image_supports_the_pose_only() -> None:
+    certain, doubtful = GaussianSight(bonus=20.0), GaussianSight(bonus=2.9)
+    for sight in (certain, doubtful):
+        looked(sight)
+    assert len(certain.learned) == 1
+    assert np.linalg.norm(certain.learned[0] - TRUE.centre) < 1e-9
+    assert doubtful.learned == []
+
+
+def test_the_support_is_that_of_the_likeliest_pose_by_the_colours_of_training() -> None:
+    one = search(GaussianSight(bonus=20.0))
+    one.look(belief(TRUE.centre), BLANK, STANDING, 1.0)
+    assert one.support is not None
+    assert one.support.parts == pytest.approx([2.0, 4.0, 6.0, 8.0])
+    assert one.support.log_likelihood == pytest.approx(20.0)
+    assert one.support.recoloured == 0.0
+    one.look(belief(TRUE.centre), BLANK, STANDING, 1.0)
+    assert one.support.parts == pytest.approx([2.0, 4.0, 6.0, 8.0])
+    assert one.support.recoloured == pytest.approx(1.0)
+
+
+def test_the_same_seed_looks_at_the_same_hypotheses() -> None:
+    first, second = (looked(GaussianSight(refines=False)) for _ in range(2))
+    np.testing.assert_array_equal(first.centre, second.centre)
