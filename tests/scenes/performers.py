@@ -5,8 +5,9 @@ from functools import cache
 import numpy as np
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.motions.performance import Performance
-from inhand_lab.people.kinematics import Body, place_body
-from inhand_lab.people.person import Person, sample_person
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.kinematics import place_body
+from inhand_lab.people.person import SimulatedPerson, sample_person
 from inhand_lab.people.solids import head_radii
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_tracker.geometry.arrays import Array
@@ -16,7 +17,9 @@ FRAME_RATE = 15.0
 
 
 @cache
-def performed(interaction: str, participant: int) -> tuple[Person, Performance, Body]:
+def performed(
+    interaction: str, participant: int
+) -> tuple[SimulatedPerson, Performance, BodyMotion]:
     """12 s of an interaction at 15 Hz, in the person's world."""
     person = sample_person(SEED, participant)
     times = np.arange(0.0, 12.0, 1.0 / FRAME_RATE)
@@ -41,7 +44,7 @@ def angles_at(joints: Array, first: int, middle: int, last: int) -> Array:
     return np.asarray(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
 
 
-def depth_in_head(person: Person, body: Body, points: Array) -> Array:
+def depth_in_head(person: SimulatedPerson, body: BodyMotion, points: Array) -> Array:
     """How far (T, V) points (T, V, 3) are inside the head's ellipsoid, metres, along the ray."""
     offset = points - body.from_head.translation[:, None]
     local = np.einsum("tji,tvj->tvi", body.from_head.rotation, offset)

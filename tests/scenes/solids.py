@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 import trimesh
 from inhand_lab.geometry.transforms import Transform
-from inhand_lab.people.figure import LIMBS
-from inhand_lab.people.kinematics import Body
-from inhand_lab.people.person import Person
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.person import SimulatedPerson
+from inhand_lab.people.person_surface import LIMB_SOLIDS
 from inhand_lab.people.solids import belly, head_radii, pelvis, rib_cage
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_schemas.joints import Joint
@@ -27,7 +27,9 @@ HAND_RADIUS = 0.012
 """Of the stature: half the thickness of a palm."""
 
 
-def depth_in_trunk_and_head(person: Person, body: Body, points: Array) -> dict[str, Array]:
+def depth_in_trunk_and_head(
+    person: SimulatedPerson, body: BodyMotion, points: Array
+) -> dict[str, Array]:
     """How deep (T, V) points (T, V, 3) are in each solid, metres; negative is outside."""
     head = np.zeros(3), head_radii(person)
     return {
@@ -38,18 +40,18 @@ def depth_in_trunk_and_head(person: Person, body: Body, points: Array) -> dict[s
     }
 
 
-def depth_in_limbs(person: Person, body: Body, points: Array) -> dict[str, Array]:
+def depth_in_limbs(person: SimulatedPerson, body: BodyMotion, points: Array) -> dict[str, Array]:
     """How deep (T, V) points (T, V, 3) are in each limb, by the name of its further joint."""
     size = person.height * person.girth
     return {
         child.name: _depth_in_capsule(
             body.joints[:, parent], body.joints[:, child], root * size, tip * size, points
         )
-        for parent, child, root, tip, _ in LIMBS
+        for parent, child, root, tip, _ in LIMB_SOLIDS
     }
 
 
-def forearm_and_hand(person: Person, body: Body, side: str) -> tuple[Array, Array]:
+def forearm_and_hand(person: SimulatedPerson, body: BodyMotion, side: str) -> tuple[Array, Array]:
     """Centres (T, K, 3) and radii (K,) of balls that fill a forearm and the palm's middle."""
     elbow, wrist, hand = (body.joints[:, joint] for joint in ARM_JOINTS[side])
     shares = np.linspace(0.3, 1.0, 6)
@@ -59,7 +61,7 @@ def forearm_and_hand(person: Person, body: Body, side: str) -> tuple[Array, Arra
     return np.concatenate([along, hand[:, None]], axis=1), np.array(radii) * person.height
 
 
-def upper_arm(person: Person, body: Body, side: str) -> tuple[Array, Array]:
+def upper_arm(person: SimulatedPerson, body: BodyMotion, side: str) -> tuple[Array, Array]:
     """Centres (T, K, 3) and radii (K,) of balls that fill the lower two thirds of an upper arm:
     the rest lies against the ribs at the armpit."""
     elbow = ARM_JOINTS[side][0]

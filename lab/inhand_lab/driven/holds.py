@@ -19,8 +19,9 @@ from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT
 from inhand_lab.motions.performance import Contact
 from inhand_lab.motions.timeline import drift
-from inhand_lab.people.kinematics import Body, place_body
-from inhand_lab.people.person import Person
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.kinematics import place_body
+from inhand_lab.people.person import SimulatedPerson
 from inhand_lab.world.interactions import INTERACTIONS
 
 Carrier = Literal["right_hand", "left_hand", "head", "right_foot", "left_foot"]
@@ -52,7 +53,7 @@ class Hold:
 
 
 @cache
-def rehearse(interaction: str, person: Person, seed: int) -> Hold:
+def rehearse(interaction: str, person: SimulatedPerson, seed: int) -> Hold:
     """The person's hold in that interaction."""
     random = np.random.default_rng([seed, 0x401D])
     done = INTERACTIONS[interaction].perform(person, REHEARSAL, random)
@@ -82,7 +83,7 @@ def rehearse(interaction: str, person: Person, seed: int) -> Hold:
 
 
 def attach(
-    hold: Hold, body: Body, seen: SeenFrames, times: Array, random: np.random.Generator
+    hold: Hold, body: BodyMotion, seen: SeenFrames, times: Array, random: np.random.Generator
 ) -> Transform:
     """The object in the hands of a body whose wrists are turned as the hold's, world_from_object.
 
@@ -105,7 +106,7 @@ def attach(
     return Transform(palm - np.einsum("tij,tj->ti", rotation, palm_in_object), rotation)
 
 
-def _carriers(body: Body, seen: SeenFrames) -> dict[Carrier, Transform]:
+def _carriers(body: BodyMotion, seen: SeenFrames) -> dict[Carrier, Transform]:
     return {
         "right_hand": body.from_right_hand,
         "left_hand": body.from_left_hand,

@@ -27,8 +27,8 @@ from inhand_lab.geometry.transforms import (
     rotation_from_axes,
 )
 from inhand_lab.motions.timeline import drift
-from inhand_lab.people.kinematics import Body
-from inhand_lab.people.person import Person, Proportions, sample_person, standing_height
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.person import Proportions, SimulatedPerson, sample_person, stature_of
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import MIRRORED_CONTACT, PEOPLE, Simulation
@@ -127,10 +127,10 @@ def _stature(joints: Array) -> float:
         )
     )
     usual = average.shank + average.thigh + average.spine + average.chest + average.neck
-    return float(measured * standing_height(average) / usual)
+    return float(measured * stature_of(average) / usual)
 
 
-def _person_of(joints: Array, recorded: RecordedBody, seed: int) -> Person:
+def _person_of(joints: Array, recorded: RecordedBody, seed: int) -> SimulatedPerson:
     """The recorded body with the manner of the seed's participant of that number."""
     manner = sample_person(seed, recorded.participant)
     height = _stature(joints)
@@ -156,7 +156,7 @@ def _turn_unseen(
     left_wrist: Array,
     times: Array,
     random: np.random.Generator,
-) -> Body:
+) -> BodyMotion:
     """The body with its hands and head turned by what no skeleton shows."""
 
     def turned(hand: Transform, wrist: Array, joint: Joint) -> Transform:
@@ -173,4 +173,4 @@ def _turn_unseen(
     moved[:, Joint.HAND_RIGHT] = right_hand.translation
     moved[:, Joint.HAND_LEFT] = left_hand.translation
     head = Transform(seen.head.translation, seen.head.rotation @ look)
-    return Body(moved, seen.pelvis, seen.chest, head, right_hand, left_hand)
+    return BodyMotion(moved, seen.pelvis, seen.chest, head, right_hand, left_hand)

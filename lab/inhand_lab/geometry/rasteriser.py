@@ -42,7 +42,7 @@ class Canvas:
         return np.asarray(_to_millimetres(self.inverse_depth))
 
 
-def draw(
+def draw_triangles(
     canvas: Canvas,
     intrinsics: Intrinsics,
     vertices: Singles,

@@ -44,7 +44,7 @@ def lit(normals: Array, colours: Singles) -> Singles:
     return np.asarray(colours * brightness[:, None], np.float32)
 
 
-def joined(surfaces: list[Surface]) -> Surface:
+def join_surfaces(surfaces: list[Surface]) -> Surface:
     """Several surfaces as one."""
     offsets = np.cumsum([0, *(len(surface.vertices) for surface in surfaces)])
     return Surface(

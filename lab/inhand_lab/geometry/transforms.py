@@ -75,7 +75,7 @@ def rotation_from_axes(y: ArrayLike, towards_z: ArrayLike) -> Array:
     return np.stack(np.broadcast_arrays(x_axis, y_axis, np.cross(x_axis, y_axis)), axis=-1)
 
 
-def blend(first: Transform, second: Transform, share: Array) -> Transform:
+def interpolate(first: Transform, second: Transform, share: Array) -> Transform:
     """From first (share 0) to second (share 1), along a line and the shortest rotation.
 
     share (T,); first and second are series (T, ...).

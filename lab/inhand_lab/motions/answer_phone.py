@@ -24,7 +24,7 @@ from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, named
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.phone import PHONE_LENGTH, PHONE_THICKNESS
 from inhand_lab.people.kinematics import Trunk, place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 from inhand_lab.people.solids import head_radii
 
 OPENING = (*TAKE, Movement("fetch", 0.9), Pause("read", 0.6))
@@ -61,7 +61,7 @@ PLUGGED = 0.006
 """How deep the phone stands in its dock."""
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Answering a phone at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, PUT_BACK)
     sides = _sides(random, stages)
@@ -126,7 +126,9 @@ def _stance(
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _dock(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Transform]:
+def _dock(
+    person: SimulatedPerson, random: np.random.Generator
+) -> tuple[tuple[Box, ...], Transform]:
     """A table at the right hand with a dock on it, and the phone in the dock facing left."""
     size = person.height / 1.75
     x, y = np.array([0.31, 0.32]) * size + random.normal(0.0, 0.015, 2)
@@ -151,7 +153,7 @@ def _slant(times: Array, stages: list[Stage]) -> Array:
 
 
 def _grip(
-    person: Person, times: Array, random: np.random.Generator, slant: Array, up: Array
+    person: SimulatedPerson, times: Array, random: np.random.Generator, slant: Array, up: Array
 ) -> Transform:
     """The phone in the fingers, its back to the palm, object_from_hand (T).
 
@@ -167,7 +169,7 @@ def _grip(
 
 
 def _carry(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,
@@ -209,7 +211,7 @@ def _carry(
     return follow(times, keys)
 
 
-def _at_right_ear(person: Person, random: np.random.Generator) -> Transform:
+def _at_right_ear(person: SimulatedPerson, random: np.random.Generator) -> Transform:
     """The phone flat on the head from the ear towards the mouth, head_from_object."""
     radii = head_radii(person)
     touched = radii * EAR

@@ -7,14 +7,14 @@ from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.people.kinematics import Trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 STRETCH = 0.99
 """Furthest distance of shoulder and wrist as a share of the arm's length."""
 ROUNDS = 8
 
 
-def overreach(person: Person, shoulder: Array, hand: Transform) -> Array:
+def overreach(person: SimulatedPerson, shoulder: Array, hand: Transform) -> Array:
     """How (T, 3), in metres, a hand (T) must move for its wrist to come within reach."""
     body = person.proportions
     wrist = hand.translation - hand.rotation[:, :, 1] * body.palm
@@ -25,7 +25,7 @@ def overreach(person: Person, shoulder: Array, hand: Transform) -> Array:
 
 
 def within_both_reaches(
-    person: Person,
+    person: SimulatedPerson,
     trunk: Trunk,
     held: Transform,
     right_grip: Transform,

@@ -31,7 +31,7 @@ from inhand_lab.motions.timeline import (
 )
 from inhand_lab.objects.mug import MUG_HANDLE_REACH, MUG_HEIGHT, MUG_RADIUS
 from inhand_lab.people.kinematics import Trunk, place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.5),
@@ -60,7 +60,7 @@ FINGERS_AT_TABLE, FINGERS_CARRIED, FINGERS_AT_MOUTH = 0.25, 0.80, 1.40
 """Where the fingers point, as turns to the left from straight ahead, radians."""
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Drinking at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     posture = stand(person, times, random, _stance(person, times, random, stages))
@@ -93,7 +93,7 @@ def perform(person: Person, times: Array, random: np.random.Generator) -> Perfor
 
 
 def _stance(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Stance:
     """A look and a twist to the table, and the head back while drinking."""
     count = len(times)
@@ -112,7 +112,7 @@ def _stance(
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
     """A small table at the right hand, of a height that suits, and the mug's place on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.31, 0.30]) * size + random.normal(0.0, 0.015, 2)
@@ -121,7 +121,7 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
     return side_table(x + 0.08, y + 0.10, top), spot
 
 
-def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
+def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
     """A fist around the handle, the cup ahead of it and to its left: object_from_hand (T)."""
     handle = np.array([0.0, MUG_RADIUS + MUG_HANDLE_REACH, 0.0])
     square = rotation_about("z", FIST_TURN + person.manner.grip_turn)
@@ -129,7 +129,7 @@ def _grip(person: Person, times: Array, random: np.random.Generator) -> Transfor
 
 
 def _carry(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,
@@ -172,7 +172,7 @@ def _carry(
 
 
 def _sipping(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,

@@ -26,7 +26,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.motions.timeline import Stage, flow
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 DOWNSWING = (-0.267, 0.14)
 DOWNSWING_RATE = (0.95, 1.4)
@@ -90,7 +90,7 @@ class Swing:
 
 
 def plan_swings(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Swing:
     """The stages "reach", "take", "waggle", "swing", "recover", "return" and "withdraw"."""
     wrist = 1.0 + 0.2 * person.manner.grip_slide
@@ -140,7 +140,7 @@ def _waggle(stage: Stage, address: Array, random: np.random.Generator) -> list[t
 
 
 def _swing(
-    person: Person, stage: Stage, wrist: float, random: np.random.Generator
+    person: SimulatedPerson, stage: Stage, wrist: float, random: np.random.Generator
 ) -> list[tuple[float, Array]]:
     """One swing; its size, its wrist and its backswing are the person's and vary a little."""
     size = np.clip(person.manner.amplitude * (1.0 + 0.03 * random.normal()), 0.75, 1.05)

@@ -11,7 +11,7 @@ from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, normalised, rotation_about
 from inhand_lab.motions.timeline import drift
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 BAR_IN_PALM = np.array([-0.022, 0.018, 0.0])
 """Where a gripped bar passes through the fist, in the hand's frame; the bar runs along z."""
@@ -25,7 +25,7 @@ DRIFT_PERIOD = 6.0
 
 
 def hold_bar(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     point: Array,

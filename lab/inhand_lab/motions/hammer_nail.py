@@ -39,7 +39,7 @@ from inhand_lab.motions.timeline import (
 )
 from inhand_lab.objects.hammer import FACE_REACH, HAMMER_HALF_LENGTH, HEAD_HEIGHT
 from inhand_lab.people.kinematics import Trunk, place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     *TAKE,
@@ -103,7 +103,7 @@ class Bench:
     base: Array
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Hammering at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     strokes = list(_strokes(person, random, stages))
@@ -136,7 +136,9 @@ def perform(person: Person, times: Array, random: np.random.Generator) -> Perfor
     )
 
 
-def _strokes(person: Person, random: np.random.Generator, stages: list[Stage]) -> Iterator[Stroke]:
+def _strokes(
+    person: SimulatedPerson, random: np.random.Generator, stages: list[Stage]
+) -> Iterator[Stroke]:
     """The strokes of every burst in order of time."""
     for stage in stages:
         if stage.name in STROKES:
@@ -212,7 +214,7 @@ def _bending(times: Array, stages: list[Stage]) -> Array:
     return bent
 
 
-def _bench(person: Person, random: np.random.Generator) -> Bench:
+def _bench(person: SimulatedPerson, random: np.random.Generator) -> Bench:
     """A bench ahead, of the height of a dining table."""
     size = person.height / 1.75
     top = 0.45 * person.height + float(random.normal(0.0, 0.015))
@@ -235,7 +237,7 @@ def _lying(random: np.random.Generator, spot: Array) -> Transform:
     return Transform(spot + aside, turned @ on_side)
 
 
-def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
+def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
     """A fist near the handle's end, object_from_hand (T)."""
     point = np.array([0.0, 0.0, GRIP_HEIGHT + 0.03 * max(person.manner.grip_slide, -0.3)])
     turned = rotation_about("xz", OBLIQUE, 0.4 * person.manner.grip_turn)
@@ -243,7 +245,7 @@ def _grip(person: Person, times: Array, random: np.random.Generator) -> Transfor
 
 
 def _strike(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,

@@ -27,7 +27,7 @@ from inhand_lab.motions.reaching import named
 from inhand_lab.motions.timeline import Key, Movement, Pause, drift, follow, schedule
 from inhand_lab.objects.golf_club import SOLE, golf_club
 from inhand_lab.people.kinematics import BALL_HEIGHT, Posture, Trunk, place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.3),
@@ -73,7 +73,7 @@ LEAN, ROLL = np.radians((30.0, -45.0))
 RACK_HEIGHT, RACK_DEPTH = 0.45, 0.11
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Golf at these times, in seconds from the start; the target is at the left."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     swing = plan_swings(person, times, random, stages)
@@ -127,7 +127,9 @@ def perform(person: Person, times: Array, random: np.random.Generator) -> Perfor
     return Performance(posture, right_hand, left_hand, carried, contacts(times, changes), rack)
 
 
-def _posture(person: Person, times: Array, random: np.random.Generator, swing: Swing) -> Posture:
+def _posture(
+    person: SimulatedPerson, times: Array, random: np.random.Generator, swing: Swing
+) -> Posture:
     """Hips and shoulders turning about a spine that leans to the ball; eyes on the ball.
 
     The right heel comes off the floor as the weight goes to the left foot.
@@ -163,7 +165,7 @@ def _angles(world_from_one: Array, world_from_other: Array) -> Array:
     return Rotation.from_matrix(between).as_euler("yxz")[:, [1, 0, 2]]
 
 
-def _pivot(person: Person, sole: Array, heel: Array) -> Transform:
+def _pivot(person: SimulatedPerson, sole: Array, heel: Array) -> Transform:
     """The right foot, world_from_foot (T), its heel lifted by an angle (T,) over the ball."""
     ball = np.array([0.0, person.proportions.foot, BALL_HEIGHT])
     flat = rotation_about("z", -TOES_OUT)
@@ -185,7 +187,7 @@ def _lean_on_rack(random: np.random.Generator) -> tuple[tuple[Box, ...], Transfo
 
 
 def _grips(
-    person: Person, times: Array, random: np.random.Generator
+    person: SimulatedPerson, times: Array, random: np.random.Generator
 ) -> tuple[Transform, Transform]:
     """The right and the left hand, object_from_hand (T): thumbs down the shaft, left hand above."""
     right, left = (
@@ -201,7 +203,7 @@ def _grips(
     return right, left.mirrored()
 
 
-def _swing_club(person: Person, trunk: Trunk, swing: Swing, address: int) -> Transform:
+def _swing_club(person: SimulatedPerson, trunk: Trunk, swing: Swing, address: int) -> Transform:
     """The club, world_from_object (T), its face turning with the left forearm.
 
     The club's plane is as steep as brings the head to the floor in the frame of the address.

@@ -32,7 +32,7 @@ from inhand_lab.motions.reaching import (
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, flow, follow, schedule, track
 from inhand_lab.objects.racket import HANDLE_RADIUS
 from inhand_lab.people.kinematics import Trunk, place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (*TAKE, Movement("lift", 0.9))
 USE = (Pause("ready", 0.4), Movement("stroke", 1.35), Movement("recover", 0.7))
@@ -67,7 +67,7 @@ STEP = 0.13
 """Of the left foot into the ball, in statures."""
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Tennis at these times, in seconds from the start; the ball comes from ahead."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     figures = _figures(person, times, random, stages)
@@ -104,7 +104,7 @@ def perform(person: Person, times: Array, random: np.random.Generator) -> Perfor
 
 
 def _figures(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Array:
     """The figures of STROKE over time (T, 12), angles in radians, the wrist in the racket's."""
     knots = [(0.0, READY)]
@@ -119,7 +119,9 @@ def _figures(
     return figures
 
 
-def _stroke(person: Person, stage: Stage, random: np.random.Generator) -> list[tuple[float, Array]]:
+def _stroke(
+    person: SimulatedPerson, stage: Stage, random: np.random.Generator
+) -> list[tuple[float, Array]]:
     """One stroke, of the person's size and wrist with some variation, at a ball of its own."""
     usual, range_ = LAID_BACK
     wrist = usual + range_ * (0.7 * person.manner.grip_slide + 0.3 * random.normal())
@@ -137,7 +139,7 @@ def _stroke(person: Person, stage: Stage, random: np.random.Generator) -> list[t
 
 
 def _stance(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     stages: list[Stage],
@@ -165,7 +167,9 @@ def _stance(
     return Stance(right_foot, left_foot, np.zeros(count), shift, trunk, head)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Transform]:
+def _table(
+    person: SimulatedPerson, random: np.random.Generator
+) -> tuple[tuple[Box, ...], Transform]:
     """A table at the left, and the racket on it, its handle to the right, world_from_object."""
     size = person.height / 1.75
     x, y = np.array([-0.03, 0.44]) * size + random.normal(0.0, 0.015, 2)
@@ -182,14 +186,14 @@ def _pointing(to_left: Array, up: Array, roll: Array) -> Array:
     return rotation_about("xz", up, to_left) @ POINTING_AHEAD @ rotation_about("z", roll)
 
 
-def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
+def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
     """A fist whose palm is behind the strings, object_from_hand (T)."""
     square = rotation_about("z", -0.5 * np.pi + 0.5 * person.manner.grip_turn)
     point = np.array([0.0, 0.0, 0.02 * person.manner.grip_slide])
     return hold_bar(person, times, random, point, square @ rotation_about("x", OBLIQUE))
 
 
-def _play(person: Person, trunk: Trunk, figures: Array, grip: Transform) -> Transform:
+def _play(person: SimulatedPerson, trunk: Trunk, figures: Array, grip: Transform) -> Transform:
     """The racket at play, world_from_object (T), where the arm can reach."""
     centre = trunk.world_from_chest.translation
     hand = centre + figures[:, HAND] * (person.height / 1.75)
@@ -199,7 +203,7 @@ def _play(person: Person, trunk: Trunk, figures: Array, grip: Transform) -> Tran
     return Transform(racket.translation + shift, rotation)
 
 
-def _balancing_hand(person: Person, trunk: Trunk, figures: Array) -> Transform:
+def _balancing_hand(person: SimulatedPerson, trunk: Trunk, figures: Array) -> Transform:
     """The left hand, world_from_hand (T): by the racket's throat, ahead, and at the side."""
     centre = trunk.world_from_chest.translation
     place = centre + figures[:, LEFT_HAND] * (person.height / 1.75)

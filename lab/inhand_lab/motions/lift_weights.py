@@ -25,7 +25,7 @@ from inhand_lab.motions.steps import Turn, turn_on_the_spot
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.barbell import BAR_RADIUS
 from inhand_lab.people.kinematics import Trunk, place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.4),
@@ -95,7 +95,7 @@ class Stool:
         )
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Lifting weights at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     stool = _stool(person, random)
@@ -136,14 +136,14 @@ def perform(person: Person, times: Array, random: np.random.Generator) -> Perfor
     )
 
 
-def _stool(person: Person, random: np.random.Generator) -> Stool:
+def _stool(person: SimulatedPerson, random: np.random.Generator) -> Stool:
     """A stool ahead and to the right."""
     heading = -float(np.clip(random.normal(0.95, 0.15), 0.65, 1.25))
     ahead = 0.44 * person.height / 1.75 + float(random.normal(0.0, 0.01))
     return Stool(heading, ahead, float(random.normal(0.50, 0.02)))
 
 
-def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
+def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
     """The right fist around the bar from below, object_from_hand (T)."""
     wide = max(person.proportions.shoulder_half_width + 0.035, 0.125 * person.height * person.girth)
     aside = wide + 0.02 * person.manner.grip_slide
@@ -152,7 +152,7 @@ def _grip(person: Person, times: Array, random: np.random.Generator) -> Transfor
 
 
 def _stance(
-    person: Person, times: Array, stages: list[Stage], stool: Stool, curled: Array
+    person: SimulatedPerson, times: Array, stages: list[Stage], stool: Stool, curled: Array
 ) -> Stance:
     """Turning and stooping to the stool at both ends; leaning back a little with the weight."""
     stoop, rise = named(stages, "stoop"), named(stages, "rise")
@@ -208,7 +208,7 @@ def _stance(
     )
 
 
-def _knees_bent(person: Person, stool: Stool) -> float:
+def _knees_bent(person: SimulatedPerson, stool: Stool) -> float:
     """How far the hips go down, metres, until the arms reach the bar from a stooping trunk."""
     right_foot, left_foot = feet_apart(1, STANCE_HALF_WIDTH)
     back, stooped = np.array([[0.0, -HIPS_BACK, 0.0]]), np.array([[LEAN, 0.0, 0.0]])
@@ -220,7 +220,7 @@ def _knees_bent(person: Person, stool: Stool) -> float:
     return max(float(height - stool.height - above), 0.0)
 
 
-def _arm_length(person: Person) -> float:
+def _arm_length(person: SimulatedPerson) -> float:
     """Shoulder to a bar in the fist, metres."""
     body = person.proportions
     return body.upper_arm + body.forearm + body.palm + float(BAR_IN_PALM[1])
@@ -239,7 +239,7 @@ def _curls(times: Array, random: np.random.Generator, stages: list[Stage]) -> Ar
 
 
 def _carry(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,

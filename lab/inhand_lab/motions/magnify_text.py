@@ -21,7 +21,7 @@ from inhand_lab.motions.reaching import (
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.magnifier import HANDLE_END, HANDLE_TOP, RIM_RADIUS
 from inhand_lab.people.kinematics import place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (*TAKE, Movement("lift", 1.0), Pause("focus", 0.4))
 USE = (Movement("line", 1.5), Pause("study", 0.4), Movement("next line", 0.8), Pause("focus", 0.3))
@@ -43,7 +43,7 @@ LINE_ENDS = (-0.085, 0.085)
 """Where lines begin and end from the middle of the book."""
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Reading at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, PUT_BACK)
     lens = _read(person, times, random, stages)
@@ -65,7 +65,9 @@ def perform(person: Person, times: Array, random: np.random.Generator) -> Perfor
     )
 
 
-def _read(person: Person, times: Array, random: np.random.Generator, stages: list[Stage]) -> Array:
+def _read(
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
+) -> Array:
     """The lens (T, 3) from the middle of the page: along a line, up the page and above it."""
 
     def height() -> float:
@@ -105,7 +107,7 @@ def _stance(times: Array, stages: list[Stage], lens: Array) -> Stance:
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _desk(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
+def _desk(person: SimulatedPerson, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
     """A high table with an open book at its right edge, and the middle of its pages (3,)."""
     ahead = 0.45 * person.height / 1.75 + 0.15 * (person.girth - 1.0) + random.normal(0.0, 0.015)
     across = random.normal(0.09, 0.015)

@@ -41,7 +41,7 @@ from inhand_lab.motions.timeline import (
 )
 from inhand_lab.objects.paint_brush import BRISTLES_BELOW, FERRULE_HALF_THICKNESS, paint_brush
 from inhand_lab.people.kinematics import place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = TAKE
 USE = (
@@ -85,7 +85,7 @@ TO_THUMB, TO_PALM = 0.20, 0.25
 """How far the bristles lean to thumb and palm of a usual hand, radians."""
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Painting at these times, in seconds from the start; the board is at the right."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     size = person.height / 1.75
@@ -103,7 +103,9 @@ def perform(person: Person, times: Array, random: np.random.Generator) -> Perfor
     return Performance(posture, right_hand, left_hand, carried, contact, furniture)
 
 
-def _path(person: Person, times: Array, random: np.random.Generator, stages: list[Stage]) -> Array:
+def _path(
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
+) -> Array:
     """The bristles on the board (T, 4): ahead and up, metres, and where they point, radians."""
     manner = person.manner
     usual = PAINTING + np.array([0.4 * manner.grip_tilt, 0.3 * manner.grip_turn])
@@ -130,7 +132,7 @@ def _path(person: Person, times: Array, random: np.random.Generator, stages: lis
     return path
 
 
-def _stance(person: Person, times: Array, stages: list[Stage], path: Array) -> Stance:
+def _stance(person: SimulatedPerson, times: Array, stages: list[Stage], path: Array) -> Stance:
     """Turned to the board, the eyes on the brush."""
     count = len(times)
     painting = np.zeros(count)
@@ -161,7 +163,9 @@ def _board(x: float) -> Box:
     return Box((x + 0.5 * deep, 0.10, 0.5 * high), BOARD_SIZE, BOARD_COLOUR)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Transform, Array]:
+def _table(
+    person: SimulatedPerson, random: np.random.Generator
+) -> tuple[tuple[Box, ...], Transform, Array]:
     """A table with a pot; the brush in it, world_from_object; the middle of the pot's floor (3,).
 
     The bristles are on the floor of the pot, the handle is on its near edge.
@@ -203,7 +207,7 @@ def _on_board(path: Array, board: float) -> Transform:
     return Transform(place, rotation)
 
 
-def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
+def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
     """Fingers and thumb on the flat sides above the ferrule, object_from_hand (T)."""
     leaning = TO_THUMB + person.manner.grip_tilt
     turned = rotation_about("zx", -TO_PALM + 0.5 * person.manner.grip_turn, leaning)

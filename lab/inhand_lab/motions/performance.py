@@ -18,7 +18,7 @@ from inhand_lab.geometry.transforms import (
 from inhand_lab.motions.furniture import Box
 from inhand_lab.motions.timeline import drift, minimum_jerk
 from inhand_lab.people.kinematics import Posture, Trunk
-from inhand_lab.people.person import Person, hip_height
+from inhand_lab.people.person import SimulatedPerson, hip_height
 
 
 class Contact(IntEnum):
@@ -91,7 +91,9 @@ def contacts(times: Array, changes: list[tuple[float, Contact]]) -> Bytes:
     return np.asarray(values[np.searchsorted(starts, times, side="right") - 1])
 
 
-def stand(person: Person, times: Array, random: np.random.Generator, stance: Stance) -> Posture:
+def stand(
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stance: Stance
+) -> Posture:
     """A posture on those feet: hips within the legs' reach, with the person's stoop and sway.
 
     A lean is shared between hips and back, and the hips go back to keep the balance.
@@ -119,7 +121,7 @@ def stand(person: Person, times: Array, random: np.random.Generator, stance: Sta
     )
 
 
-def _hip_reach(person: Person, hips: Array, heading: Array, stance: Stance) -> Array:
+def _hip_reach(person: SimulatedPerson, hips: Array, heading: Array, stance: Stance) -> Array:
     """Height (T,) of the hip joints above the floor at which the first leg is nearly straight."""
     body = person.proportions
     length = EASY_KNEES * (hip_height(body) - body.ankle)
@@ -132,7 +134,7 @@ def _hip_reach(person: Person, hips: Array, heading: Array, stance: Stance) -> A
 
 
 def hanging_hands(
-    person: Person, trunk: Trunk, random: np.random.Generator
+    person: SimulatedPerson, trunk: Trunk, random: np.random.Generator
 ) -> tuple[Transform, Transform]:
     """The right and the left hand (T) hanging at ease beside the thighs."""
     heading = heading_of(trunk.world_from_chest)
@@ -142,7 +144,7 @@ def hanging_hands(
 
 
 def _hang(
-    person: Person, shoulder: Array, heading: Array, random: np.random.Generator
+    person: SimulatedPerson, shoulder: Array, heading: Array, random: np.random.Generator
 ) -> Transform:
     body = person.proportions
     reach = 0.965 * (body.upper_arm + body.forearm) + body.palm
@@ -159,7 +161,7 @@ def heading_of(frame: Transform) -> Array:
     return np.asarray(np.arctan2(-forward[:, 0], forward[:, 1]))
 
 
-def mouth(person: Person, trunk: Trunk) -> Array:
+def mouth(person: SimulatedPerson, trunk: Trunk) -> Array:
     """The lips (T, 3) in the world."""
     body = person.proportions
     point = np.array([0.0, 0.93 * body.head_half_depth, -0.54 * body.head_half_height])

@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.geometry.transforms import Transform, blend, rotation_about, rotation_from_axes
+from inhand_lab.geometry.transforms import (
+    Transform,
+    interpolate,
+    rotation_about,
+    rotation_from_axes,
+)
 from inhand_lab.motions.furniture import Box, side_table
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
@@ -23,7 +28,7 @@ from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, named, reachi
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.flute import EMBOUCHURE, TUBE_RADIUS
 from inhand_lab.people.kinematics import Trunk, place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (*TAKE, Movement("fetch", 1.0))
 USE = (Movement("raise", 0.8), Pause("play", 1.3), Movement("lower", 0.75), Pause("rest", 0.4))
@@ -50,7 +55,7 @@ AROUND_TABLE = (-0.15, 0.0, 0.06)
 """How the left hand's way to the flute and back swings out."""
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Playing the flute at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     posture = stand(person, times, random, _stance(person, times, random, stages))
@@ -88,7 +93,7 @@ def perform(person: Person, times: Array, random: np.random.Generator) -> Perfor
 
 
 def _stance(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Stance:
     """A look at the table; the face turned over the left shoulder and a sway while playing."""
     count = len(times)
@@ -117,7 +122,7 @@ def _playing(times: Array, stages: list[Stage]) -> Array:
     return track(times, keys)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
     """A table ahead, and where the flute's middle is as it lies on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.14, 0.42]) * size + random.normal(0.0, 0.015, 2)
@@ -126,7 +131,7 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
 
 
 def _right_grip(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Transform:
     """Thumb and fingers of the right hand, object_from_hand (T), rolled from above to beside."""
     point = np.array([0.0, RIGHT_HAND + 0.015 * person.manner.grip_slide, 0.0])
@@ -149,7 +154,7 @@ def _right_grip(
 
 
 def _left_grip(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Transform:
     """Thumb and fingers of the left hand, object_from_hand (T), rolled up to the lips."""
     point = np.array([0.0, LEFT_HAND + 0.015 * person.manner.grip_slide, 0.0])
@@ -158,7 +163,7 @@ def _left_grip(
         hold_bar(person, times, random, point, turn @ rotation, UNDER_LEFT_FINGERS)
         for rotation in (LEFT_AT_REST, LEFT_AT_LIPS)
     )
-    rolled = blend(at_rest, at_lips, _playing(times, stages))
+    rolled = interpolate(at_rest, at_lips, _playing(times, stages))
     return (rolled @ _fingering(times, random)).mirrored()
 
 
@@ -169,7 +174,7 @@ def _fingering(times: Array, random: np.random.Generator) -> Transform:
 
 
 def _carry(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,
@@ -203,7 +208,9 @@ def _carry(
     return follow(times, keys)
 
 
-def _at_lips(person: Person, times: Array, random: np.random.Generator, trunk: Trunk) -> Transform:
+def _at_lips(
+    person: SimulatedPerson, times: Array, random: np.random.Generator, trunk: Trunk
+) -> Transform:
     """The flute as it is played, world_from_object (T)."""
     droop = 0.20 + 0.15 * person.manner.grip_tilt + drift(times, random, 0.04, 2.5)
     yaw = 0.20 + max(person.girth - 1.0, 0.0) + drift(times, random, 0.04, 3.0)

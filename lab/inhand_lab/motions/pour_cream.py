@@ -27,7 +27,7 @@ from inhand_lab.motions.reaching import (
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.jug import JUG_BELLY, JUG_HANDLE_REACH, JUG_HEIGHT, SPOUT
 from inhand_lab.people.kinematics import place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (*TAKE, Movement("lift", 1.0))
 USE = (
@@ -54,7 +54,7 @@ CUP_WIDTH, CUP_HEIGHT = 0.084, 0.066
 CUP_COLOUR, COFFEE = (224, 222, 216), (72, 44, 26)
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Pouring at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     posture = stand(person, times, random, _stance(times, stages))
@@ -88,7 +88,9 @@ def _stance(times: Array, stages: list[Stage]) -> Stance:
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array, Array]:
+def _table(
+    person: SimulatedPerson, random: np.random.Generator
+) -> tuple[tuple[Box, ...], Array, Array]:
     """A table ahead, the jug's place on it (3,) and the middle of the cup's rim (3,)."""
     size = person.height / 1.75
     top = 0.53 * person.height + random.normal(0.0, 0.015)
@@ -113,7 +115,7 @@ def _cup(x: float, y: float, top: float) -> tuple[Box, ...]:
 
 
 def _carry(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     spot: Array,

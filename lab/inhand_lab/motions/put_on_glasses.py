@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.geometry.transforms import Transform, blend, rotation_about, rotation_from_axes
+from inhand_lab.geometry.transforms import (
+    Transform,
+    interpolate,
+    rotation_about,
+    rotation_from_axes,
+)
 from inhand_lab.motions.furniture import Box, side_table
 from inhand_lab.motions.grips import pinch
 from inhand_lab.motions.performance import (
@@ -21,7 +26,7 @@ from inhand_lab.motions.performance import (
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, follow, schedule, track
 from inhand_lab.objects.glasses import EAR_DROP, TEMPLE_OFFSET
 from inhand_lab.people.kinematics import Trunk, place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.4),
@@ -55,7 +60,7 @@ RAISED = Transform(
 """Where the right hand passes on its way between thigh and face, from the upright chest."""
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Putting on glasses at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     posture = stand(person, times, random, _stance(times, random, stages))
@@ -154,7 +159,7 @@ def _stance(times: Array, random: np.random.Generator, stages: list[Stage]) -> S
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
     """A small table at the right hand, and where the glasses' bridge is as they lie on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.24, 0.37]) * size + random.normal(0.0, 0.015, 2)
@@ -163,7 +168,7 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
 
 
 def _grip(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Transform:
     """Thumb and fingers at a hinge, object_from_hand (T); they are shifted on the way to the face.
 
@@ -174,7 +179,7 @@ def _grip(
     turn = rotation_about("y", 0.6 * person.manner.grip_turn)
     at_table = pinch(times, random, point, turn @ TABLE_GRIP)
     at_face = pinch(times, random, point, turn @ FACE_GRIP)
-    between = blend(at_table, at_face, np.full(len(times), 0.5))
+    between = interpolate(at_table, at_face, np.full(len(times), 0.5))
     keys = [Key(0.0, at_table)]
     for stage in stages:
         if stage.name in ("fetch", "put on", "take off", "return"):
@@ -184,7 +189,7 @@ def _grip(
 
 
 def _carry(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,

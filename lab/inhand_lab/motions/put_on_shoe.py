@@ -31,7 +31,7 @@ from inhand_lab.motions.timeline import (
 )
 from inhand_lab.objects.shoe import HEEL_BEHIND
 from inhand_lab.people.kinematics import Posture
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.4),
@@ -81,7 +81,7 @@ BESIDE_SHANK = rotation_from_axes([0.0, 0.25, -1.0], [0.0, 1.0, 0.25])
 """A right hand's rotation on the thigh and at the outer side of the lower leg, in the world."""
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Putting on a shoe at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     right_foot = _right_foot(person, times, random, stages)
@@ -109,7 +109,7 @@ def _changes(stages: list[Stage]) -> list[tuple[float, Contact]]:
 
 
 def _right_foot(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Transform:
     """The right foot, world_from_foot (T): raised to the hands; on its heel, the toes tapping."""
     raised = [(0.0, (0.0,))]
@@ -133,12 +133,12 @@ def _right_foot(
     return Transform(place, rotation)
 
 
-def _feet_ahead(person: Person) -> float:
+def _feet_ahead(person: SimulatedPerson) -> float:
     return person.proportions.thigh - BEHIND * person.height
 
 
 def _sit(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     stages: list[Stage],
@@ -173,14 +173,14 @@ def _sit(
     )
 
 
-def _stool(person: Person) -> Box:
+def _stool(person: SimulatedPerson) -> Box:
     """The stool, its top just under the thighs."""
     high = (SEAT - UNDER_HIPS) * person.height
     return Box((0.0, -BEHIND * person.height - 0.05, 0.5 * high), (STOOL, STOOL, high), WOOD)
 
 
 def _hands_on_knees(
-    person: Person, random: np.random.Generator, count: int
+    person: SimulatedPerson, random: np.random.Generator, count: int
 ) -> tuple[Transform, Transform]:
     """The right and the left hand, world_from_hand (T), on the thighs near the knees."""
     body = person.proportions
@@ -194,7 +194,7 @@ def _hands_on_knees(
     return hands[0], hands[1].mirrored()
 
 
-def _left_hand_on_leg(person: Person, times: Array) -> Transform:
+def _left_hand_on_leg(person: SimulatedPerson, times: Array) -> Transform:
     """The left hand, world_from_hand (T), at the outer side of the left lower leg."""
     body = person.proportions
     aside = 0.028 * person.height * person.girth + 0.078
@@ -202,7 +202,7 @@ def _left_hand_on_leg(person: Person, times: Array) -> Transform:
     return Transform(np.array(place), BESIDE_SHANK).repeated(len(times)).mirrored()
 
 
-def _grip(person: Person, times: Array, random: np.random.Generator) -> Transform:
+def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
     """Thumb and fingers on the collar near the heel, object_from_hand (T)."""
     slid = np.array([0.0, 0.012 * person.manner.grip_slide, 0.0])
     turned = ON_COLLAR @ rotation_about("x", 0.5 * person.manner.grip_turn)
@@ -227,7 +227,7 @@ def _reaching(
 
 
 def _carry(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     stages: list[Stage],

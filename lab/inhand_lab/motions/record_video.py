@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.geometry.transforms import Transform, blend, rotation_about
+from inhand_lab.geometry.transforms import Transform, interpolate, rotation_about
 from inhand_lab.motions.furniture import Box, side_table
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
@@ -22,7 +22,7 @@ from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, named, reachi
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.camera import CAMERA_HEIGHT, GRIP_OFFSET
 from inhand_lab.people.kinematics import Trunk, place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (*TAKE, Movement("fetch", 1.0), Pause("ready", 0.3), Movement("raise", 1.0))
 USE = (Pause("film", 0.9), Movement("pan", 1.1), Pause("film", 0.9), Movement("pan", 1.1))
@@ -40,7 +40,7 @@ USUAL_PAN = 0.50
 """To either side, radians."""
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Filming at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     pan, tilt = _aim(person, times, random, stages)
@@ -80,7 +80,7 @@ def perform(person: Person, times: Array, random: np.random.Generator) -> Perfor
 
 
 def _aim(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> tuple[Array, Array]:
     """Where the camera is meant to look: its turn to the left and up (T,), radians."""
     lower = named(stages, "lower")
@@ -119,7 +119,7 @@ def _raised(times: Array, stages: list[Stage]) -> Array:
     return track(times, [(up.start, 0.0), (up.end, 1.0), (down.start, 1.0), (down.end, 0.0)])
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
     """A small table at the right hand and the camera's place on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.28, 0.34]) * size + random.normal(0.0, 0.015, 2)
@@ -128,7 +128,7 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
 
 
 def _grip(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Transform:
     """The right hand about the camera's side, thumb behind, object_from_hand (T)."""
     steepness = {"fetch": 0.5, "raise": 1.0, "lower": 0.5, "return": 0.0}
@@ -147,11 +147,11 @@ def _grip(
     for stage in stages:
         if stage.name in steepness:
             keys += [(stage.start, keys[-1][1]), (stage.end, steepness[stage.name])]
-    return blend(at_table, at_face, track(times, keys))
+    return interpolate(at_table, at_face, track(times, keys))
 
 
 def _carry(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,

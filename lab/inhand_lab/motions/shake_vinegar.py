@@ -20,7 +20,7 @@ from inhand_lab.motions.reaching import (
 from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
 from inhand_lab.objects.vinegar_bottle import BOTTLE_HALF_HEIGHT, BOTTLE_RADIUS
 from inhand_lab.people.kinematics import place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (*TAKE, Movement("lift", 0.85))
 USE = (
@@ -47,7 +47,7 @@ PLATE_SIZE, PLATE_HEIGHT = 0.25, 0.018
 CHINA, CHIPS = (232, 234, 238), (226, 178, 84)
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Shaking vinegar at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     posture = stand(person, times, random, _stance(times, stages))
@@ -80,7 +80,9 @@ def _stance(times: Array, stages: list[Stage]) -> Stance:
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...], Array, Array]:
+def _table(
+    person: SimulatedPerson, random: np.random.Generator
+) -> tuple[tuple[Box, ...], Array, Array]:
     """A table ahead, the bottle's place on it (3,) and the middle of the plate (3,)."""
     size = person.height / 1.75
     top = 0.53 * person.height + random.normal(0.0, 0.015)
@@ -99,7 +101,7 @@ def _table(person: Person, random: np.random.Generator) -> tuple[tuple[Box, ...]
 
 
 def _carry(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     spot: Array,
@@ -140,7 +142,9 @@ def _carry(
     )
 
 
-def _tilt(person: Person, times: Array, random: np.random.Generator, stages: list[Stage]) -> Array:
+def _tilt(
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
+) -> Array:
     """The bottle's tilt (T,) to the left without the shakes, radians."""
     own = TIPPED + 0.25 * (person.manner.amplitude - 1.0)
     keys = [(0.0, HELD_TILT)]
@@ -155,7 +159,7 @@ def _tilt(person: Person, times: Array, random: np.random.Generator, stages: lis
 
 
 def _shakes(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Array:
     """Where (T,) the bottle is in its shakes, -1 to 1 for a person of average amplitude."""
     shaken = np.zeros(len(times))

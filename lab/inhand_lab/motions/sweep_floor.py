@@ -31,7 +31,7 @@ from inhand_lab.motions.timeline import (
 )
 from inhand_lab.objects.broom import BROOM_HALF_LENGTH, broom
 from inhand_lab.people.kinematics import Trunk, place_trunk
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.4),
@@ -60,7 +60,7 @@ LEAN = 0.14
 CUPBOARD_HEIGHT = 1.10
 
 
-def perform(person: Person, times: Array, random: np.random.Generator) -> Performance:
+def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Sweeping at these times, in seconds from the start."""
     stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
     brush = _brush_track(person, times, random, stages)
@@ -114,7 +114,7 @@ def perform(person: Person, times: Array, random: np.random.Generator) -> Perfor
 
 
 def _brush_track(
-    person: Person, times: Array, random: np.random.Generator, stages: list[Stage]
+    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
 ) -> Array:
     """Where the brush is (T,) to the right of the body, metres: across to the left and back."""
     reach = 0.15 * person.height * person.manner.amplitude
@@ -133,7 +133,7 @@ def _brush_track(
 
 
 def _stance(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     stages: list[Stage],
@@ -186,7 +186,7 @@ def _lean_on_cupboard(random: np.random.Generator) -> tuple[tuple[Box, ...], Tra
 
 
 def _sweep(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,
@@ -226,7 +226,7 @@ def _stand_on_floor(axis: Array, turn: Array, head: Array, raised: Array) -> Tra
 
 
 def _hold(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,

@@ -14,8 +14,8 @@ from inhand_tracker.geometry.arrays import Array, Flags
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from inhand_lab.geometry.transforms import Transform, blend
-from inhand_lab.people.person import Person
+from inhand_lab.geometry.transforms import Transform, interpolate
+from inhand_lab.people.person import SimulatedPerson
 
 JITTER = 0.10
 """Standard deviation of the duration of one movement between repetitions."""
@@ -54,7 +54,7 @@ Step = Movement | Pause
 
 
 def schedule(
-    person: Person,
+    person: SimulatedPerson,
     random: np.random.Generator,
     duration: float,
     opening: Sequence[Step],
@@ -170,9 +170,9 @@ def follow(times: Array, keys: Sequence[Key]) -> Transform:
 def _pass(here: Transform, key: Key, inside: Flags, share: Array) -> Transform:
     there = key.pose[inside]
     if key.by is None:
-        return blend(here, there, share)
+        return interpolate(here, there, share)
     between = key.by[inside]
-    return blend(blend(here, between, share), blend(between, there, share), share)
+    return interpolate(interpolate(here, between, share), interpolate(between, there, share), share)
 
 
 def drift(times: Array, random: np.random.Generator, deviation: float, period: float) -> Array:

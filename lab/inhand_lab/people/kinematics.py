@@ -11,12 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from inhand_schemas.joints import MIRRORED_JOINTS
 from inhand_tracker.geometry.arrays import Array
 from scipy.spatial.transform import Rotation
 
 from inhand_lab.geometry.transforms import MIRROR, Transform, normalised, rotation_about
-from inhand_lab.people.person import Person, Proportions
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.person import Proportions, SimulatedPerson
 from inhand_lab.people.solids import belly, rib_cage
 
 ELBOW_EXTENSION = np.radians(172.0)
@@ -68,50 +68,6 @@ class Trunk:
 
 
 @dataclass(frozen=True)
-class Body:
-    """A body over T frames: joints (T, 20, 3) and the frames a skeleton does not show."""
-
-    joints: Array
-    from_pelvis: Transform
-    from_chest: Transform
-    from_head: Transform
-    from_right_hand: Transform
-    from_left_hand: Transform
-
-    def mirrored(self) -> Body:
-        """The same movement by the other hand."""
-        return Body(
-            (self.joints * MIRROR)[:, MIRRORED_JOINTS],
-            self.from_pelvis.mirrored(),
-            self.from_chest.mirrored(),
-            self.from_head.mirrored(),
-            self.from_left_hand.mirrored(),
-            self.from_right_hand.mirrored(),
-        )
-
-    def __getitem__(self, frames: slice) -> Body:
-        return Body(
-            self.joints[frames],
-            self.from_pelvis[frames],
-            self.from_chest[frames],
-            self.from_head[frames],
-            self.from_right_hand[frames],
-            self.from_left_hand[frames],
-        )
-
-    def seen_from(self, viewer_from_world: Transform) -> Body:
-        """The same body in another frame of reference."""
-        return Body(
-            viewer_from_world.apply(self.joints),
-            viewer_from_world @ self.from_pelvis,
-            viewer_from_world @ self.from_chest,
-            viewer_from_world @ self.from_head,
-            viewer_from_world @ self.from_right_hand,
-            viewer_from_world @ self.from_left_hand,
-        )
-
-
-@dataclass(frozen=True)
 class Circle:
     """Where the middle joint of a two-bone limb may be: axis and centre (T, 3), radius (T,)."""
 
@@ -120,7 +76,7 @@ class Circle:
     radius: Array
 
 
-def place_trunk(person: Person, posture: Posture) -> Trunk:
+def place_trunk(person: SimulatedPerson, posture: Posture) -> Trunk:
     """Forward kinematics from the pelvis to the head and shoulders."""
     body = person.proportions
     pelvis = posture.world_from_pelvis
@@ -139,8 +95,8 @@ def place_trunk(person: Person, posture: Posture) -> Trunk:
 
 
 def place_body(
-    person: Person, posture: Posture, right_hand: Transform, left_hand: Transform
-) -> Body:
+    person: SimulatedPerson, posture: Posture, right_hand: Transform, left_hand: Transform
+) -> BodyMotion:
     """The whole body with its hands, world_from_hand (T), as near their targets as arms reach."""
     trunk = place_trunk(person, posture)
     right_arm, right_reached = _reach(
@@ -164,7 +120,7 @@ def place_body(
         *left_leg,
         *right_leg,
     ]
-    return Body(
+    return BodyMotion(
         np.stack(joints, axis=1),
         trunk.world_from_pelvis,
         trunk.world_from_chest,
@@ -175,7 +131,7 @@ def place_body(
 
 
 def _reach(
-    person: Person, from_chest: Transform, shoulder: Array, hand: Transform
+    person: SimulatedPerson, from_chest: Transform, shoulder: Array, hand: Transform
 ) -> tuple[list[Array], Transform]:
     """Shoulder, elbow, wrist and hand (T, 3) of a right arm, and the hand as it was reached."""
     body = person.proportions
@@ -200,7 +156,7 @@ def _protract(body: Proportions, from_chest: Transform, shoulder: Array, wrist: 
 
 
 def _choose_elbow(
-    person: Person,
+    person: SimulatedPerson,
     from_chest: Transform,
     shoulder: Array,
     wrist: Array,
@@ -247,7 +203,9 @@ def _choose_elbow(
     return np.asarray(circle.centre + circle.radius[:, None] * chosen)
 
 
-def _squeeze(person: Person, from_chest: Transform, shoulder: Array, elbows: Array) -> Array:
+def _squeeze(
+    person: SimulatedPerson, from_chest: Transform, shoulder: Array, elbows: Array
+) -> Array:
     """Cost (T, K) of elbows (T, K, 3) whose upper arms press into ribs or belly."""
     cost = np.zeros(elbows.shape[:2])
     for share, thickness in UPPER_ARM:

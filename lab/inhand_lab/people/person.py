@@ -81,7 +81,7 @@ class Manner:
 
 
 @dataclass(frozen=True)
-class Person:
+class SimulatedPerson:
     """One participant: body, handedness and manner; girth scales every thickness, 1 is average."""
 
     sex: Literal["female", "male"]
@@ -94,13 +94,13 @@ class Person:
     """Seed of skin, hair and clothes."""
 
 
-def sample_person(seed: int, participant: int) -> Person:
+def sample_person(seed: int, participant: int) -> SimulatedPerson:
     """The participant of that number in the world of that seed: always the same person."""
     random = np.random.default_rng([seed, participant, 0x9E12])
     sex: Literal["female", "male"] = "female" if random.random() < 0.5 else "male"
     mean, deviation = HEIGHT_MEAN_AND_DEVIATION[sex]
     height = float(np.clip(random.normal(mean, deviation), *HEIGHT_RANGE))
-    return Person(
+    return SimulatedPerson(
         sex=sex,
         height=height,
         handedness="left" if random.random() < LEFT_HANDED_SHARE else "right",
@@ -120,7 +120,7 @@ def _sample_proportions(height: float, random: np.random.Generator) -> Proportio
     for name in ("head_half_width", "head_half_depth", "head_half_height"):
         varied[name] *= (HEAD_REFERENCE / height) ** HEAD_CONSTANCY
     relative = Proportions(**varied)
-    scale = height / standing_height(relative)
+    scale = height / stature_of(relative)
     return Proportions(**{name: fraction * scale for name, fraction in varied.items()})
 
 
@@ -142,7 +142,7 @@ def _sample_manner(random: np.random.Generator) -> Manner:
     )
 
 
-def standing_height(proportions: Proportions) -> float:
+def stature_of(proportions: Proportions) -> float:
     """Stature in metres of a body of these proportions standing straight."""
     return (
         hip_height(proportions)

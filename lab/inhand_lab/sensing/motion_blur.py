@@ -14,12 +14,12 @@ from inhand_tracker.geometry.arrays import Array, Bytes, Flags, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
 
-from inhand_lab.geometry.rasteriser import Canvas, draw
+from inhand_lab.geometry.rasteriser import Canvas, draw_triangles
 from inhand_lab.geometry.surfaces import Surface, lit
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.geometry.window import window_around
-from inhand_lab.people.figure import Figure
-from inhand_lab.people.kinematics import Body
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.person_surface import PersonSurface
 
 SHARPNESS = 1.0
 """Movement in pixels during the exposure below which nothing is blurred."""
@@ -38,8 +38,8 @@ class Moving:
 
 
 def scene_in_motion(
-    figure: Figure,
-    body_in_camera: Body,
+    figure: PersonSurface,
+    body_in_camera: BodyMotion,
     object_surface: Surface,
     camera_from_object: Transform,
     frame: int,
@@ -117,7 +117,7 @@ class _Part:
     def draw(self, canvas: Canvas, intrinsics: Intrinsics, chosen: Flags, share: float) -> None:
         """Draw the chosen faces (F,) where they are at a share of the exposure, 0 its middle."""
         placed = self.vertices + np.float32(share) * self.travel
-        draw(canvas, intrinsics, placed, self.faces[chosen], self.shades, 1)
+        draw_triangles(canvas, intrinsics, placed, self.faces[chosen], self.shades, 1)
 
 
 @numba.njit(cache=True, nogil=True)

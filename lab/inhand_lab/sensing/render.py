@@ -8,13 +8,13 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Flags
 from inhand_tracker.geometry.camera import Intrinsics
 
-from inhand_lab.geometry.rasteriser import Canvas, draw
+from inhand_lab.geometry.rasteriser import Canvas, draw_triangles
 from inhand_lab.geometry.surfaces import Surface, from_mesh, lit
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.geometry.window import Window, window_around
 from inhand_lab.objects.model import ObjectModel
-from inhand_lab.people.figure import Figure
-from inhand_lab.people.kinematics import Body
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.person_surface import PersonSurface
 
 ROOM, PERSON, OBJECT = 1, 2, 3
 """Labels of pixels; 0 is nothing."""
@@ -47,8 +47,8 @@ def draw_room(intrinsics: Intrinsics, camera_from_world: Transform, room: Surfac
 def draw_frame(
     room: Canvas,
     intrinsics: Intrinsics,
-    figure: Figure,
-    body_in_camera: Body,
+    figure: PersonSurface,
+    body_in_camera: BodyMotion,
     frame: int,
     object_surface: Surface,
     camera_from_object: Transform,
@@ -65,8 +65,8 @@ def draw_frame(
 def visible_fraction(
     room: Canvas,
     intrinsics: Intrinsics,
-    figure: Figure,
-    body_in_camera: Body,
+    figure: PersonSurface,
+    body_in_camera: BodyMotion,
     frame: int,
     object_surface: Surface,
     camera_from_object: Transform,
@@ -87,7 +87,7 @@ def object_surface(model: ObjectModel) -> Surface:
 
 def _draw_surface(canvas: Canvas, intrinsics: Intrinsics, surface: Surface, label: int) -> None:
     """Draw a surface that is in the camera's frame."""
-    draw(
+    draw_triangles(
         canvas,
         intrinsics,
         surface.vertices.astype(np.float32),
@@ -100,7 +100,7 @@ def _draw_surface(canvas: Canvas, intrinsics: Intrinsics, surface: Surface, labe
 def _draw_silhouette(canvas: Canvas, intrinsics: Intrinsics, surface: Surface, label: int) -> None:
     """Draw a surface without light: what it hides, and not how it looks."""
     vertices = surface.vertices.astype(np.float32)
-    draw(canvas, intrinsics, vertices, surface.faces, surface.colours, label)
+    draw_triangles(canvas, intrinsics, vertices, surface.faces, surface.colours, label)
 
 
 def _share_seen(canvas: Canvas, window: Window, placed: Surface) -> float:

@@ -15,8 +15,8 @@ from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array, Bytes, Flags, Indices
 
 from inhand_lab.geometry.recursion import leaky_sum
-from inhand_lab.people.figure import LIMBS
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
+from inhand_lab.people.person_surface import LIMB_SOLIDS
 from inhand_lab.sensing.skeleton_errors import (
     flip_hands,
     inherited,
@@ -62,7 +62,7 @@ class SkeletonReading:
 
 
 def read_skeleton(
-    person: Person, true_joints: Array, frame_rate: float, random: np.random.Generator
+    person: SimulatedPerson, true_joints: Array, frame_rate: float, random: np.random.Generator
 ) -> SkeletonReading:
     """The tracker's reading of joints (T, 20, 3) in the camera's frame."""
     seen = true_joints.copy()
@@ -105,11 +105,11 @@ def _last_seen(random: np.random.Generator, count: int, frame_rate: float) -> In
     return np.maximum.accumulate(np.where(lost, 0, np.arange(count)))
 
 
-def hidden_joints(person: Person, joints: Array) -> Flags:
+def hidden_joints(person: SimulatedPerson, joints: Array) -> Flags:
     """Whether (T, 20) another limb or the trunk stands between a joint and the camera."""
     hidden = np.zeros(joints.shape[:2], bool)
     trunk = (0, 2, 0.065, 0.065)
-    for parent, child, root, tip in [trunk, *(limb[:4] for limb in LIMBS)]:
+    for parent, child, root, tip in [trunk, *(limb[:4] for limb in LIMB_SOLIDS)]:
         radius = 0.5 * (root + tip) * person.height * person.girth
         covered = _crosses(joints, joints[:, parent], joints[:, child], radius)
         covered[:, [parent, child]] = False

@@ -23,9 +23,10 @@ from inhand_lab.motions.performance import (
     stand,
 )
 from inhand_lab.motions.timeline import Key, drift, follow, minimum_jerk
+from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.joint_sequence import JointSequence
-from inhand_lab.people.kinematics import Body, Trunk, place_body, place_trunk
-from inhand_lab.people.person import Person, sample_person
+from inhand_lab.people.kinematics import Trunk, place_body, place_trunk
+from inhand_lab.people.person import SimulatedPerson, sample_person
 from inhand_lab.sensing.cameras import KINECT
 from inhand_lab.sensing.skeleton_noise import MISSING, read_skeleton
 from inhand_lab.world.interactions import INTERACTIONS
@@ -65,7 +66,7 @@ UNUSED = INTERACTIONS["drinkFromMug"]
 
 
 _MoveHands = Callable[
-    [Person, Array, np.random.Generator, Trunk, tuple[Transform, Transform]],
+    [SimulatedPerson, Array, np.random.Generator, Trunk, tuple[Transform, Transform]],
     tuple[list[Key], list[Key]],
 ]
 
@@ -131,7 +132,9 @@ def _camera(random: np.random.Generator) -> Transform:
     return Transform(position, axes).inverse()
 
 
-def _stand(person: Person, times: Array, random: np.random.Generator, move: _MoveHands) -> Body:
+def _stand(
+    person: SimulatedPerson, times: Array, random: np.random.Generator, move: _MoveHands
+) -> BodyMotion:
     right, left = feet_apart(len(times))
     still = np.zeros((len(times), 3))
     turn = drift(times, random, 0.08, 6.0)
@@ -150,7 +153,7 @@ def _stand(person: Person, times: Array, random: np.random.Generator, move: _Mov
 
 
 def _gesture_keys(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,
@@ -179,7 +182,7 @@ def _gesture_keys(
 
 
 def _fidget_keys(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,
@@ -205,7 +208,7 @@ def _fidget_keys(
 
 
 def _still_keys(
-    person: Person,
+    person: SimulatedPerson,
     times: Array,
     random: np.random.Generator,
     trunk: Trunk,
@@ -222,13 +225,13 @@ _HANDS: dict[str, _MoveHands] = {
 }
 
 
-def _gesture(person: Person, name: str, hand: int, trunk: Trunk, count: int) -> Transform:
+def _gesture(person: SimulatedPerson, name: str, hand: int, trunk: Trunk, count: int) -> Transform:
     place, fingers = (np.array(value) for value in GESTURES[name])
     return _placed(person, place, fingers, hand, trunk, count)
 
 
 def _placed(
-    person: Person, place: Array, fingers: Array, hand: int, trunk: Trunk, count: int
+    person: SimulatedPerson, place: Array, fingers: Array, hand: int, trunk: Trunk, count: int
 ) -> Transform:
     pose = Transform(
         place * person.height / 1.75, rotation_from_axes(fingers, np.array([0.0, 0.4, 0.9]))
@@ -236,7 +239,9 @@ def _placed(
     return trunk.world_from_chest @ (pose if hand == 0 else pose.mirrored())
 
 
-def _walk(person: Person, times: Array, random: np.random.Generator, radius: float) -> Body:
+def _walk(
+    person: SimulatedPerson, times: Array, random: np.random.Generator, radius: float
+) -> BodyMotion:
     """On the spot, where the radius is 0, or in a circle about the world's origin."""
     pace = CADENCE * person.manner.tempo
     stride = STRIDE * person.height / 1.75 * person.manner.amplitude

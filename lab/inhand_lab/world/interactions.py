@@ -42,7 +42,7 @@ from inhand_lab.objects.phone import phone
 from inhand_lab.objects.racket import racket
 from inhand_lab.objects.shoe import shoe
 from inhand_lab.objects.vinegar_bottle import vinegar_bottle
-from inhand_lab.people.person import Person
+from inhand_lab.people.person import SimulatedPerson
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Interaction:
     """Something people do with an object."""
 
     object_model: Callable[[], ObjectModel]
-    perform: Callable[[Person, Array, np.random.Generator], Performance]
+    perform: Callable[[SimulatedPerson, Array, np.random.Generator], Performance]
 
 
 INTERACTIONS = {

@@ -17,7 +17,7 @@ from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.wire.poses import pose_message
 
 from inhand_lab.objects.model import ObjectModel
-from inhand_lab.world.simulation import Frame, Simulation
+from inhand_lab.world.simulation import SensedFrame, Simulation
 
 JOINT_STATES: tuple[JointState, ...] = ("missing", "inferred", "tracked")
 CONTACTS: tuple[Contact, ...] = ("resting", "right_hand", "left_hand", "both_hands", "worn")
@@ -56,7 +56,7 @@ def person_message(simulation: Simulation, frame: int) -> Person:
     )
 
 
-def pixels_message(seen: Frame, *, sequence: int, time_ns: int) -> RgbdFrame:
+def pixels_message(seen: SensedFrame, *, sequence: int, time_ns: int) -> RgbdFrame:
     """A frame as a camera sends it."""
     return RgbdFrame(
         sequence=sequence,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from inhand_lab.geometry.surfaces import Colour, Surface, block, joined
+from inhand_lab.geometry.surfaces import Colour, Surface, block, join_surfaces
 from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.furniture import Box
 
@@ -29,8 +29,8 @@ def build_room(random: np.random.Generator, facing: float, furniture: tuple[Box,
     raised = Transform(np.array([0.0, wall, 0.0]), UPRIGHT)
     pieces = [floor, back.moved(raised), *_pictures(random, wall), *_clutter(random, wall)]
     turned = Transform(np.zeros(3), rotation_about("z", facing))
-    room = joined(pieces).moved(turned)
-    return joined([room, *(block(box.centre, box.size, box.colour) for box in furniture)])
+    room = join_surfaces(pieces).moved(turned)
+    return join_surfaces([room, *(block(box.centre, box.size, box.colour) for box in furniture)])
 
 
 def _patches(

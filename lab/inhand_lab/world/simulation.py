@@ -23,9 +23,10 @@ from inhand_lab.geometry.transforms import Transform, normalised, quaternions, r
 from inhand_lab.motions.furniture import Box
 from inhand_lab.motions.performance import Contact
 from inhand_lab.objects.model import ObjectModel
-from inhand_lab.people.figure import Figure, build_figure
-from inhand_lab.people.kinematics import Body, place_body
-from inhand_lab.people.person import Person, sample_person
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.kinematics import place_body
+from inhand_lab.people.person import SimulatedPerson, sample_person
+from inhand_lab.people.person_surface import PersonSurface, build_person_surface
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.sensing.motion_blur import blurred, scene_in_motion
 from inhand_lab.sensing.noise_fields import any_place
@@ -59,7 +60,7 @@ HEADROOM = 0.60
 
 
 @dataclass(frozen=True)
-class Frame:
+class SensedFrame:
     """What the sensor saw: colour (H, W, 3) RGB, depth (H, W) in millimetres (0 is nothing), and
     the share of the object's pixels that nothing hides."""
 
@@ -83,13 +84,13 @@ class Simulation:
     seed: int
     performance: int
     frame_rate: float
-    person: Person
+    person: SimulatedPerson
     object_model: ObjectModel
     camera: Camera
     joints_in_camera: Array
     joint_states: Bytes
     joint_confidences: Array
-    body_in_camera: Body
+    body_in_camera: BodyMotion
     camera_from_object: Transform
     contact: Bytes
     camera_from_world: Transform
@@ -149,7 +150,7 @@ class Simulation:
             self.camera_from_object[frame],
         )
 
-    def render(self, frame: int) -> Frame:
+    def render(self, frame: int) -> SensedFrame:
         """The frame as the sensor sees it; the same whenever and however often it is asked for."""
         drawing = self.draw(frame)
         random = self._random("pixels", self.performance, frame)
@@ -172,7 +173,7 @@ class Simulation:
             unseen=0 if self.object_model.returns_depth else OBJECT,
             lasting=any_place(self._random("sensor")),
         )
-        return Frame(colour, depth, drawing.visible_fraction)
+        return SensedFrame(colour, depth, drawing.visible_fraction)
 
     def _random(self, purpose: str, *more: int) -> np.random.Generator:
         return _random(self.seed, self.participant, self.interaction, purpose, *more)
@@ -188,8 +189,8 @@ class Simulation:
         return draw_room(self.intrinsics, self.camera_from_world, room)
 
     @cached_property
-    def _figure(self) -> Figure:
-        return build_figure(self.person, self.true_joints_in_camera[0])
+    def _figure(self) -> PersonSurface:
+        return build_person_surface(self.person, self.true_joints_in_camera[0])
 
     @cached_property
     def _object_surface(self) -> Surface:
@@ -279,7 +280,7 @@ def _random(
 
 
 def _place_camera(
-    person: Person, intrinsics: Intrinsics, random: np.random.Generator
+    person: SimulatedPerson, intrinsics: Intrinsics, random: np.random.Generator
 ) -> tuple[float, Transform]:
     """The direction to the camera as a turn to the person's left, and camera_from_world."""
     facing = float(random.uniform(-CAMERA_ASIDE, CAMERA_ASIDE))

@@ -15,7 +15,7 @@ from pydantic import AfterValidator, Field, ValidationError
 
 from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.world.messages import camera_info, label_message, person_message
-from inhand_lab.world.simulation import INTERACTIONS, Frame, Simulation, simulate
+from inhand_lab.world.simulation import INTERACTIONS, SensedFrame, Simulation, simulate
 
 CAMERA = "simulator"
 """Until capture puts its own name in its place."""
@@ -112,7 +112,9 @@ class SimulatorSource:
         return simulation
 
 
-def _captured(simulation: Simulation, frame: int, time_ns: int, ready: Frame | None) -> Captured:
+def _captured(
+    simulation: Simulation, frame: int, time_ns: int, ready: SensedFrame | None
+) -> Captured:
     def pixels() -> Pixels:
         seen = ready or simulation.render(frame)
         return Pixels(seen.colour, seen.depth)

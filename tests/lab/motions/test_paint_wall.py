@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from inhand_lab.motions.paint_wall import BOARD_SIZE
 from inhand_lab.objects.paint_brush import BRISTLES_BELOW
-from inhand_lab.people.kinematics import Body
+from inhand_lab.people.body_motion import BodyMotion
 from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array, Flags
 from performers import object_points, performed
@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 PARTICIPANTS = range(10)
 
 
-def painting(participant: int) -> tuple[Array, Flags, Array, Body]:
+def painting(participant: int) -> tuple[Array, Flags, Array, BodyMotion]:
     """Tips of the bristles (T, 3), whether (T,) they are on the board, rotations, and the body."""
     _, performance, body = performed("paintWall", participant)
     brush = performance.world_from_object

@@ -6,7 +6,8 @@ from inhand_lab.geometry.transforms import Transform
 from inhand_lab.motions.performance import Contact
 from inhand_lab.objects.golf_club import SOLE
 from inhand_lab.objects.racket import TIP
-from inhand_lab.people.kinematics import Body, place_body
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.kinematics import place_body
 from inhand_lab.people.person import sample_person
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_schemas.joints import Joint
@@ -20,8 +21,8 @@ PARTICIPANTS = range(6)
 PERSON_FROM_MEASURED = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
-def swung(interaction: str, participant: int) -> tuple[Body, Transform, Bytes]:
-    """Body, world_from_object and contact over 12 s at 240 Hz."""
+def swung(interaction: str, participant: int) -> tuple[BodyMotion, Transform, Bytes]:
+    """BodyMotion, world_from_object and contact over 12 s at 240 Hz."""
     person = sample_person(20, participant)
     times = np.arange(0.0, 12.0, 1.0 / RATE)
     random = np.random.default_rng([20, participant])

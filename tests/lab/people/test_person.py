@@ -5,7 +5,7 @@ import pytest
 from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.performance import Stance, feet_apart, hanging_hands, stand
 from inhand_lab.people.kinematics import Posture, place_body, place_trunk
-from inhand_lab.people.person import HEIGHT_RANGE, Person, sample_person, standing_height
+from inhand_lab.people.person import HEIGHT_RANGE, SimulatedPerson, sample_person, stature_of
 from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array
 from performers import angles_at
@@ -13,14 +13,14 @@ from performers import angles_at
 COUNT = 4
 
 
-def standing(person: Person) -> Posture:
+def standing(person: SimulatedPerson) -> Posture:
     right_foot, left_foot = feet_apart(COUNT)
     still = np.zeros((COUNT, 3))
     stance = Stance(right_foot, left_foot, np.zeros(COUNT), still, still, still)
     return stand(person, np.arange(COUNT) / 30.0, np.random.default_rng(0), stance)
 
 
-def reach(person: Person, offset: Array, rotation: Array) -> tuple[Transform, Array]:
+def reach(person: SimulatedPerson, offset: Array, rotation: Array) -> tuple[Transform, Array]:
     """Where the right hand was sent, offset (3,) from its shoulder, and the joints (T, 20, 3)."""
     posture = standing(person)
     trunk = place_trunk(person, posture)
@@ -52,7 +52,7 @@ def test_a_crowd_is_like_the_published_one() -> None:
 def test_the_segments_add_up_to_the_stature() -> None:
     for number in range(20):
         person = sample_person(2, number)
-        assert standing_height(person.proportions) == pytest.approx(person.height, abs=1e-9)
+        assert stature_of(person.proportions) == pytest.approx(person.height, abs=1e-9)
 
 
 def test_heads_differ_less_than_statures() -> None:

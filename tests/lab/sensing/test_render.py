@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 import pytest
-from inhand_lab.geometry.rasteriser import Canvas, draw
+from inhand_lab.geometry.rasteriser import Canvas, draw_triangles
 from inhand_lab.geometry.surfaces import Surface, ellipsoid, limb
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.sensing.cameras import CAMERAS
@@ -20,7 +20,7 @@ def drawn(*surfaces: Surface) -> Canvas:
     canvas = Canvas.blank(KINECT)
     for label, surface in enumerate(surfaces, start=1):
         vertices = surface.vertices.astype(np.float32)
-        draw(canvas, KINECT, vertices, surface.faces, surface.colours, label)
+        draw_triangles(canvas, KINECT, vertices, surface.faces, surface.colours, label)
     return canvas
 
 

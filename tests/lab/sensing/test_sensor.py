@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from inhand_lab.geometry.rasteriser import Canvas, draw
+from inhand_lab.geometry.rasteriser import Canvas, draw_triangles
 from inhand_lab.geometry.surfaces import block, lit
 from inhand_lab.objects.model import RETURN_NO_DEPTH
 from inhand_lab.sensing.cameras import CAMERAS, KINECT, OAK_D, Camera
@@ -135,7 +135,7 @@ def drawn_and_blurred(pixels: float) -> tuple[Bytes, Bytes]:
     surface = block((0.0, 0.0, 2.1), (0.2, 0.2, 0.2), (200, 200, 200))
     room = Canvas.blank(KINECT.intrinsics)
     sharp = room.copy()
-    draw(
+    draw_triangles(
         sharp,
         KINECT.intrinsics,
         surface.vertices.astype(np.float32),

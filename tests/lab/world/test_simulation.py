@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from inhand_lab.geometry.transforms import MIRROR
 from inhand_lab.motions.performance import Contact
-from inhand_lab.people.person import Person, sample_person
+from inhand_lab.people.person import SimulatedPerson, sample_person
 from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.sensing.skeleton_noise import INFERRED, MISSING, TRACKED
 from inhand_lab.world import simulation as world
@@ -110,9 +110,9 @@ def test_a_left_handed_person_is_the_mirror_image(
     simulations = []
     for handedness in ("right", "left"):
 
-        def everybody(seed: int, participant: int, handedness: str = handedness) -> Person:
+        def everybody(seed: int, participant: int, handedness: str = handedness) -> SimulatedPerson:
             fields = vars(sample_person(seed, participant)) | {"handedness": handedness}
-            return Person(**fields)
+            return SimulatedPerson(**fields)
 
         monkeypatch.setattr(world, "sample_person", everybody)
         simulations.append(simulate(interaction, 0, seed=7))

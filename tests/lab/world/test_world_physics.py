@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.motions.performance import Performance
-from inhand_lab.people.kinematics import Body, place_body
-from inhand_lab.people.person import Person, sample_person
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.kinematics import place_body
+from inhand_lab.people.person import SimulatedPerson, sample_person
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import simulate
 from inhand_schemas.joints import Joint
@@ -44,7 +45,9 @@ crowds = pytest.mark.parametrize(
 interactions = pytest.mark.parametrize("interaction", INTERACTIONS)
 
 
-def performed(interaction: str, participant: int) -> tuple[Person, Performance, Body]:
+def performed(
+    interaction: str, participant: int
+) -> tuple[SimulatedPerson, Performance, BodyMotion]:
     """12 s of an interaction at 30 Hz, in the person's world."""
     person = sample_person(SEED, participant)
     times = np.arange(0.0, 12.0, 1.0 / FRAME_RATE)
@@ -73,7 +76,7 @@ def test_the_world_keeps_its_laws(interaction: str, participants: range) -> None
     assert not broken, "\n".join(broken)
 
 
-def arms_in_the_body(person: Person, body: Body) -> list[str]:
+def arms_in_the_body(person: SimulatedPerson, body: BodyMotion) -> list[str]:
     """Upper arms, forearms and palms that go through head or trunk."""
     broken = []
     for side in ("right", "left"):
@@ -88,9 +91,9 @@ def arms_in_the_body(person: Person, body: Body) -> list[str]:
 
 def object_in_the_body(
     interaction: str,
-    person: Person,
+    person: SimulatedPerson,
     world_from_object: Transform,
-    body: Body,
+    body: BodyMotion,
 ) -> list[str]:
     """An object that goes through anything but what holds or wears it."""
     points = placed(world_from_object, surface_points(interaction))
@@ -105,7 +108,7 @@ def object_in_the_body(
     ]
 
 
-def bent_too_far(body: Body) -> list[str]:
+def bent_too_far(body: BodyMotion) -> list[str]:
     """Joints beyond their limits, in degrees."""
     broken = []
     for shoulder in (Joint.SHOULDER_RIGHT, Joint.SHOULDER_LEFT):

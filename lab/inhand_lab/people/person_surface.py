@@ -11,17 +11,17 @@ import numpy as np
 from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array, Indices
 
-from inhand_lab.geometry.surfaces import Colour, Surface, ellipsoid, joined, limb
+from inhand_lab.geometry.surfaces import Colour, Surface, ellipsoid, join_surfaces, limb
 from inhand_lab.geometry.transforms import MIRROR, Transform, normalised
-from inhand_lab.people.kinematics import Body
-from inhand_lab.people.person import Person
+from inhand_lab.people.body_motion import BodyMotion
+from inhand_lab.people.person import SimulatedPerson
 from inhand_lab.people.solids import belly, head_radii, pelvis, rib_cage
 
 SKIN = ((236, 196, 170), (214, 166, 132), (176, 124, 88), (124, 84, 60), (88, 58, 42))
 EYE = (40, 34, 32)
 HAIR = ((36, 28, 24), (78, 52, 34), (120, 88, 52), (164, 150, 130))
 
-LIMBS: tuple[tuple[Joint, Joint, float, float, str], ...] = (
+LIMB_SOLIDS: tuple[tuple[Joint, Joint, float, float, str], ...] = (
     (Joint.SHOULDER_RIGHT, Joint.ELBOW_RIGHT, 0.029, 0.025, "shirt"),
     (Joint.ELBOW_RIGHT, Joint.WRIST_RIGHT, 0.024, 0.016, "skin"),
     (Joint.SHOULDER_LEFT, Joint.ELBOW_LEFT, 0.029, 0.025, "shirt"),
@@ -40,13 +40,13 @@ LIMBS: tuple[tuple[Joint, Joint, float, float, str], ...] = (
 
 
 @dataclass(frozen=True)
-class Figure:
+class PersonSurface:
     """A person's surface; part (V,) tells which of the part frames moves each vertex."""
 
     surface: Surface
     part: Indices
 
-    def posed(self, body: Body, frame: int) -> Surface:
+    def posed(self, body: BodyMotion, frame: int) -> Surface:
         """The surface in the frame of reference of the body, at one of its frames."""
         frames = _part_frames(body, frame)
         rotation = frames.rotation[self.part]
@@ -60,34 +60,34 @@ class Figure:
         )
 
 
-def build_figure(person: Person, joints: Array) -> Figure:
+def build_person_surface(person: SimulatedPerson, joints: Array) -> PersonSurface:
     """The surface of this person, with bones as between the joints (20, 3), and clothed."""
     palette = _palette(person)
     size = person.height * person.girth
     parts = [
         limb(_distance(joints, parent, child), root * size, tip * size, palette[cover])
-        for parent, child, root, tip, cover in LIMBS
+        for parent, child, root, tip, cover in LIMB_SOLIDS
     ]
     parts += [
         ellipsoid(*pelvis(person), palette["trousers"]),
-        joined([ellipsoid(*part(person), palette["shirt"]) for part in (rib_cage, belly)]),
+        join_surfaces([ellipsoid(*part(person), palette["shirt"]) for part in (rib_cage, belly)]),
         _head(person, palette["skin"], palette["hair"]),
     ]
     hand = _right_hand(person, palette["skin"])
     left = Surface(hand.vertices * MIRROR, hand.normals * MIRROR, hand.faces[:, ::-1], hand.colours)
     parts += [hand, left]
     counts = [len(part.vertices) for part in parts]
-    return Figure(joined(parts), np.repeat(np.arange(len(parts)), counts))
+    return PersonSurface(join_surfaces(parts), np.repeat(np.arange(len(parts)), counts))
 
 
 def _distance(joints: Array, parent: Joint, child: Joint) -> float:
     return float(np.linalg.norm(joints[child] - joints[parent]))
 
 
-def _part_frames(body: Body, frame: int) -> Transform:
+def _part_frames(body: BodyMotion, frame: int) -> Transform:
     joints = body.joints[frame]
     right = body.from_chest.rotation[frame, :, 0] + 0.01 * body.from_chest.rotation[frame, :, 1]
-    along = normalised([joints[child] - joints[parent] for parent, child, *_ in LIMBS])
+    along = normalised([joints[child] - joints[parent] for parent, child, *_ in LIMB_SOLIDS])
     across = normalised(np.cross(along, right))
     bones = np.stack([np.cross(across, along), across, along], axis=2)
     wholes = (
@@ -99,13 +99,16 @@ def _part_frames(body: Body, frame: int) -> Transform:
     )
     return Transform(
         np.stack(
-            [*(joints[parent] for parent, *_ in LIMBS), *(w.translation[frame] for w in wholes)]
+            [
+                *(joints[parent] for parent, *_ in LIMB_SOLIDS),
+                *(w.translation[frame] for w in wholes),
+            ]
         ),
         np.concatenate([bones, [whole.rotation[frame] for whole in wholes]]),
     )
 
 
-def _palette(person: Person) -> dict[str, Colour]:
+def _palette(person: SimulatedPerson) -> dict[str, Colour]:
     random = np.random.default_rng(person.appearance)
 
     def cloth() -> Colour:
@@ -122,7 +125,7 @@ def _palette(person: Person) -> dict[str, Colour]:
     }
 
 
-def _head(person: Person, skin: Colour, hair: Colour) -> Surface:
+def _head(person: SimulatedPerson, skin: Colour, hair: Colour) -> Surface:
     wide, deep, high = radii = head_radii(person)
     cap = ellipsoid((0.0, -0.18 * deep, 0.20 * high), radii * (1.07, 0.95, 0.87), hair)
     nose = ellipsoid((0.0, deep, -0.12 * high), (0.012, 0.016, 0.020), skin, detail=1)
@@ -130,13 +133,13 @@ def _head(person: Person, skin: Colour, hair: Colour) -> Surface:
         ellipsoid((side * 0.42 * wide, 0.90 * deep, 0.10 * high), (0.012, 0.008, 0.006), EYE, 1)
         for side in (-1.0, 1.0)
     ]
-    return joined([ellipsoid((0.0, 0.0, 0.0), radii, skin), cap, nose, *eyes])
+    return join_surfaces([ellipsoid((0.0, 0.0, 0.0), radii, skin), cap, nose, *eyes])
 
 
-def _right_hand(person: Person, colour: Colour) -> Surface:
+def _right_hand(person: SimulatedPerson, colour: Colour) -> Surface:
     """Half closed: the back of the hand, the fingers bent over the palm, the thumb."""
     size = person.height / 1.75
     back = ellipsoid((0.002, -0.005, 0.0), np.array([0.018, 0.070, 0.042]) * size, colour)
     fingers = ellipsoid((-0.026, 0.050, -0.002), np.array([0.030, 0.030, 0.038]) * size, colour)
     thumb = ellipsoid((-0.024, 0.030, 0.034), np.array([0.016, 0.042, 0.014]) * size, colour, 1)
-    return joined([back, fingers, thumb])
+    return join_surfaces([back, fingers, thumb])
