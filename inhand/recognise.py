@@ -5,7 +5,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-from inhand_lab.datasets.dataset import Dataset, has_images, load_dataset
+from inhand_lab.datasets.dataset import Dataset, load_dataset
+from inhand_lab.datasets.recorded_frames import has_images
 from inhand_lab.recognition.adaptive_comparison import Environments
 from inhand_lab.recognition.confusion_picture import draw_confusions
 from inhand_lab.recognition.false_objects_by_movement import count_by_movement

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import Dataset, Entry, load_dataset, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, load_dataset
 from inhand_lab.datasets.observations import track_recording
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.training.model_training import train
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import read_recording
@@ -69,7 +70,7 @@ def recorded_poses(recording: Path) -> list[ObjectPose]:
 
 
 def assert_live_equals_offline(
-    rig: RunningRig, dataset: Dataset, tested: Entry, objects: Sequence[str]
+    rig: RunningRig, dataset: Dataset, tested: DatasetEntry, objects: Sequence[str]
 ) -> None:
     """Track objects in one person's hands, in a recording that no model was learned from."""
     models = {}

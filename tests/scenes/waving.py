@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from inhand_lab.datasets.dataset import CAMERA, Dataset, DatasetWriter, Entry
+from inhand_lab.datasets.dataset import CAMERA, Dataset, DatasetEntry
+from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_runtime.pixels import encode_colour
 from inhand_schemas.messages import (
     CameraInfo,
@@ -117,9 +118,9 @@ def person(joints: np.ndarray) -> Person:
     )
 
 
-def entry_of(participant: str, interaction: str = "wave") -> Entry:
+def entry_of(participant: str, interaction: str = "wave") -> DatasetEntry:
     """A participant's only recording."""
-    return Entry(
+    return DatasetEntry(
         file=f"recordings/{participant}.mcap",
         interaction=interaction,
         participant=participant,

@@ -17,8 +17,9 @@ from inhand_tracker.prior.prior import Prior
 from inhand_tracker.sight.sight import SIGHT_TERMS, SightTerm
 
 from inhand_lab.benchmarks.variation import vary
-from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import track_together
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.evaluation.folds import Fold, leave_one_out
 from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.evaluation.protocol import fold_model
@@ -153,7 +154,7 @@ def _try_fold(task: tuple[Dataset, Fold, Sequence[str]]) -> Array:
 
 
 def _errors(
-    dataset: Dataset, entry: Entry, model: Model, variants: Sequence[Variant]
+    dataset: Dataset, entry: DatasetEntry, model: Model, variants: Sequence[Variant]
 ) -> Iterator[float]:
     """The vertex error of each variant in one recording, in metres."""
     path = dataset.path(entry)

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from inhand_schemas.messages import Message, Skeletons
 
-from inhand_lab.datasets.dataset import CAMERA, Dataset, DatasetWriter, Entry
+from inhand_lab.datasets.dataset import CAMERA, Dataset, DatasetEntry
+from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.world.messages import (
     camera_info,
@@ -85,7 +86,7 @@ def write_takes(
     for take in takes:
         simulation = take.simulation
         writer.add_shape(shape_of(simulation.object_model))
-        entry = Entry(
+        entry = DatasetEntry(
             file=f"recordings/{take.name}.mcap",
             interaction=simulation.interaction,
             object=simulation.object_model.name,

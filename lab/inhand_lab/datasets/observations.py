@@ -14,7 +14,7 @@ from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.people.following import Follower
 from inhand_tracker.wire.conversion import Need, image_of, joints_of
 
-from inhand_lab.datasets.dataset import Frame, iterate_pixels, load_camera_info
+from inhand_lab.datasets.recorded_frames import RecordedFrame, iterate_pixels, load_camera_info
 from inhand_lab.datasets.tracks import Track, empty_track
 from inhand_lab.world.messages import camera_info, person_message, pixels_message
 from inhand_lab.world.simulation import Simulation
@@ -40,7 +40,7 @@ class Observation:
 
 
 def observe(
-    path: Path, frames: Sequence[Frame], needs: Collection[Need] = ()
+    path: Path, frames: Sequence[RecordedFrame], needs: Collection[Need] = ()
 ) -> Iterator[Observation]:
     """The frames of a recording, one after the other.
 
@@ -80,7 +80,10 @@ def observe_simulation(
 
 
 def track_recording(
-    tracker: ObjectTracker, path: Path, frames: Sequence[Frame], needs: Collection[Need] = ()
+    tracker: ObjectTracker,
+    path: Path,
+    frames: Sequence[RecordedFrame],
+    needs: Collection[Need] = (),
 ) -> Iterator[Estimate]:
     """A tracker's estimates for the frames of a recording, as the tracker daemon makes them."""
     for observation in observe(path, frames, needs):
@@ -88,7 +91,10 @@ def track_recording(
 
 
 def track_together(
-    trackers: Sequence[ObjectTracker], path: Path, frames: Sequence[Frame], needs: Collection[Need]
+    trackers: Sequence[ObjectTracker],
+    path: Path,
+    frames: Sequence[RecordedFrame],
+    needs: Collection[Need],
 ) -> tuple[Array, list[Track]]:
     """The joints (T, 20, 3) that several trackers saw of a recording, and their tracks.
 

@@ -7,7 +7,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array, Flags
 from inhand_tracker.geometry.estimate import Estimate
 
-from inhand_lab.datasets.dataset import Frame
+from inhand_lab.datasets.recorded_frames import RecordedFrame
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def empty_track(frames: int) -> Track:
     )
 
 
-def true_track(frames: Sequence[Frame]) -> Track:
+def true_track(frames: Sequence[RecordedFrame]) -> Track:
     """The labels of a recording."""
     track = empty_track(len(frames))
     for index, frame in enumerate(frames):
@@ -64,7 +64,7 @@ def true_track(frames: Sequence[Frame]) -> Track:
     return track
 
 
-def true_joints(frames: Sequence[Frame]) -> Array:
+def true_joints(frames: Sequence[RecordedFrame]) -> Array:
     """The joints (T, 20, 3) where a simulated world's labels tell them; NaN elsewhere."""
     joints = np.full((len(frames), 20, 3), np.nan)
     for index, frame in enumerate(frames):

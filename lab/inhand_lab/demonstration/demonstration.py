@@ -16,8 +16,8 @@ from inhand_tracker.model.model_file import save_model
 from inhand_tracker.people.following import Follower
 from inhand_tracker.wire.conversion import joints_of
 
-from inhand_lab.datasets.dataset import load_camera
 from inhand_lab.datasets.generation import generate
+from inhand_lab.datasets.recorded_frames import load_camera
 from inhand_lab.demonstration.review import Review
 from inhand_lab.report.picture import TRACKED, TRUE, picture_of
 from inhand_lab.training.model_training import train

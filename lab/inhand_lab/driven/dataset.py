@@ -8,8 +8,9 @@ from inhand_tracker.geometry.arrays import Flags
 from inhand_tracker.people.following import Follower
 from inhand_tracker.wire.conversion import joints_of
 
-from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.generation import Take, write_takes
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.driven.recorded_body import RecordedBody, drive
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.world.messages import JOINT_STATES
@@ -59,7 +60,9 @@ def generate_driven(
     )
 
 
-def pairs_for(bodies: Dataset, interactions: Collection[str] | None) -> Sequence[tuple[Entry, str]]:
+def pairs_for(
+    bodies: Dataset, interactions: Collection[str] | None
+) -> Sequence[tuple[DatasetEntry, str]]:
     """Every recording with each interaction it is to drive; raises DatasetError without any."""
     pairs = [
         (entry, interaction)
@@ -74,13 +77,13 @@ def pairs_for(bodies: Dataset, interactions: Collection[str] | None) -> Sequence
     return pairs
 
 
-def _fitting(entry: Entry) -> tuple[str, ...]:
+def _fitting(entry: DatasetEntry) -> tuple[str, ...]:
     name = FITTING.get(entry.interaction, entry.interaction)
     return (name,) if name in INTERACTIONS else ()
 
 
 def _takes(
-    bodies: Dataset, pairs: Sequence[tuple[Entry, str]], seed: int, camera: Camera
+    bodies: Dataset, pairs: Sequence[tuple[DatasetEntry, str]], seed: int, camera: Camera
 ) -> Iterator[Take]:
     participants = sorted({entry.participant for entry in bodies.entries})
     for entry, interaction in pairs:
@@ -95,7 +98,7 @@ def _takes(
 
 
 def recorded_body(
-    dataset: Dataset, entry: Entry, *, participant: int, recording: int
+    dataset: Dataset, entry: DatasetEntry, *, participant: int, recording: int
 ) -> RecordedBody:
     """The longest stretch of a recording in which somebody is in sight; raises DatasetError."""
     frames = load_frames(dataset.path(entry), None)

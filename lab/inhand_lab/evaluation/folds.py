@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 
 
 @dataclass(frozen=True)
@@ -11,8 +11,8 @@ class Fold:
     """The recordings of one interaction that are tested, and those that are learned from."""
 
     interaction: str
-    tested: tuple[Entry, ...]
-    trained: tuple[Entry, ...]
+    tested: tuple[DatasetEntry, ...]
+    trained: tuple[DatasetEntry, ...]
 
 
 def leave_one_out(dataset: Dataset) -> list[Fold]:
@@ -53,7 +53,7 @@ def train_on_one_test_on_other(trained: Dataset, tested: Dataset) -> list[Fold]:
     return _checked(shared, trained)
 
 
-def _labelled(dataset: Dataset, interaction: str) -> tuple[Entry, ...]:
+def _labelled(dataset: Dataset, interaction: str) -> tuple[DatasetEntry, ...]:
     return tuple(e for e in dataset.entries if e.interaction == interaction and e.object)
 
 

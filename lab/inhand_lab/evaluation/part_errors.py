@@ -25,7 +25,9 @@ from inhand_tracker.methods.darby2014.particles import mixing_fractions
 from rich.console import Console
 from rich.table import Table
 
-from inhand_lab.datasets.dataset import Dataset, Entry, labelled_sequence, load_dataset, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, load_dataset
+from inhand_lab.datasets.labelled_sequence import labelled_sequence
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.datasets.tracks import true_joints
 from inhand_lab.evaluation.folds import Fold, leave_one_out
 
@@ -73,7 +75,7 @@ def predictions(mapping: Mapping, cluster: Indices, body: Body) -> tuple[Array, 
 
 
 def _of_fold(
-    dataset: Dataset, fold: Fold, sequences: dict[Entry, LabelledSequence]
+    dataset: Dataset, fold: Fold, sequences: dict[DatasetEntry, LabelledSequence]
 ) -> Iterator[PartErrors]:
     shape = dataset.shape(str(fold.trained[0].object))
     mapping = learn([sequences[entry] for entry in fold.trained], shape.mirror_normal)
@@ -116,7 +118,7 @@ def _vertex_errors(
     return vertex_error((predicted[0][moves], predicted[1][turns]), truth, marked_vertices)
 
 
-def _sequence(dataset: Dataset, entry: Entry, by_true_joints: bool) -> LabelledSequence:
+def _sequence(dataset: Dataset, entry: DatasetEntry, by_true_joints: bool) -> LabelledSequence:
     sequence = labelled_sequence(dataset, entry)
     if not by_true_joints:
         return sequence

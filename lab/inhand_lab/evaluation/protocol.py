@@ -21,8 +21,9 @@ from inhand_tracker.shape.viewpoints import Viewpoints, find_viewpoints
 from inhand_tracker.sight.appearance import learn_appearance
 from inhand_tracker.wire.conversion import Need
 
-from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import track_together
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.evaluation.scoring import Judge, Score
@@ -144,7 +145,7 @@ def _evaluate_fold(protocol: Protocol) -> list[Trial]:
 
 
 def _evaluate_recording(
-    protocol: Protocol, model: Model, gauge: ErrorGauge, entry: Entry
+    protocol: Protocol, model: Model, gauge: ErrorGauge, entry: DatasetEntry
 ) -> Iterator[tuple[Candidate, Score]]:
     path = protocol.tested.path(entry)
     frames = load_frames(path, entry.object)
@@ -163,7 +164,7 @@ def _evaluate_recording(
         yield candidate, score
 
 
-def tracker_of(candidate: Candidate, model: Model, entry: Entry) -> ObjectTracker:
+def tracker_of(candidate: Candidate, model: Model, entry: DatasetEntry) -> ObjectTracker:
     """A candidate's tracker for one recording."""
     return new_tracker(
         model,
@@ -193,7 +194,7 @@ def _shape(dataset: Dataset, fold: Fold) -> ObjectShape:
 
 # Folds share recordings, and the objects, whose boundaries take seconds to find.
 @lru_cache(maxsize=16)
-def _sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
+def _sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
     return checked_sequence(dataset, entry)
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.datasets.dataset import Frame
+from inhand_lab.datasets.recorded_frames import RecordedFrame
 from inhand_lab.datasets.tracks import Track, true_joints, true_track
 from inhand_lab.evaluation.losses import (
     Recoveries,
@@ -46,7 +46,7 @@ class Judge:
     ``joints`` (T, 20, 3) is the body that the trackers saw, NaN where missing.
     """
 
-    def __init__(self, frames: Sequence[Frame], joints: Array, gauge: ErrorGauge) -> None:
+    def __init__(self, frames: Sequence[RecordedFrame], joints: Array, gauge: ErrorGauge) -> None:
         true = true_track(frames)
         self._labelled = true.given
         self._true = true.of(self._labelled)

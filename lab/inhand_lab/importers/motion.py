@@ -10,7 +10,8 @@ from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.shape.shape import ObjectShape
 
-from inhand_lab.datasets.dataset import Dataset, DatasetError, DatasetWriter, Entry
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.messages import PERSON, label_message, skeletons_message
 from inhand_lab.importers.motion_archive import Motion, read_motion
 from inhand_lab.importers.shapes import shape_of_mesh, shape_of_points
@@ -38,7 +39,7 @@ def import_motion(sources: Sequence[Path], folder: Path, frame_rate: float = FRA
     for shape in shapes:
         writer.add_shape(shape)
     for motion, timing in zip(motions, timings, strict=True):
-        entry = Entry(
+        entry = DatasetEntry(
             file=f"recordings/{motion.path.stem}.mcap",
             interaction=motion.interaction,
             participant=motion.participant,

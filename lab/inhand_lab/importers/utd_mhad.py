@@ -17,7 +17,8 @@ from inhand_schemas.messages import CameraInfo, Message, RgbdFrame
 from inhand_tracker.geometry.arrays import Array
 from numpy.typing import NDArray
 
-from inhand_lab.datasets.dataset import Dataset, DatasetError, DatasetWriter, Entry
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.matlab import read_mat
 from inhand_lab.importers.messages import skeletons_message
 from inhand_lab.importers.sources import find_files
@@ -122,7 +123,7 @@ def import_utd_mhad(
             unpaired += abs(len(joints) - len(depth))
             paired = min(len(joints), len(depth))
             joints, depth = joints[:paired], depth[:paired]
-        entry = Entry(
+        entry = DatasetEntry(
             file=f"recordings/{trial.stem}.mcap",
             interaction=trial.interaction,
             participant=trial.participant,

@@ -14,7 +14,8 @@ import numpy as np
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_schemas.messages import CameraInfo, Message, RgbdFrame
 
-from inhand_lab.datasets.dataset import Dataset, DatasetError, DatasetWriter, Entry
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.images import read_image
 from inhand_lab.importers.messages import label_message
 from inhand_lab.importers.timing import FRAME_RATE, Timing, thin
@@ -54,7 +55,7 @@ def import_ycb_video(
             shape = find_shape(name, clip.folder.parent.parent, clip.frames)
             if shape is not None:
                 writer.add_shape(shape)
-        entry = Entry(
+        entry = DatasetEntry(
             file=f"recordings/{clip.folder.name}.mcap",
             interaction=INTERACTION,
             participant=PARTICIPANT,

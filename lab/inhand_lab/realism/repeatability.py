@@ -23,7 +23,9 @@ from rich.console import Console
 from rich.table import Table
 from scipy.spatial.distance import cdist
 
-from inhand_lab.datasets.dataset import Dataset, Entry, labelled_sequence, load_dataset, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, load_dataset
+from inhand_lab.datasets.labelled_sequence import labelled_sequence
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.datasets.tracks import true_joints
 
 AGAIN_S = 1.5
@@ -112,7 +114,7 @@ def main() -> None:
     Console().print(table)
 
 
-def _true_joints(dataset: Dataset, entry: Entry) -> Array:
+def _true_joints(dataset: Dataset, entry: DatasetEntry) -> Array:
     return true_joints(load_frames(dataset.path(entry), entry.object))
 
 

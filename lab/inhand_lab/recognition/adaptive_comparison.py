@@ -12,7 +12,7 @@ import numpy as np
 from inhand_runtime.errors import InhandError
 from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.datasets.dataset import Frame, iterate_pixels
+from inhand_lab.datasets.recorded_frames import RecordedFrame, iterate_pixels
 from inhand_lab.recognition import adaptive_trackers
 
 SMALLEST = 8
@@ -33,7 +33,7 @@ class Environments:
 
 
 def follow_adaptively(
-    path: Path, frames: Sequence[Frame], boxes: Array, pythons: dict[str, str]
+    path: Path, frames: Sequence[RecordedFrame], boxes: Array, pythons: dict[str, str]
 ) -> dict[str, Array]:
     """The boxes (T, 4), left, top, right, bottom, that each adaptive tracker follows.
 

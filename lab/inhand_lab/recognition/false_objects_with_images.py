@@ -13,8 +13,9 @@ from inhand_tracker.recognition.cascade import Cascade
 from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.presence import Presence
 
-from inhand_lab.datasets.dataset import Dataset, Entry, has_images, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry
 from inhand_lab.datasets.observations import Observation, observe, observe_simulation
+from inhand_lab.datasets.recorded_frames import has_images, load_frames
 from inhand_lab.people.joint_sequence import JointSequence
 from inhand_lab.recognition.false_objects import IDLE_KINDS, IDLE_SEED, FalseObjects
 from inhand_lab.recognition.protocol import answers_together, labelled_entries, learn_models
@@ -144,7 +145,7 @@ class _Lesson:
         }
 
 
-def _learn(dataset: Dataset, entries: Sequence[Entry]) -> _Lesson:
+def _learn(dataset: Dataset, entries: Sequence[DatasetEntry]) -> _Lesson:
     people = tuple(watch(dataset, entry) for entry in entries)
     actions = list(dict.fromkeys(one.action for one in people))
     models = learn_models(dataset, entries, actions)
@@ -162,7 +163,7 @@ def _idle(cascades: Mapping[str, Cascade], numbers: Iterable[int]) -> Iterator[_
             yield _Found("idle", kind, share)
 
 
-def _known_on(cascade: Cascade, dataset: Dataset, entry: Entry) -> float:
+def _known_on(cascade: Cascade, dataset: Dataset, entry: DatasetEntry) -> float:
     path = dataset.path(entry)
     frames = load_frames(path, entry.object)
     return _known_share(cascade, observe(path, frames, NEEDS), len(frames))

@@ -16,8 +16,9 @@ from inhand_tracker.recognition.darby2012.cascade import Cascade2012
 from inhand_tracker.recognition.recogniser import Recogniser
 from inhand_tracker.wire.conversion import Need
 
-from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, load_camera, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import Observation, observe
+from inhand_lab.datasets.recorded_frames import load_camera, load_frames
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.evaluation.protocol import fold_model
@@ -79,7 +80,7 @@ def evaluate_recognition(
     return [trial for trials in done for trial in trials]
 
 
-def labelled_entries(dataset: Dataset) -> list[Entry]:
+def labelled_entries(dataset: Dataset) -> list[DatasetEntry]:
     """The recordings with a labelled object; raises DatasetError where there are none."""
     entries = [entry for entry in dataset.entries if entry.object is not None]
     if not entries:
@@ -91,7 +92,7 @@ def labelled_entries(dataset: Dataset) -> list[Entry]:
 
 
 def learn_from(
-    dataset: Dataset, entries: Sequence[Entry], *, images: bool = True
+    dataset: Dataset, entries: Sequence[DatasetEntry], *, images: bool = True
 ) -> tuple[Recogniser, list[Model]]:
     """A recogniser, and a model for each of its actions, in their order.
 
@@ -107,7 +108,11 @@ def learn_from(
 
 
 def learn_models(
-    dataset: Dataset, entries: Sequence[Entry], actions: Sequence[str], *, images: bool = True
+    dataset: Dataset,
+    entries: Sequence[DatasetEntry],
+    actions: Sequence[str],
+    *,
+    images: bool = True,
 ) -> list[Model]:
     """A model for each of the actions; raises DatasetError or RecordingError."""
     folds = [
@@ -135,7 +140,10 @@ def _try_person(task: tuple[RecognitionProtocol, str]) -> list[RecognitionTrial]
 
 
 def _try_recording(
-    protocol: RecognitionProtocol, recogniser: Recogniser, models: Sequence[Model], entry: Entry
+    protocol: RecognitionProtocol,
+    recogniser: Recogniser,
+    models: Sequence[Model],
+    entry: DatasetEntry,
 ) -> list[RecognitionTrial]:
     path = protocol.dataset.path(entry)
     frames = load_frames(path, entry.object)
@@ -183,7 +191,7 @@ def _tracker(
     name: str,
     recogniser: Recogniser,
     models: Sequence[Model],
-    entry: Entry,
+    entry: DatasetEntry,
 ) -> AnyCascade:
     left_handed = entry.handedness == "left"
     if name == "cascade-2012":

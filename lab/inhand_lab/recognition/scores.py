@@ -7,7 +7,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.recognition.answer import Recognition
 
-from inhand_lab.datasets.dataset import Frame
+from inhand_lab.datasets.recorded_frames import RecordedFrame
 from inhand_lab.datasets.tracks import Track, empty_track, true_track
 from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.recognition.true_boxes import centres
@@ -58,7 +58,7 @@ class RecognitionScore:
 
 
 def score_answers(
-    answers: Answers, action: int, frames: Sequence[Frame], truth: Array, gauge: ErrorGauge
+    answers: Answers, action: int, frames: Sequence[RecordedFrame], truth: Array, gauge: ErrorGauge
 ) -> RecognitionScore:
     """The score of answers about an action, against the true boxes (T, 4) and the labels."""
     counted = np.isfinite(truth).all(axis=1)

@@ -10,14 +10,14 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.wire.conversion import joints_of
 
-from inhand_lab.datasets.dataset import Frame
+from inhand_lab.datasets.recorded_frames import RecordedFrame
 from inhand_lab.datasets.tracks import true_track
 
 HEAD_SHARE = 0.935
 """The middle of the head is at this share of the stature (Drillis and Contini 1966)."""
 
 
-def true_boxes(frames: Sequence[Frame], shape: ObjectShape, camera: Intrinsics) -> Array:
+def true_boxes(frames: Sequence[RecordedFrame], shape: ObjectShape, camera: Intrinsics) -> Array:
     """Left, top, right and bottom (T, 4) of an object's whole mesh.
 
     NaN where no label is, or where the box's centre is outside the image.
@@ -36,7 +36,7 @@ def centres(boxes: Array) -> Array:
     return 0.5 * (boxes[:, :2] + boxes[:, 2:])
 
 
-def person_pixels(frames: Sequence[Frame], camera: Intrinsics) -> float:
+def person_pixels(frames: Sequence[RecordedFrame], camera: Intrinsics) -> float:
     """How tall the person stands in the image: the tallest tenth of frames; NaN without a body."""
     tall = []
     for frame in frames:

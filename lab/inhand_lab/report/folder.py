@@ -17,8 +17,8 @@ from inhand_tracker.methods.registry import METHODS
 from inhand_tracker.model.model import Model
 from rich.console import Console
 
-from inhand_lab.datasets.dataset import load_frames
 from inhand_lab.datasets.observations import track_together
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.protocol import Candidate, Protocol, Trial, fold_model, tracker_of
 from inhand_lab.evaluation.published import REFERENCE_METHOD

@@ -15,7 +15,7 @@ from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.wire.poses import pose_message
 from matplotlib.figure import Figure
 
-from inhand_lab.datasets.dataset import Frame, iterate_pixels, load_camera_info
+from inhand_lab.datasets.recorded_frames import RecordedFrame, iterate_pixels, load_camera_info
 from inhand_lab.datasets.tracks import Track, true_track
 from inhand_lab.report.picture import TRACKED, TRUE, Picture, picture_of
 
@@ -35,7 +35,7 @@ class Seen:
     """A recording at ``path``, the joints (T, 20, 3) and the track of its object."""
 
     path: Path
-    frames: Sequence[Frame]
+    frames: Sequence[RecordedFrame]
     joints: Array
     track: Track
 

@@ -8,19 +8,14 @@ from inhand_schemas.errors import MessageError
 from inhand_tracker.sight.appearance import Sample
 from inhand_tracker.wire.conversion import image_of, joints_of
 
-from inhand_lab.datasets.dataset import (
-    Dataset,
-    Entry,
-    iterate_pixels,
-    load_camera_info,
-    load_frames,
-)
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry
+from inhand_lab.datasets.recorded_frames import iterate_pixels, load_camera_info, load_frames
 
 RECORDINGS, FRAMES = 12, 60
 """At the most, evenly spaced: an object looks much the same in all."""
 
 
-def appearance_samples(dataset: Dataset, entries: Sequence[Entry]) -> Iterator[Sample]:
+def appearance_samples(dataset: Dataset, entries: Sequence[DatasetEntry]) -> Iterator[Sample]:
     """Some frames of some recordings of one object; none of recordings without images.
 
     Damaged pixels are passed over. Raises DatasetError or RecordingError.

@@ -8,7 +8,7 @@ from inhand_tracker.body.skeleton import PELVIS_JOINTS
 from inhand_tracker.geometry import rotations
 from inhand_tracker.mapping.learning import LabelledSequence
 
-from inhand_lab.datasets.dataset import DatasetError, Entry
+from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
 
 FASTEST_M_PER_S = 60.0
 """Faster than the head of a golf club."""
@@ -23,7 +23,7 @@ CLEARLY = 0.9
 """The share of frames in which the object is nearer to one hand, where it is that hand's."""
 
 
-def check_sequence(entry: Entry, sequence: LabelledSequence) -> None:
+def check_sequence(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     """Raises DatasetError for a recording that cannot be meant."""
     if len(sequence.joints) == 0:
         raise DatasetError(
@@ -35,7 +35,7 @@ def check_sequence(entry: Entry, sequence: LabelledSequence) -> None:
     _check_bodies(entry, sequence)
 
 
-def check_hands(entries: Sequence[Entry], sequences: Sequence[LabelledSequence]) -> None:
+def check_hands(entries: Sequence[DatasetEntry], sequences: Sequence[LabelledSequence]) -> None:
     """Raises DatasetError where an object is in the dominant hand of some people, and in the other
     hand of others: one of them is not as handed as ``dataset.toml`` says."""
     shares = np.array([_share_at_dominant_hand(sequence) for sequence in sequences])
@@ -53,7 +53,7 @@ def check_hands(entries: Sequence[Entry], sequences: Sequence[LabelledSequence])
     )
 
 
-def _check_labels(entry: Entry, sequence: LabelledSequence) -> None:
+def _check_labels(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     frames = len(sequence.translations)
     unlabelled = int((~np.isfinite(sequence.translations).all(axis=1)).sum())
     if unlabelled > (1.0 - LEAST_SHARE) * frames:
@@ -63,7 +63,7 @@ def _check_labels(entry: Entry, sequence: LabelledSequence) -> None:
         )
 
 
-def _check_jumps(entry: Entry, sequence: LabelledSequence) -> None:
+def _check_jumps(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     moved = np.linalg.norm(np.diff(sequence.translations, axis=0), axis=1)
     turned = rotations.angle_between(sequence.rotations[:-1], sequence.rotations[1:])
     for frame in np.flatnonzero(moved * entry.frame_rate > FASTEST_M_PER_S):
@@ -78,7 +78,7 @@ def _check_jumps(entry: Entry, sequence: LabelledSequence) -> None:
         )
 
 
-def _check_bodies(entry: Entry, sequence: LabelledSequence) -> None:
+def _check_bodies(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     seen = np.asarray(np.isfinite(sequence.joints).all(axis=2))
     frames = len(seen)
     most_missing = (1.0 - LEAST_SHARE) * frames

@@ -10,7 +10,8 @@ from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.viewpoints import find_viewpoints
 from inhand_tracker.sight.appearance import learn_appearance
 
-from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, labelled_sequence
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.training.appearance_samples import appearance_samples
 from inhand_lab.training.checks import check_hands, check_sequence
 
@@ -30,7 +31,7 @@ def stages(recordings: int) -> dict[str, int]:
 
 def entries_for(
     dataset: Dataset, object_name: str | None = None, without: Collection[str] = ()
-) -> list[Entry]:
+) -> list[DatasetEntry]:
     """The labelled recordings of one object, but for some participants'.
 
     ``object_name`` may be left out where the dataset has one object. Raises DatasetError.
@@ -62,7 +63,7 @@ def entries_for(
 
 def train(
     dataset: Dataset,
-    entries: Sequence[Entry],
+    entries: Sequence[DatasetEntry],
     on_step: Callable[[str], None] = lambda stage: None,
 ) -> Model:
     """Learn from recordings of one object; ``on_step`` is called at every step of ``stages``.
@@ -99,7 +100,7 @@ def train(
     return model
 
 
-def checked_sequence(dataset: Dataset, entry: Entry) -> LabelledSequence:
+def checked_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
     """A recording for training; raises DatasetError for one that cannot be meant."""
     try:
         sequence = labelled_sequence(dataset, entry)

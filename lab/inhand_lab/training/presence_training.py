@@ -20,8 +20,9 @@ from inhand_tracker.recognition.presence import (
 from inhand_tracker.sight.support import PARTS, Support
 from numpy.typing import ArrayLike
 
-from inhand_lab.datasets.dataset import Dataset, Entry, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry
 from inhand_lab.datasets.observations import observe
+from inhand_lab.datasets.recorded_frames import load_frames
 
 NEEDS = METHODS[DEFAULT_METHOD].needs(METHODS[DEFAULT_METHOD].usual_terms)
 """What of a frame the trackers of objects look at."""
@@ -48,14 +49,20 @@ class Look:
 
 
 def learn_presence(
-    dataset: Dataset, entries: Sequence[Entry], actions: Sequence[str], models: Sequence[Model]
+    dataset: Dataset,
+    entries: Sequence[DatasetEntry],
+    actions: Sequence[str],
+    models: Sequence[Model],
 ) -> Presence:
     """Of the objects of ``models``, in the order of their actions; raises RecordingError."""
     return presence_of(look_around(dataset, entries, actions, models), actions)
 
 
 def look_around(
-    dataset: Dataset, entries: Sequence[Entry], actions: Sequence[str], models: Sequence[Model]
+    dataset: Dataset,
+    entries: Sequence[DatasetEntry],
+    actions: Sequence[str],
+    models: Sequence[Model],
 ) -> list[Look]:
     """Look for every object at each place in each recording; raises RecordingError."""
     return [
@@ -89,7 +96,9 @@ def _supports(looks: Sequence[Look], action: str, done: str) -> list[Support]:
     ]
 
 
-def _looks(dataset: Dataset, entry: Entry, models: Sequence[Model]) -> list[dict[int, Support]]:
+def _looks(
+    dataset: Dataset, entry: DatasetEntry, models: Sequence[Model]
+) -> list[dict[int, Support]]:
     """The support of each object that says anything, at each place in a recording."""
     path = dataset.path(entry)
     frames = load_frames(path, entry.object)

@@ -10,7 +10,7 @@ from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.presence import usual_presence
 from inhand_tracker.recognition.recogniser import Recogniser
 
-from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.people.joint_sequence import JointSequence
 from inhand_lab.training.movement_training import MovementSequence, train_movements
 from inhand_lab.training.svm_training import train_svm
@@ -33,7 +33,7 @@ def stages(recordings: int) -> dict[str, int]:
 
 def train_recogniser(
     dataset: Dataset,
-    entries: Sequence[Entry],
+    entries: Sequence[DatasetEntry],
     on_step: Callable[[str], None] = lambda stage: None,
 ) -> Recogniser:
     """Learn the actions of recordings, labelled or not; raises DatasetError or RecordingError.
@@ -127,5 +127,5 @@ def _background(number: int) -> list[MovementSequence]:
 
 # Folds share recordings.
 @lru_cache(maxsize=512)
-def _watched(dataset: Dataset, entry: Entry) -> JointSequence:
+def _watched(dataset: Dataset, entry: DatasetEntry) -> JointSequence:
     return watch(dataset, entry)

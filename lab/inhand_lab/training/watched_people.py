@@ -17,7 +17,8 @@ from inhand_tracker.people.following import Follower
 from inhand_tracker.recognition.movement import Movement
 from inhand_tracker.wire.conversion import joints_of
 
-from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.people.joint_sequence import JointSequence
 
 USUAL_STEP = 10
@@ -30,7 +31,7 @@ class UsualPoses:
     body_poses: Array
 
 
-def watch(dataset: Dataset, entry: Entry) -> JointSequence:
+def watch(dataset: Dataset, entry: DatasetEntry) -> JointSequence:
     """A recording as its person was seen; raises DatasetError or RecordingError."""
     frames = load_frames(dataset.path(entry), entry.object)
     joints = np.full((len(frames), 20, 3), np.nan)

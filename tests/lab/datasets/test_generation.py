@@ -5,8 +5,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import Dataset, labelled_sequence, load_frames
+from inhand_lab.datasets.dataset import Dataset
 from inhand_lab.datasets.generation import generate
+from inhand_lab.datasets.labelled_sequence import labelled_sequence
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.world.sheet import HEIGHT, NAME_WIDTH, PICTURES, WIDTH, write_sheet
 from inhand_lab.world.simulation import simulate

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import DatasetError, load_frames
+from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.datasets.observations import observe, track_recording, track_together
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.training.model_training import train
 from inhand_runtime.pixels import encode_depth
 from inhand_runtime.recording import RecordingWriter

@@ -4,14 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import (
-    Dataset,
-    DatasetError,
-    DatasetWriter,
-    Entry,
-    labelled_sequence,
-    load_frames,
-)
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.dataset_writer import DatasetWriter
+from inhand_lab.datasets.labelled_sequence import labelled_sequence
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.driven.dataset import generate_driven, pairs_for, recorded_body
 from inhand_lab.driven.denoising import bone_lengths, denoise
 from inhand_lab.driven.recorded_body import RecordedBody, drive
@@ -218,13 +214,13 @@ def bodies(tmp_path: Path) -> Dataset:
     """Three people who sweep, out of sight for 40 of 100 frames, and one who juggles."""
     writer = DatasetWriter(tmp_path / "bodies")
     for number in range(3):
-        entry = Entry(
+        entry = DatasetEntry(
             file=f"recordings/take_{number}.mcap",
             interaction="sweepFloor",
             participant=f"s{number}",
         )
         writer.add_recording(entry, skeletons(source(participant=number), range(100, 280)))
-    entry = Entry(file="recordings/take_3.mcap", interaction="juggle", participant="s0")
+    entry = DatasetEntry(file="recordings/take_3.mcap", interaction="juggle", participant="s0")
     writer.add_recording(entry, skeletons(source(), range(100, 160)))
     return writer.finish({})
 
@@ -258,7 +254,7 @@ def test_where_nothing_fits_the_choice_is_asked_for(bodies: Dataset) -> None:
 
 def test_a_recording_without_a_body_is_refused(tmp_path: Path) -> None:
     writer = DatasetWriter(tmp_path / "empty")
-    entry = Entry(file="recordings/a.mcap", interaction="sweepFloor", participant="s0")
+    entry = DatasetEntry(file="recordings/a.mcap", interaction="sweepFloor", participant="s0")
     writer.add_recording(entry, [Skeletons(sequence=0, time_ns=0)])
     with pytest.raises(DatasetError, match="all twenty joints"):
         recorded_body(writer.finish({}), entry, participant=0, recording=0)

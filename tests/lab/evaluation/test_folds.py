@@ -3,17 +3,17 @@
 from pathlib import Path
 
 import pytest
-from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
 
 
 def entry(
     name: str, participant: str, interaction: str = "wave", thing: str | None = "box"
-) -> Entry:
-    return Entry(file=name, interaction=interaction, participant=participant, object=thing)
+) -> DatasetEntry:
+    return DatasetEntry(file=name, interaction=interaction, participant=participant, object=thing)
 
 
-def dataset(*entries: Entry) -> Dataset:
+def dataset(*entries: DatasetEntry) -> Dataset:
     return Dataset(Path("somewhere"), entries)
 
 

@@ -5,7 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import Dataset, DatasetError, DatasetWriter, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetError
+from inhand_lab.datasets.dataset_writer import DatasetWriter
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.datasets.tracks import empty_track, true_track
 from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
 from inhand_lab.evaluation.pose_errors import ErrorGauge

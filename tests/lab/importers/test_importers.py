@@ -12,17 +12,10 @@ import numpy as np
 import pytest
 import scipy.io
 import trimesh
-from inhand_lab.datasets.dataset import (
-    Dataset,
-    DatasetError,
-    DatasetWriter,
-    Entry,
-    iterate_pixels,
-    labelled_sequence,
-    load_camera,
-    load_dataset,
-    load_frames,
-)
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError, load_dataset
+from inhand_lab.datasets.dataset_writer import DatasetWriter
+from inhand_lab.datasets.labelled_sequence import labelled_sequence
+from inhand_lab.datasets.recorded_frames import iterate_pixels, load_camera, load_frames
 from inhand_lab.importers.motion import import_motion
 from inhand_lab.importers.timing import START_NS
 from inhand_lab.importers.utd_mhad import JOINT_ORDER, import_utd_mhad
@@ -104,7 +97,7 @@ def save_archive(path: Path, **changes: Any) -> Path:
     return path
 
 
-def only_entry(dataset: Dataset) -> Entry:
+def only_entry(dataset: Dataset) -> DatasetEntry:
     (entry,) = dataset.entries
     return entry
 
@@ -116,7 +109,7 @@ def messages_of(dataset: Dataset) -> list[Any]:
 class TestMotion:
     def test_the_entry_tells_what_the_archive_does(self, tmp_path: Path) -> None:
         import_motion([save_archive(tmp_path / "walk.npz")], tmp_path / "out")
-        assert only_entry(load_dataset(tmp_path / "out")) == Entry(
+        assert only_entry(load_dataset(tmp_path / "out")) == DatasetEntry(
             file="recordings/walk.mcap",
             interaction="carryCube",
             participant="somebody",
@@ -334,7 +327,7 @@ def save_trial(
 class TestUtdMhad:
     def test_a_trial_has_its_actions_name_and_no_object(self, tmp_path: Path) -> None:
         dataset = import_utd_mhad([save_trial(tmp_path, 3, 3)], tmp_path / "out")
-        assert only_entry(dataset) == Entry(
+        assert only_entry(dataset) == DatasetEntry(
             file="recordings/a15_s3_t2.mcap",
             interaction="tennisSwing",
             participant="s3",

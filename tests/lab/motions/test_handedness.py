@@ -9,7 +9,8 @@ from pathlib import Path
 import msgspec
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import Dataset, DatasetWriter, Entry
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry
+from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
 from inhand_lab.evaluation.protocol import Protocol, evaluate
 from inhand_lab.training.model_training import entries_for, train
@@ -60,7 +61,7 @@ def dataset_of(folder: Path, *, left_handed: bool) -> Dataset:
         mirrored = (simulation.person.handedness == "left") != left_handed
         shape = shape_of(simulation.object_model)
         writer.add_shape(shape)
-        entry = Entry(
+        entry = DatasetEntry(
             file=f"recordings/p{participant}.mcap",
             interaction="drinkFromMug",
             object=shape.name,

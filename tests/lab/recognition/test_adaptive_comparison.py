@@ -4,7 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import DatasetWriter, Entry, load_frames
+from inhand_lab.datasets.dataset import DatasetEntry
+from inhand_lab.datasets.dataset_writer import DatasetWriter
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.recognition.adaptive_comparison import Environments, follow_adaptively
 from inhand_runtime.errors import InhandError
 from inhand_runtime.pixels import encode_colour
@@ -31,7 +33,7 @@ def recording(tmp_path: Path) -> tuple[Path, np.ndarray]:
         messages.append(RgbdFrame(sequence=n, time_ns=n + 1, colour=encode_colour(image)))
         boxes.append((left, 40.0, left + 24, 64.0))
     writer = DatasetWriter(tmp_path / "set")
-    entry = Entry(file="recordings/a.mcap", interaction="slide", participant="p")
+    entry = DatasetEntry(file="recordings/a.mcap", interaction="slide", participant="p")
     writer.add_recording(entry, messages)
     dataset = writer.finish({})
     truth = np.array(boxes, float)

@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 
 import pytest
-from inhand_lab.datasets.dataset import has_images
 from inhand_lab.datasets.generation import generate
+from inhand_lab.datasets.recorded_frames import has_images
 from inhand_lab.recognition import false_objects_by_movement, false_objects_with_images
 
 from inhand.__main__ import main

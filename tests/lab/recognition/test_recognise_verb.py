@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import Dataset, DatasetError, load_frames
+from inhand_lab.datasets.dataset import Dataset, DatasetError
 from inhand_lab.datasets.generation import generate
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.recognition.protocol import learn_from
 from inhand_runtime.errors import SettingsError
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker

@@ -3,7 +3,8 @@
 import json
 from pathlib import Path
 
-from inhand_lab.datasets.dataset import Dataset, DatasetWriter
+from inhand_lab.datasets.dataset import Dataset
+from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.evaluation.folds import leave_one_out
 from inhand_lab.evaluation.protocol import Protocol, Terms, evaluate
 from inhand_lab.evaluation.summary import summarise, terms_name, with_terms, worth

@@ -10,7 +10,7 @@ import msgspec
 import numpy as np
 import pytest
 from inhand_lab.benchmarks.training_cost import benchmark_training, steps
-from inhand_lab.datasets.dataset import Dataset, DatasetError, Entry, load_dataset
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError, load_dataset
 from inhand_lab.datasets.generation import generate
 from inhand_lab.training.checks import check_hands, check_sequence
 from inhand_lab.training.learned import learned_by
@@ -25,7 +25,7 @@ from inhand.__main__ import main
 from inhand.bench import training_table
 
 FRAMES = 60
-ENTRY = Entry(file="recordings/a.mcap", interaction="drink", participant="p0", object="mug")
+ENTRY = DatasetEntry(file="recordings/a.mcap", interaction="drink", participant="p0", object="mug")
 TURNED = np.array([0.0, 1.0, 0.0, 0.0])
 
 
@@ -151,7 +151,7 @@ def test_an_object_in_both_hands_tells_nothing_of_handedness() -> None:
     check_hands([ENTRY] * 3, [both, replace(both, left_handed=True), recording()])
 
 
-def replaced(entry: Entry, **changes: str) -> Entry:
+def replaced(entry: DatasetEntry, **changes: str) -> DatasetEntry:
     return msgspec.structs.replace(entry, **changes)
 
 

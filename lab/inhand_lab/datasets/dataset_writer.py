@@ -1,0 +1,106 @@
+"""Writes a dataset: shapes, recordings, and ``dataset.toml``."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+import msgspec
+from inhand_runtime.recording import RecordingWriter
+from inhand_schemas.keys import Site
+from inhand_schemas.messages import CameraInfo, Message, ObjectPose, RgbdFrame, Skeletons
+from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS, AnyTopic
+from inhand_tracker.shape.shape import ObjectShape, save_shape
+
+from inhand_lab.datasets.dataset import (
+    CAMERA,
+    FORMAT,
+    VERSION,
+    Dataset,
+    DatasetEntry,
+    DatasetError,
+    DatasetFile,
+)
+
+_TOPICS: dict[type[Message], AnyTopic] = {
+    CameraInfo: INFO,
+    RgbdFrame: RGBD,
+    Skeletons: SKELETONS,
+    ObjectPose: LABEL,
+}
+
+
+class DatasetWriter:
+    """Writes a new dataset; ``finish`` writes ``dataset.toml`` last, so a broken one has none."""
+
+    def __init__(self, folder: Path) -> None:
+        if (folder / "dataset.toml").exists():
+            raise DatasetError(f"{folder} holds a dataset already: choose another folder")
+        with _reporting(folder):
+            (folder / "recordings").mkdir(parents=True, exist_ok=True)
+        self.folder = folder
+        self._entries: list[DatasetEntry] = []
+        self._shapes: set[str] = set()
+
+    def add_shape(self, shape: ObjectShape) -> None:
+        """Write an object's folder, once."""
+        if shape.name not in self._shapes:
+            with _reporting(self.folder):
+                save_shape(shape, self.folder / "objects" / shape.name)
+            self._shapes.add(shape.name)
+
+    def add_recording(self, entry: DatasetEntry, messages: Iterable[Message]) -> None:
+        """Write one recording; ``messages`` come in the order of their times."""
+        site = Site()
+        with RecordingWriter(self.folder / entry.file) as writer:
+            for message in messages:
+                topic = _TOPICS[type(message)]
+                name = message.object if isinstance(message, ObjectPose) else CAMERA
+                writer.write(
+                    site.key(topic.stream, name),
+                    msgspec.msgpack.encode(message),
+                    received_ns=message.time_ns,
+                    captured_ns=message.time_ns,
+                    sequence=message.sequence,
+                )
+        self._entries.append(entry)
+
+    def finish(self, generator: Mapping[str, str | int | float | bool]) -> Dataset:
+        """Write ``dataset.toml``; ``generator`` says what made the dataset, and its settings."""
+        contents = DatasetFile(
+            format=FORMAT,
+            version=VERSION,
+            generator=dict(generator),
+            recordings=tuple(self._entries),
+        )
+        path = self.folder / "dataset.toml"
+        with _reporting(self.folder):
+            path.write_text(_toml(contents), encoding="utf-8")
+        return Dataset(self.folder, contents.recordings)
+
+
+@contextmanager
+def _reporting(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise DatasetError(f"cannot write {folder}: {error.strerror}") from None
+
+
+def _toml(contents: DatasetFile) -> str:
+    lines = [f'format = "{contents.format}"', f"version = {contents.version}"]
+    if contents.generator:
+        lines += ["", "[generator]"]
+        lines += [f"{key} = {_toml_value(value)}" for key, value in contents.generator.items()]
+    for entry in contents.recordings:
+        lines += ["", "[[recordings]]"]
+        lines += [
+            f"{key} = {_toml_value(value)}"
+            for key, value in msgspec.structs.asdict(entry).items()
+            if value is not None
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def _toml_value(value: object) -> str:
+    # A JSON string, number or boolean is the same in TOML.
+    return msgspec.json.encode(value).decode()
