@@ -3,6 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 
 CONTRIB := .venv-contrib
+ON_ALL_CORES := --numprocesses auto --dist loadgroup --no-loadscope-reorder
 
 .PHONY: help setup contrib demo test test-fast lint format clean
 
@@ -18,10 +19,10 @@ demo: $(VENV)/run.stamp
 	$(BIN)/inhand demo
 
 test: setup
-	$(BIN)/pytest
+	$(BIN)/pytest $(ON_ALL_CORES)
 
 test-fast: setup
-	$(BIN)/pytest -m "not long"
+	$(BIN)/pytest $(ON_ALL_CORES) -m "not long"
 
 lint: setup
 	$(BIN)/ruff check .

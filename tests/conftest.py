@@ -6,11 +6,28 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 from running_rig import RunningRig
+from scheduling import FilesAndRigs, ordered, usable_cores
 from wire import Wire
 
 # Example times on a busy machine say nothing about the code; each test has its own timeout.
 settings.register_profile("inhand", deadline=None)
 settings.load_profile("inhand")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    return usable_cores()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config) -> FilesAndRigs:
+    return FilesAndRigs(config)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if hasattr(config, "workerinput"):
+        items[:] = ordered(items)
 
 
 @pytest.fixture

@@ -24,6 +24,7 @@ from running_rig import RunningRig, eventually
 from inhand.__main__ import main
 
 SEED = 5
+pytestmark = pytest.mark.xdist_group("rig")
 
 needs_data = pytest.mark.skipif(
     not DATA.is_dir(), reason="the real recordings (../shared/data) are not on this machine"

@@ -1,4 +1,4 @@
-"""A rig that is nothing but numbers: ``python tests/publisher.py …`` publishes test messages."""
+"""A rig that is nothing but numbers: ``publisher.py …`` publishes test messages."""
 
 import argparse
 import os

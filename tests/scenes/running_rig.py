@@ -91,7 +91,7 @@ class RunningRig:
 
     def publisher(self, *arguments: str) -> Process:
         """Start ``publisher.py``, and wait until it is ready."""
-        script = str(ROOT / "tests" / "publisher.py")
+        script = str(Path(__file__).parent / "publisher.py")
         started = self._start([sys.executable, script, "--meeting", self.meeting, *arguments], {})
         started.said("ready")
         return started

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import Dataset
 from inhand_lab.evaluation.part_errors import PartErrors, part_errors
-from inhand_tracker.body.skeleton import PART
+from inhand_tracker.body.skeleton import PARTS, RIGHT_HAND
 from waving import write_dataset
+
+RIGHT_WRIST = PARTS.index("WristRight")
 
 
 @pytest.fixture(scope="module")
@@ -22,12 +24,12 @@ def errors(waved: Dataset) -> PartErrors:
 
 
 def test_the_carrying_hand_predicts_translation_better_than_most_parts(errors: PartErrors) -> None:
-    assert errors.translation_m[PART["HandRight"]] < 0.03
-    assert errors.translation_m[PART["HandRight"]] < np.median(errors.translation_m[:-1])
+    assert errors.translation_m[RIGHT_HAND] < 0.03
+    assert errors.translation_m[RIGHT_HAND] < np.median(errors.translation_m[:-1])
 
 
 def test_the_short_hand_bone_turns_more_with_noise_than_the_forearm(errors: PartErrors) -> None:
-    assert errors.rotation_rad[PART["HandRight"]] > errors.rotation_rad[PART["WristRight"]]
+    assert errors.rotation_rad[RIGHT_HAND] > errors.rotation_rad[RIGHT_WRIST]
 
 
 def test_the_mean_of_all_parts_is_better_than_a_part_on_average(errors: PartErrors) -> None:
