@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from inhand_lab.driven.seen_frames import SeenFrames, seen_frames
 from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.performance import ContactKind
 from inhand_lab.motions.timeline import drift
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.kinematics import place_body
@@ -44,7 +44,7 @@ class Hold:
     to the other one in the object's frame, where both hold it.
     """
 
-    contact: Contact
+    contact: ContactKind
     carrier: Carrier
     carrier_from_object: Transform
     right_wrist: Array
@@ -68,7 +68,7 @@ def rehearse(interaction: str, person: SimulatedPerson, seed: int) -> Hold:
     }
     carrier = min(steadiness, key=lambda name: steadiness[name])
     between_palms = None
-    if contact == Contact.BOTH_HANDS:
+    if contact == ContactKind.BOTH_HANDS:
         way = body.from_left_hand.translation - body.from_right_hand.translation
         turned = np.einsum("tji,tj->ti", world_from_object.rotation, way)
         between_palms = turned[held].mean(axis=0)
@@ -91,7 +91,7 @@ def attach(
     it towards the other palm, the more surely the further that is; the other hand may slide.
     """
     grip = hold.carrier_from_object.repeated(len(times))
-    if hold.contact != Contact.WORN:
+    if hold.contact != ContactKind.WORN:
         grip = _drifting(grip, times, random)
     placed = _carriers(body, seen)[hold.carrier] @ grip
     if hold.between_palms is None:
@@ -116,19 +116,19 @@ def _carriers(body: BodyMotion, seen: SeenFrames) -> dict[Carrier, Transform]:
     }
 
 
-def _possible(contact: Contact) -> tuple[Carrier, ...]:
-    if contact == Contact.WORN:
+def _possible(contact: ContactKind) -> tuple[Carrier, ...]:
+    if contact == ContactKind.WORN:
         return "head", "right_foot", "left_foot"
-    return ("left_hand",) if contact == Contact.LEFT_HAND else ("right_hand",)
+    return ("left_hand",) if contact == ContactKind.LEFT_HAND else ("right_hand",)
 
 
-def _usual(contact: Bytes) -> Contact:
+def _usual(contact: Bytes) -> ContactKind:
     """What an object is for: worn if it ever is, or else what holds it longest."""
-    counts = np.bincount(contact, minlength=len(Contact))
-    if counts[Contact.WORN]:
-        return Contact.WORN
-    counts[Contact.RESTING] = 0
-    return Contact(int(counts.argmax()))
+    counts = np.bincount(contact, minlength=len(ContactKind))
+    if counts[ContactKind.WORN]:
+        return ContactKind.WORN
+    counts[ContactKind.RESTING] = 0
+    return ContactKind(int(counts.argmax()))
 
 
 def _unsteadiness(world_from_carrier: Transform, world_from_object: Transform) -> float:

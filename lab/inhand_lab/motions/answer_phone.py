@@ -8,10 +8,10 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, normalised, rotation_about, rotation_from_axes
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT
 from inhand_lab.motions.performance import (
-    Contact,
+    ContactKind,
     Performance,
     Stance,
     contacts,
@@ -21,18 +21,27 @@ from inhand_lab.motions.performance import (
     stand,
 )
 from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, named
-from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
+from inhand_lab.motions.timeline import (
+    Key,
+    Move,
+    Pause,
+    Stage,
+    drift,
+    move_through,
+    schedule,
+    track,
+)
 from inhand_lab.objects.phone import PHONE_LENGTH, PHONE_THICKNESS
 from inhand_lab.people.kinematics import Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 from inhand_lab.people.solids import head_radii
 
-OPENING = (*TAKE, Movement("fetch", 0.9), Pause("read", 0.6))
+OPENING = (*TAKE, Move("fetch", 0.9), Pause("read", 0.6))
 USE = (
-    Movement("raise", 0.9),
+    Move("raise", 0.9),
     Pause("talk", 2.0),
-    Movement("lower", 0.9),
-    Movement("look", 0.8),
+    Move("lower", 0.9),
+    Move("look", 0.8),
 )
 
 CHANGE_SHARE = 0.5
@@ -78,8 +87,8 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     left_keys = _hand_keys(stages, sides, left_rest, left_held, -1.0)
     return Performance(
         posture,
-        follow(times, right_keys),
-        follow(times, left_keys),
+        move_through(times, right_keys),
+        move_through(times, left_keys),
         carried,
         contacts(times, _contacts(stages, sides)),
         furniture,
@@ -126,14 +135,12 @@ def _stance(
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _dock(
-    person: SimulatedPerson, random: np.random.Generator
-) -> tuple[tuple[Box, ...], Transform]:
+def _dock(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Transform]:
     """A table at the right hand with a dock on it, and the phone in the dock facing left."""
     size = person.height / 1.75
     x, y = np.array([0.31, 0.32]) * size + random.normal(0.0, 0.015, 2)
     top = 0.52 * person.height + random.normal(0.0, 0.015)
-    dock = Box((x, y, top + DOCK_SIZE[2] / 2.0), DOCK_SIZE, DOCK_COLOUR)
+    dock = Cuboid((x, y, top + DOCK_SIZE[2] / 2.0), DOCK_SIZE, DOCK_COLOUR)
     turn = random.normal(0.0, 0.10)
     screen = rotation_about("z", turn) @ np.array([-0.82, -0.55, 0.15])
     rotation = rotation_from_axes(screen, [0.0, 0.0, 1.0])
@@ -208,7 +215,7 @@ def _carry(
             keys += [here, Key(stage.end, held_before_eyes(next_side))]
         if stage.name == "return":
             keys += [here, Key(stage.end, docked, bow=(0.0, 0.0, 0.05))]
-    return follow(times, keys)
+    return move_through(times, keys)
 
 
 def _at_right_ear(person: SimulatedPerson, random: np.random.Generator) -> Transform:
@@ -252,11 +259,11 @@ def _hand_keys(
     return keys
 
 
-def _contacts(stages: list[Stage], sides: list[float]) -> list[tuple[float, Contact]]:
+def _contacts(stages: list[Stage], sides: list[float]) -> list[tuple[float, ContactKind]]:
     """When the phone passes from its dock to a hand, to both, to the other, and back."""
-    changes = [(0.0, Contact.RESTING), (named(stages, "grasp").end, Contact.RIGHT_HAND)]
+    changes = [(0.0, ContactKind.RESTING), (named(stages, "grasp").end, ContactKind.RIGHT_HAND)]
     for look, taker in _changes(stages, sides):
         third = (look.end - look.start) / 3.0
-        holder = Contact.RIGHT_HAND if taker > 0.0 else Contact.LEFT_HAND
-        changes += [(look.start + third, Contact.BOTH_HANDS), (look.end - third, holder)]
-    return [*changes, (named(stages, "release").start, Contact.RESTING)]
+        holder = ContactKind.RIGHT_HAND if taker > 0.0 else ContactKind.LEFT_HAND
+        changes += [(look.start + third, ContactKind.BOTH_HANDS), (look.end - third, holder)]
+    return [*changes, (named(stages, "release").start, ContactKind.RESTING)]

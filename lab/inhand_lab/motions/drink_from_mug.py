@@ -6,10 +6,10 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, rotation_about
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
-    Contact,
+    ContactKind,
     Performance,
     Stance,
     contacts,
@@ -21,11 +21,11 @@ from inhand_lab.motions.performance import (
 )
 from inhand_lab.motions.timeline import (
     Key,
-    Movement,
+    Move,
     Pause,
     Stage,
     drift,
-    follow,
+    move_through,
     schedule,
     track,
 )
@@ -35,21 +35,21 @@ from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.5),
-    Movement("reach", 1.0),
-    Movement("grasp", 0.25),
-    Movement("lift", 0.9),
+    Move("reach", 1.0),
+    Move("grasp", 0.25),
+    Move("lift", 0.9),
 )
 USE = (
     Pause("hold", 0.6),
-    Movement("raise", 0.9),
-    Movement("sip", 1.3),
-    Movement("lower", 0.9),
+    Move("raise", 0.9),
+    Move("sip", 1.3),
+    Move("lower", 0.9),
 )
 CLOSING = (
     Pause("hold", 0.6),
-    Movement("return", 1.0),
-    Movement("release", 0.25),
-    Movement("withdraw", 1.0),
+    Move("return", 1.0),
+    Move("release", 0.25),
+    Move("withdraw", 1.0),
     Pause("wait", 0.5),
 )
 
@@ -72,7 +72,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     start = {stage.name: stage.start for stage in stages}
     end = {stage.name: stage.end for stage in stages}
     rest, left_hand = hanging_hands(person, trunk, random)
-    right_hand = follow(
+    right_hand = move_through(
         times,
         [
             Key(start["reach"], rest),
@@ -84,9 +84,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     contact = contacts(
         times,
         [
-            (0.0, Contact.RESTING),
-            (end["grasp"], Contact.RIGHT_HAND),
-            (start["release"], Contact.RESTING),
+            (0.0, ContactKind.RESTING),
+            (end["grasp"], ContactKind.RIGHT_HAND),
+            (start["release"], ContactKind.RESTING),
         ],
     )
     return Performance(posture, right_hand, left_hand, carried, contact, table)
@@ -112,7 +112,7 @@ def _stance(
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Array]:
     """A small table at the right hand, of a height that suits, and the mug's place on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.31, 0.30]) * size + random.normal(0.0, 0.015, 2)
@@ -168,7 +168,7 @@ def _carry(
         if stage.name == "return":
             lowered = (0.0, -0.02, 0.05)
             keys += [Key(stage.start, keys[-1].pose), Key(stage.end, on_table, bow=lowered)]
-    return follow(times, keys)
+    return move_through(times, keys)
 
 
 def _sipping(

@@ -9,7 +9,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import MIRROR, Transform, rotation_about, rotation_from_axes
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import hold_bar, pinch
 from inhand_lab.motions.performance import (
     Performance,
@@ -28,12 +28,12 @@ from inhand_lab.motions.reaching import (
 )
 from inhand_lab.motions.timeline import (
     Key,
-    Movement,
+    Move,
     Pause,
     Stage,
     drift,
-    follow,
     minimum_jerk,
+    move_through,
     schedule,
     track,
 )
@@ -43,11 +43,11 @@ from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     *TAKE,
-    Movement("lift", 0.85),
-    Movement("tap", 1.2),
-    Movement("let go", 0.5),
+    Move("lift", 0.85),
+    Move("tap", 1.2),
+    Move("let go", 0.5),
 )
-USE = (Movement("strike", 1.75), Pause("look", 0.4))
+USE = (Move("strike", 1.75), Pause("look", 0.4))
 CLOSING = PUT_BACK
 
 STROKES = {"tap": 3, "strike": 3}
@@ -98,7 +98,7 @@ class Stroke:
 class Bench:
     """A bench with the hammer and a block; the nail stands in the block's top at base (3,)."""
 
-    furniture: tuple[Box, ...]
+    furniture: Furniture
     spot: Array
     base: Array
 
@@ -115,7 +115,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     striking = _strike(person, times, random, trunk, nail, swung)
     first, last = (_lying(random, bench.spot).repeated(len(times)) for _ in range(2))
     lift, back = named(stages, "lift"), named(stages, "return")
-    carried = follow(
+    carried = move_through(
         times,
         [
             Key(lift.start, first),
@@ -220,7 +220,7 @@ def _bench(person: SimulatedPerson, random: np.random.Generator) -> Bench:
     top = 0.45 * person.height + float(random.normal(0.0, 0.015))
     x, y = np.array([0.06, 0.55]) * size + random.normal(0.0, 0.012, 2)
     wide, deep, high = BLOCK_SIZE
-    block = Box((x, y, top + high / 2.0), (wide, deep, high), PINE)
+    block = Cuboid((x, y, top + high / 2.0), (wide, deep, high), PINE)
     across, ahead = np.array([x + 0.24, 0.40 * size]) + random.normal(0.0, 0.012, 2)
     return Bench(
         (*side_table(x + 0.10, y + 0.01, top, width=0.80), block),
@@ -286,7 +286,7 @@ def _hold_nail(
     reach, lift, leave, away = (
         named(stages, name) for name in ("reach", "lift", "let go", "withdraw")
     )
-    return follow(
+    return move_through(
         times,
         [
             Key(reach.start, rest),

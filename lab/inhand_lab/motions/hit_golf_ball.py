@@ -10,12 +10,12 @@ from scipy.spatial.transform import Rotation
 
 from inhand_lab.geometry.transforms import Transform, normalised, rotation_about
 from inhand_lab.motions.arms import within_both_reaches
-from inhand_lab.motions.furniture import WOOD, Box
+from inhand_lab.motions.furniture import WOOD, Cuboid, Furniture
 from inhand_lab.motions.golf_swing import Swing, plan_swings
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
     TOES_OUT,
-    Contact,
+    ContactKind,
     Performance,
     Stance,
     contacts,
@@ -24,28 +24,28 @@ from inhand_lab.motions.performance import (
     stand,
 )
 from inhand_lab.motions.reaching import named
-from inhand_lab.motions.timeline import Key, Movement, Pause, drift, follow, schedule
+from inhand_lab.motions.timeline import Key, Move, Pause, drift, move_through, schedule
 from inhand_lab.objects.golf_club import SOLE, golf_club
 from inhand_lab.people.kinematics import BALL_HEIGHT, Posture, Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.3),
-    Movement("reach", 0.8),
-    Movement("grasp", 0.2),
-    Movement("take", 1.0),
+    Move("reach", 0.8),
+    Move("grasp", 0.2),
+    Move("take", 1.0),
 )
 USE = (
-    Movement("waggle", 0.65),
+    Move("waggle", 0.65),
     Pause("settle", 0.35),
-    Movement("swing", 1.65),
+    Move("swing", 1.65),
     Pause("finish", 0.5),
-    Movement("recover", 0.80),
+    Move("recover", 0.80),
 )
 CLOSING = (
-    Movement("return", 0.90),
-    Movement("release", 0.2),
-    Movement("withdraw", 0.8),
+    Move("return", 0.90),
+    Move("release", 0.2),
+    Move("withdraw", 0.8),
     Pause("wait", 0.3),
 )
 
@@ -86,7 +86,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     swung = _above_floor(within_both_reaches(person, trunk, swung, right_grip, left_grip))
     rest = leaning.repeated(len(times))
     take, back = named(stages, "take"), named(stages, "return")
-    carried = follow(
+    carried = move_through(
         times,
         [
             Key(take.start, rest),
@@ -98,7 +98,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_rest, left_rest = hanging_hands(person, trunk, random)
     reach, withdraw = named(stages, "reach"), named(stages, "withdraw")
     right_held, left_held = carried @ right_grip, carried @ left_grip
-    right_hand = follow(
+    right_hand = move_through(
         times,
         [
             Key(reach.start, right_rest),
@@ -108,7 +108,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
         ],
     )
     joined = take.start + 0.9 * (take.end - take.start)
-    left_hand = follow(
+    left_hand = move_through(
         times,
         [
             Key(take.start, left_rest),
@@ -118,11 +118,11 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
         ],
     )
     changes = [
-        (0.0, Contact.RESTING),
-        (named(stages, "grasp").end, Contact.RIGHT_HAND),
-        (joined, Contact.BOTH_HANDS),
-        (back.start, Contact.RIGHT_HAND),
-        (named(stages, "release").start, Contact.RESTING),
+        (0.0, ContactKind.RESTING),
+        (named(stages, "grasp").end, ContactKind.RIGHT_HAND),
+        (joined, ContactKind.BOTH_HANDS),
+        (back.start, ContactKind.RIGHT_HAND),
+        (named(stages, "release").start, ContactKind.RESTING),
     ]
     return Performance(posture, right_hand, left_hand, carried, contacts(times, changes), rack)
 
@@ -173,7 +173,7 @@ def _pivot(person: SimulatedPerson, sole: Array, heel: Array) -> Transform:
     return Transform(sole + flat @ ball - turned @ ball, turned)
 
 
-def _lean_on_rack(random: np.random.Generator) -> tuple[tuple[Box, ...], Transform]:
+def _lean_on_rack(random: np.random.Generator) -> tuple[Furniture, Transform]:
     """A low rack at the right, and the club leaning on its front edge, world_from_object."""
     x, head = RACK_PLACE + random.normal(0.0, 0.015, 2)
     rotation = rotation_about("x", LEAN) @ rotation_about("z", ROLL)
@@ -183,7 +183,9 @@ def _lean_on_rack(random: np.random.Generator) -> tuple[tuple[Box, ...], Transfo
     up_to_edge = (RACK_HEIGHT - place[2]) / np.cos(LEAN)
     edge = float(place[1] - up_to_edge * np.sin(LEAN)) - 0.008
     centre = (float(x), edge - 0.5 * RACK_DEPTH, 0.5 * RACK_HEIGHT)
-    return (Box(centre, (RACK_DEPTH, RACK_DEPTH, RACK_HEIGHT), WOOD),), Transform(place, rotation)
+    return (Cuboid(centre, (RACK_DEPTH, RACK_DEPTH, RACK_HEIGHT), WOOD),), Transform(
+        place, rotation
+    )
 
 
 def _grips(

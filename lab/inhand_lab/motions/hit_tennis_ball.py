@@ -11,7 +11,7 @@ from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.arms import overreach
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
     Performance,
@@ -29,13 +29,13 @@ from inhand_lab.motions.reaching import (
     named,
     reaching_hand,
 )
-from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, flow, follow, schedule, track
+from inhand_lab.motions.timeline import Key, Move, Pause, Stage, flow, move_through, schedule, track
 from inhand_lab.objects.racket import HANDLE_RADIUS
 from inhand_lab.people.kinematics import Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (*TAKE, Movement("lift", 0.9))
-USE = (Pause("ready", 0.4), Movement("stroke", 1.35), Movement("recover", 0.7))
+OPENING = (*TAKE, Move("lift", 0.9))
+USE = (Pause("ready", 0.4), Move("stroke", 1.35), Move("recover", 0.7))
 CLOSING = (Pause("ready", 0.3), *PUT_BACK)
 
 READY = np.array((0.06, 0.40, -0.30, 50, 35, 0, 0.0, -0.12, 0.44, -0.24, 4, 12))
@@ -78,7 +78,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     played = _play(person, trunk, figures, grip)
     rest = lying.repeated(len(times))
     lift, back = named(stages, "lift"), named(stages, "return")
-    carried = follow(
+    carried = move_through(
         times,
         [
             Key(lift.start, rest),
@@ -90,7 +90,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_rest, left_rest = hanging_hands(person, trunk, random)
     right_hand = reaching_hand(times, stages, right_rest, carried @ grip, bow=(0.08, 0.10, 0.10))
     balancing = _balancing_hand(person, trunk, figures)
-    left_hand = follow(
+    left_hand = move_through(
         times,
         [
             Key(lift.start, left_rest),
@@ -167,9 +167,7 @@ def _stance(
     return Stance(right_foot, left_foot, np.zeros(count), shift, trunk, head)
 
 
-def _table(
-    person: SimulatedPerson, random: np.random.Generator
-) -> tuple[tuple[Box, ...], Transform]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Transform]:
     """A table at the left, and the racket on it, its handle to the right, world_from_object."""
     size = person.height / 1.75
     x, y = np.array([-0.03, 0.44]) * size + random.normal(0.0, 0.015, 2)

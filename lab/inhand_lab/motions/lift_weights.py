@@ -8,10 +8,10 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
-from inhand_lab.motions.furniture import WOOD, Box
+from inhand_lab.motions.furniture import WOOD, Cuboid, Furniture
 from inhand_lab.motions.grips import BAR_IN_PALM, hold_bar
 from inhand_lab.motions.performance import (
-    Contact,
+    ContactKind,
     Performance,
     Stance,
     contacts,
@@ -22,28 +22,37 @@ from inhand_lab.motions.performance import (
 )
 from inhand_lab.motions.reaching import named
 from inhand_lab.motions.steps import Turn, turn_on_the_spot
-from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
+from inhand_lab.motions.timeline import (
+    Key,
+    Move,
+    Pause,
+    Stage,
+    drift,
+    move_through,
+    schedule,
+    track,
+)
 from inhand_lab.objects.barbell import BAR_RADIUS
 from inhand_lab.people.kinematics import Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.4),
-    Movement("stoop", 1.2),
-    Movement("grasp", 0.25),
-    Movement("rise", 1.25),
+    Move("stoop", 1.2),
+    Move("grasp", 0.25),
+    Move("rise", 1.25),
 )
 USE = (
     Pause("hang", 0.35),
-    Movement("curl", 0.7),
+    Move("curl", 0.7),
     Pause("squeeze", 0.15),
-    Movement("lower", 0.75),
+    Move("lower", 0.75),
 )
 CLOSING = (
     Pause("hang", 0.35),
-    Movement("return", 1.25),
-    Movement("release", 0.2),
-    Movement("withdraw", 1.15),
+    Move("return", 1.25),
+    Move("release", 0.2),
+    Move("withdraw", 1.15),
     Pause("wait", 0.3),
 )
 
@@ -84,14 +93,14 @@ class Stool:
         return Transform(place, turned)
 
     @property
-    def furniture(self) -> tuple[Box, ...]:
+    def furniture(self) -> Furniture:
         """Seat, leg and foot."""
         x, y, _ = (float(value) for value in self.world_from_bar.translation)
         top = self.height - BAR_RADIUS
         return (
-            Box((x, y, top - 0.025), (STOOL_SIZE, STOOL_SIZE, 0.05), (52, 50, 56)),
-            Box((x, y, 0.5 * top), (0.05, 0.05, top - 0.06), WOOD),
-            Box((x, y, 0.015), (STOOL_SIZE, STOOL_SIZE, 0.03), WOOD),
+            Cuboid((x, y, top - 0.025), (STOOL_SIZE, STOOL_SIZE, 0.05), (52, 50, 56)),
+            Cuboid((x, y, 0.5 * top), (0.05, 0.05, top - 0.06), WOOD),
+            Cuboid((x, y, 0.015), (STOOL_SIZE, STOOL_SIZE, 0.03), WOOD),
         )
 
 
@@ -111,7 +120,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
 
     def hand(rest: Transform, held: Transform) -> Transform:
         released = withdraw.start + 0.8 * (withdraw.end - withdraw.start)
-        return follow(
+        return move_through(
             times,
             [
                 Key(reach, rest),
@@ -122,9 +131,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
         )
 
     changes = [
-        (0.0, Contact.RESTING),
-        (named(stages, "grasp").end, Contact.BOTH_HANDS),
-        (named(stages, "release").start, Contact.RESTING),
+        (0.0, ContactKind.RESTING),
+        (named(stages, "grasp").end, ContactKind.BOTH_HANDS),
+        (named(stages, "release").start, ContactKind.RESTING),
     ]
     return Performance(
         posture,
@@ -264,7 +273,7 @@ def _carry(
     held = Transform(shoulders, upright) @ Transform(offset, level)
     rise, back = named(stages, "rise"), named(stages, "return")
     first, last = ((stool.world_from_bar @ _laid(random)).repeated(len(times)) for _ in range(2))
-    return follow(
+    return move_through(
         times,
         [
             Key(rise.start, first),

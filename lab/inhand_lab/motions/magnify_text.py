@@ -6,7 +6,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import Performance, Stance, feet_apart, hanging_hands, stand
 from inhand_lab.motions.reaching import (
@@ -18,13 +18,22 @@ from inhand_lab.motions.reaching import (
     named,
     reaching_hand,
 )
-from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
+from inhand_lab.motions.timeline import (
+    Key,
+    Move,
+    Pause,
+    Stage,
+    drift,
+    move_through,
+    schedule,
+    track,
+)
 from inhand_lab.objects.magnifier import HANDLE_END, HANDLE_TOP, RIM_RADIUS
 from inhand_lab.people.kinematics import place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (*TAKE, Movement("lift", 1.0), Pause("focus", 0.4))
-USE = (Movement("line", 1.5), Pause("study", 0.4), Movement("next line", 0.8), Pause("focus", 0.3))
+OPENING = (*TAKE, Move("lift", 1.0), Pause("focus", 0.4))
+USE = (Move("line", 1.5), Pause("study", 0.4), Move("next line", 0.8), Pause("focus", 0.3))
 
 FIST_TURN = np.radians(90.0)
 """Turn of the fist about the handle in the glass's frame: the palm is away from the eyes."""
@@ -107,17 +116,17 @@ def _stance(times: Array, stages: list[Stage], lens: Array) -> Stance:
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _desk(person: SimulatedPerson, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
+def _desk(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Array]:
     """A high table with an open book at its right edge, and the middle of its pages (3,)."""
     ahead = 0.45 * person.height / 1.75 + 0.15 * (person.girth - 1.0) + random.normal(0.0, 0.015)
     across = random.normal(0.09, 0.015)
     top = 0.56 * person.height + random.normal(0.0, 0.015)
     width, depth, height = BOOK_SIZE
     page = np.array([across, ahead, top + height])
-    book = Box((across, ahead, top + height / 2.0), (width, depth, height), PAGE_COLOUR)
+    book = Cuboid((across, ahead, top + height / 2.0), (width, depth, height), PAGE_COLOUR)
     begin, end = LINE_ENDS
     lines = [
-        Box(
+        Cuboid(
             (across + 0.5 * (begin + end), ahead + (row - 3.5) * LINE_SPACING, page[2]),
             (end - begin, 0.3 * LINE_SPACING, 0.001),
             INK,
@@ -143,7 +152,7 @@ def _carry(
     wander = np.stack([drift(times, random, 0.004, 2.0) for _ in range(3)], axis=1)
     reading = Transform(page + lens + wander, rotation_about("x", tilt) @ flat())
     lift, back = named(stages, "lift"), named(stages, "return")
-    return follow(
+    return move_through(
         times,
         [
             Key(lift.start, lying),

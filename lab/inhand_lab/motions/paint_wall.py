@@ -12,7 +12,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, rotation_about
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import DRIFT_PERIOD, pinch
 from inhand_lab.motions.performance import (
     Performance,
@@ -30,12 +30,12 @@ from inhand_lab.motions.reaching import (
 )
 from inhand_lab.motions.timeline import (
     Key,
-    Movement,
+    Move,
     Pause,
     Stage,
     drift,
     flow,
-    follow,
+    move_through,
     schedule,
     track,
 )
@@ -45,12 +45,12 @@ from inhand_lab.people.person import SimulatedPerson
 
 OPENING = TAKE
 USE = (
-    Movement("wipe", 0.6),
-    Movement("apply", 0.65),
-    Movement("strokes", 2.7),
+    Move("wipe", 0.6),
+    Move("apply", 0.65),
+    Move("strokes", 2.7),
     Pause("look", 0.3),
-    Movement("over", 0.65),
-    Movement("dip", 0.45),
+    Move("over", 0.65),
+    Move("dip", 0.45),
 )
 CLOSING = PUT_BACK
 
@@ -157,15 +157,15 @@ def _stance(person: SimulatedPerson, times: Array, stages: list[Stage], path: Ar
     return Stance(right_foot, left_foot, np.full(count, HEADING), shift, trunk, head)
 
 
-def _board(x: float) -> Box:
+def _board(x: float) -> Cuboid:
     """The board, its near side at x, metres."""
     deep, _, high = BOARD_SIZE
-    return Box((x + 0.5 * deep, 0.10, 0.5 * high), BOARD_SIZE, BOARD_COLOUR)
+    return Cuboid((x + 0.5 * deep, 0.10, 0.5 * high), BOARD_SIZE, BOARD_COLOUR)
 
 
 def _table(
     person: SimulatedPerson, random: np.random.Generator
-) -> tuple[tuple[Box, ...], Transform, Array]:
+) -> tuple[Furniture, Transform, Array]:
     """A table with a pot; the brush in it, world_from_object; the middle of the pot's floor (3,).
 
     The bristles are on the floor of the pot, the handle is on its near edge.
@@ -181,7 +181,7 @@ def _table(
     standing = Transform(pot + place + [0.0, 0.0, 0.004], rotation)
     wide, high, thick = POT_HALF_WIDTH, POT_HEIGHT, POT_WALL
     walls = [
-        Box((pot[0] + dx * wide, pot[1] + dy * wide, top + 0.5 * high), sides, POT_COLOUR)
+        Cuboid((pot[0] + dx * wide, pot[1] + dy * wide, top + 0.5 * high), sides, POT_COLOUR)
         for dx, dy, sides in (
             (-1.0, 0.0, (thick, 2.0 * wide, high)),
             (1.0, 0.0, (thick, 2.0 * wide, high)),
@@ -189,7 +189,7 @@ def _table(
             (0.0, 1.0, (2.0 * wide, thick, high)),
         )
     ]
-    floor = Box((pot[0], pot[1], top + 0.003), (2.0 * wide, 2.0 * wide, 0.006), PAINT)
+    floor = Cuboid((pot[0], pot[1], top + 0.003), (2.0 * wide, 2.0 * wide, 0.006), PAINT)
     return (*side_table(float(x), float(y), float(top)), *walls, floor), standing, pot
 
 
@@ -242,4 +242,4 @@ def _carry(
         if stage.name in goals:
             pose, bow = goals[stage.name]
             keys += [Key(stage.start, keys[-1].pose), Key(stage.end, pose, bow=bow)]
-    return follow(times, keys)
+    return move_through(times, keys)

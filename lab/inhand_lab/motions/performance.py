@@ -15,13 +15,13 @@ from inhand_lab.geometry.transforms import (
     rotation_about,
     rotation_from_axes,
 )
-from inhand_lab.motions.furniture import Box
+from inhand_lab.motions.furniture import Furniture
 from inhand_lab.motions.timeline import drift, minimum_jerk
 from inhand_lab.people.kinematics import Posture, Trunk
 from inhand_lab.people.person import SimulatedPerson, hip_height
 
 
-class Contact(IntEnum):
+class ContactKind(IntEnum):
     """What carries the object."""
 
     RESTING = 0
@@ -35,7 +35,7 @@ class Contact(IntEnum):
 class Performance:
     """An interaction as a right-handed person means to do it, over T frames.
 
-    The hands are targets, world_from_hand; contact (T,) holds values of Contact.
+    The hands are targets, world_from_hand; contact (T,) holds values of ContactKind.
     """
 
     posture: Posture
@@ -43,7 +43,7 @@ class Performance:
     left_hand: Transform
     world_from_object: Transform
     contact: Bytes
-    furniture: tuple[Box, ...]
+    furniture: Furniture
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ def step(times: Array, start: float, end: float, way: Array) -> Array:
     return np.concatenate([share[:, None] * way, lift[:, None]], axis=1)
 
 
-def contacts(times: Array, changes: list[tuple[float, Contact]]) -> Bytes:
+def contacts(times: Array, changes: list[tuple[float, ContactKind]]) -> Bytes:
     """What carries the object (T,): from each time, in order, on."""
     starts = [start for start, _ in changes]
     values = np.array([contact for _, contact in changes], np.uint8)

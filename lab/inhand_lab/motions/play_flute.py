@@ -11,10 +11,10 @@ from inhand_lab.geometry.transforms import (
     rotation_about,
     rotation_from_axes,
 )
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
-    Contact,
+    ContactKind,
     Performance,
     Stance,
     contacts,
@@ -25,13 +25,22 @@ from inhand_lab.motions.performance import (
     stand,
 )
 from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, named, reaching_hand
-from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
+from inhand_lab.motions.timeline import (
+    Key,
+    Move,
+    Pause,
+    Stage,
+    drift,
+    move_through,
+    schedule,
+    track,
+)
 from inhand_lab.objects.flute import EMBOUCHURE, TUBE_RADIUS
 from inhand_lab.people.kinematics import Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (*TAKE, Movement("fetch", 1.0))
-USE = (Movement("raise", 0.8), Pause("play", 1.3), Movement("lower", 0.75), Pause("rest", 0.4))
+OPENING = (*TAKE, Move("fetch", 1.0))
+USE = (Move("raise", 0.8), Pause("play", 1.3), Move("lower", 0.75), Pause("rest", 0.4))
 CLOSING = PUT_BACK
 
 RIGHT_HAND, LEFT_HAND = 0.125, -0.095
@@ -66,7 +75,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_held = carried @ _right_grip(person, times, random, stages)
     left_held = carried @ _left_grip(person, times, random, stages)
     fetch, back = named(stages, "fetch"), named(stages, "return")
-    left_hand = follow(
+    left_hand = move_through(
         times,
         [
             Key(fetch.start + 0.25 * (fetch.end - fetch.start), left_rest),
@@ -76,11 +85,11 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
         ],
     )
     changes = [
-        (0.0, Contact.RESTING),
-        (named(stages, "grasp").end, Contact.RIGHT_HAND),
-        (fetch.end, Contact.BOTH_HANDS),
-        (back.start, Contact.RIGHT_HAND),
-        (named(stages, "release").start, Contact.RESTING),
+        (0.0, ContactKind.RESTING),
+        (named(stages, "grasp").end, ContactKind.RIGHT_HAND),
+        (fetch.end, ContactKind.BOTH_HANDS),
+        (back.start, ContactKind.RIGHT_HAND),
+        (named(stages, "release").start, ContactKind.RESTING),
     ]
     return Performance(
         posture,
@@ -122,7 +131,7 @@ def _playing(times: Array, stages: list[Stage]) -> Array:
     return track(times, keys)
 
 
-def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Array]:
     """A table ahead, and where the flute's middle is as it lies on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.14, 0.42]) * size + random.normal(0.0, 0.015, 2)
@@ -141,7 +150,7 @@ def _right_grip(
         for rotation in (RIGHT_AT_TABLE, RIGHT_AT_LIPS)
     )
     fetch, back = named(stages, "fetch"), named(stages, "return")
-    rolled = follow(
+    rolled = move_through(
         times,
         [
             Key(fetch.start, at_table),
@@ -205,7 +214,7 @@ def _carry(
             keys += [here, Key(stage.end, at_lips, bow=(0.0, 0.10, 0.0))]
         if stage.name == "return":
             keys += [here, Key(stage.end, on_table, bow=(0.0, -0.02, 0.06))]
-    return follow(times, keys)
+    return move_through(times, keys)
 
 
 def _at_lips(

@@ -6,7 +6,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
     Performance,
@@ -24,17 +24,26 @@ from inhand_lab.motions.reaching import (
     named,
     reaching_hand,
 )
-from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
+from inhand_lab.motions.timeline import (
+    Key,
+    Move,
+    Pause,
+    Stage,
+    drift,
+    move_through,
+    schedule,
+    track,
+)
 from inhand_lab.objects.jug import JUG_BELLY, JUG_HANDLE_REACH, JUG_HEIGHT, SPOUT
 from inhand_lab.people.kinematics import place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (*TAKE, Movement("lift", 1.0))
+OPENING = (*TAKE, Move("lift", 1.0))
 USE = (
     Pause("hold", 0.4),
-    Movement("tip", 0.8),
+    Move("tip", 0.8),
     Pause("pour", 1.0),
-    Movement("right", 0.7),
+    Move("right", 0.7),
 )
 CLOSING = (Pause("hold", 0.4), *PUT_BACK)
 
@@ -88,9 +97,7 @@ def _stance(times: Array, stages: list[Stage]) -> Stance:
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(
-    person: SimulatedPerson, random: np.random.Generator
-) -> tuple[tuple[Box, ...], Array, Array]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Array, Array]:
     """A table ahead, the jug's place on it (3,) and the middle of the cup's rim (3,)."""
     size = person.height / 1.75
     top = 0.53 * person.height + random.normal(0.0, 0.015)
@@ -102,15 +109,15 @@ def _table(
     return (*table, *_cup(across, ahead, top)), spot, cup
 
 
-def _cup(x: float, y: float, top: float) -> tuple[Box, ...]:
+def _cup(x: float, y: float, top: float) -> Furniture:
     """A cup of coffee on a table, round as boxes go."""
     middle, square, narrow = top + CUP_HEIGHT / 2.0, 0.74 * CUP_WIDTH, 0.44 * CUP_WIDTH
     walls = (
-        Box((x, y, middle), (CUP_WIDTH, narrow, CUP_HEIGHT), CUP_COLOUR),
-        Box((x, y, middle), (narrow, CUP_WIDTH, CUP_HEIGHT), CUP_COLOUR),
-        Box((x, y, middle), (square, square, CUP_HEIGHT), CUP_COLOUR),
+        Cuboid((x, y, middle), (CUP_WIDTH, narrow, CUP_HEIGHT), CUP_COLOUR),
+        Cuboid((x, y, middle), (narrow, CUP_WIDTH, CUP_HEIGHT), CUP_COLOUR),
+        Cuboid((x, y, middle), (square, square, CUP_HEIGHT), CUP_COLOUR),
     )
-    coffee = Box((x, y, top + CUP_HEIGHT), (0.62 * CUP_WIDTH, 0.62 * CUP_WIDTH, 0.002), COFFEE)
+    coffee = Cuboid((x, y, top + CUP_HEIGHT), (0.62 * CUP_WIDTH, 0.62 * CUP_WIDTH, 0.002), COFFEE)
     return (*walls, coffee)
 
 
@@ -139,7 +146,7 @@ def _carry(
     at_cup = Transform(spout - tipped @ SPOUT, tipped)
     rest = Transform(spot, on_table).repeated(len(times))
     lift, back = named(stages, "lift"), named(stages, "return")
-    return follow(
+    return move_through(
         times,
         [
             Key(lift.start, rest),

@@ -11,10 +11,10 @@ from inhand_lab.geometry.transforms import (
     rotation_about,
     rotation_from_axes,
 )
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Furniture, side_table
 from inhand_lab.motions.grips import pinch
 from inhand_lab.motions.performance import (
-    Contact,
+    ContactKind,
     Performance,
     Stance,
     contacts,
@@ -23,30 +23,30 @@ from inhand_lab.motions.performance import (
     heading_of,
     stand,
 )
-from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, follow, schedule, track
+from inhand_lab.motions.timeline import Key, Move, Pause, Stage, move_through, schedule, track
 from inhand_lab.objects.glasses import EAR_DROP, TEMPLE_OFFSET
 from inhand_lab.people.kinematics import Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.4),
-    Movement("reach", 0.9),
-    Movement("grasp", 0.25),
-    Movement("fetch", 1.0),
+    Move("reach", 0.9),
+    Move("grasp", 0.25),
+    Move("fetch", 1.0),
 )
 USE = (
     Pause("inspect", 0.5),
-    Movement("put on", 1.3),
-    Movement("let go", 0.8),
+    Move("put on", 1.3),
+    Move("let go", 0.8),
     Pause("wear", 1.4),
-    Movement("take hold", 0.8),
-    Movement("take off", 1.1),
+    Move("take hold", 0.8),
+    Move("take off", 1.1),
 )
 CLOSING = (
     Pause("inspect", 0.4),
-    Movement("return", 1.0),
-    Movement("release", 0.25),
-    Movement("withdraw", 0.9),
+    Move("return", 1.0),
+    Move("release", 0.25),
+    Move("withdraw", 0.9),
     Pause("wait", 0.4),
 )
 
@@ -75,8 +75,8 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     )
     return Performance(
         posture,
-        follow(times, _right_keys(stages, right_rest, right_held, upright @ RAISED)),
-        follow(times, _left_keys(stages, left_rest, left_held, upright @ RAISED.mirrored())),
+        move_through(times, _right_keys(stages, right_rest, right_held, upright @ RAISED)),
+        move_through(times, _left_keys(stages, left_rest, left_held, upright @ RAISED.mirrored())),
         carried,
         contacts(times, _changes(stages)),
         table,
@@ -118,20 +118,20 @@ def _left_keys(
     return keys
 
 
-def _changes(stages: list[Stage]) -> list[tuple[float, Contact]]:
+def _changes(stages: list[Stage]) -> list[tuple[float, ContactKind]]:
     """When the glasses pass from the table to a hand, to both, to the head, and back."""
-    changes = [(0.0, Contact.RESTING)]
+    changes = [(0.0, ContactKind.RESTING)]
     for stage in stages:
         if stage.name == "grasp":
-            changes.append((stage.end, Contact.RIGHT_HAND))
+            changes.append((stage.end, ContactKind.RIGHT_HAND))
         if stage.name in ("fetch", "take hold"):
-            changes.append((stage.end, Contact.BOTH_HANDS))
+            changes.append((stage.end, ContactKind.BOTH_HANDS))
         if stage.name == "let go":
-            changes.append((stage.start, Contact.WORN))
+            changes.append((stage.start, ContactKind.WORN))
         if stage.name == "return":
-            changes.append((stage.start, Contact.RIGHT_HAND))
+            changes.append((stage.start, ContactKind.RIGHT_HAND))
         if stage.name == "release":
-            changes.append((stage.start, Contact.RESTING))
+            changes.append((stage.start, ContactKind.RESTING))
     return changes
 
 
@@ -159,7 +159,7 @@ def _stance(times: Array, random: np.random.Generator, stages: list[Stage]) -> S
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Array]:
     """A small table at the right hand, and where the glasses' bridge is as they lie on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.24, 0.37]) * size + random.normal(0.0, 0.015, 2)
@@ -185,7 +185,7 @@ def _grip(
         if stage.name in ("fetch", "put on", "take off", "return"):
             goal = {"put on": at_face, "return": at_table}.get(stage.name, between)
             keys += [Key(stage.start, keys[-1].pose), Key(stage.end, goal)]
-    return follow(times, keys)
+    return move_through(times, keys)
 
 
 def _carry(
@@ -226,4 +226,4 @@ def _carry(
             keys += [here, Key(far, before_face), Key(stage.end, before_chest())]
         if stage.name == "return":
             keys += [here, Key(stage.end, on_table, bow=(0.0, 0.0, 0.05))]
-    return follow(times, keys)
+    return move_through(times, keys)

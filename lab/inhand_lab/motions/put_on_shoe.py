@@ -10,23 +10,23 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
-from inhand_lab.motions.furniture import WOOD, Box
+from inhand_lab.motions.furniture import WOOD, Cuboid
 from inhand_lab.motions.grips import pinch
 from inhand_lab.motions.performance import (
     STANCE_HALF_WIDTH,
     TOES_OUT,
-    Contact,
+    ContactKind,
     Performance,
     contacts,
 )
 from inhand_lab.motions.timeline import (
     Key,
-    Movement,
+    Move,
     Pause,
     Stage,
     drift,
     flow,
-    follow,
+    move_through,
     schedule,
 )
 from inhand_lab.objects.shoe import HEEL_BEHIND
@@ -35,23 +35,23 @@ from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.4),
-    Movement("reach", 0.9),
-    Movement("grasp", 0.25),
-    Movement("lift", 0.9),
+    Move("reach", 0.9),
+    Move("grasp", 0.25),
+    Move("lift", 0.9),
 )
 USE = (
-    Movement("put on", 1.2),
-    Movement("let go", 0.8),
+    Move("put on", 1.2),
+    Move("let go", 0.8),
     Pause("wear", 0.5),
-    Movement("tap", 1.2),
+    Move("tap", 1.2),
     Pause("wear", 0.4),
-    Movement("take hold", 0.9),
-    Movement("take off", 1.0),
+    Move("take hold", 0.9),
+    Move("take off", 1.0),
 )
 CLOSING = (
-    Movement("return", 0.9),
-    Movement("release", 0.2),
-    Movement("withdraw", 0.9),
+    Move("return", 0.9),
+    Move("release", 0.2),
+    Move("withdraw", 0.9),
     Pause("wait", 0.4),
 )
 
@@ -95,16 +95,16 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     return Performance(posture, right_hand, left_hand, carried, contact, (_stool(person),))
 
 
-def _changes(stages: list[Stage]) -> list[tuple[float, Contact]]:
+def _changes(stages: list[Stage]) -> list[tuple[float, ContactKind]]:
     """When the shoe passes from the floor to the hand, to the foot, and back."""
-    changes = [(0.0, Contact.RESTING)]
+    changes = [(0.0, ContactKind.RESTING)]
     for stage in stages:
         if stage.name in ("grasp", "take hold"):
-            changes.append((stage.end, Contact.RIGHT_HAND))
+            changes.append((stage.end, ContactKind.RIGHT_HAND))
         if stage.name == "let go":
-            changes.append((stage.start, Contact.WORN))
+            changes.append((stage.start, ContactKind.WORN))
         if stage.name == "release":
-            changes.append((stage.start, Contact.RESTING))
+            changes.append((stage.start, ContactKind.RESTING))
     return changes
 
 
@@ -173,10 +173,10 @@ def _sit(
     )
 
 
-def _stool(person: SimulatedPerson) -> Box:
+def _stool(person: SimulatedPerson) -> Cuboid:
     """The stool, its top just under the thighs."""
     high = (SEAT - UNDER_HIPS) * person.height
-    return Box((0.0, -BEHIND * person.height - 0.05, 0.5 * high), (STOOL, STOOL, high), WOOD)
+    return Cuboid((0.0, -BEHIND * person.height - 0.05, 0.5 * high), (STOOL, STOOL, high), WOOD)
 
 
 def _hands_on_knees(
@@ -223,7 +223,7 @@ def _reaching(
             keys += [Key(stage.start, rest), Key(stage.end, busy, bow=bow)]
         if stage.name in ("let go", "withdraw"):
             keys += [Key(stage.start, busy), Key(stage.end, rest, bow=bow)]
-    return follow(times, keys)
+    return move_through(times, keys)
 
 
 def _carry(
@@ -249,4 +249,4 @@ def _carry(
             keys += [here, Key(stage.end, right_foot @ AT_TOES, by=right_foot @ HALF_ON)]
         if stage.name == "return":
             keys += [here, Key(stage.end, on_floor, bow=(0.04, 0.02, 0.07))]
-    return follow(times, keys)
+    return move_through(times, keys)

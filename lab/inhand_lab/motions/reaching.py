@@ -6,16 +6,16 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array, Bytes
 
 from inhand_lab.geometry.transforms import Transform
-from inhand_lab.motions.performance import Contact, contacts
-from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, follow, track
+from inhand_lab.motions.performance import ContactKind, contacts
+from inhand_lab.motions.timeline import Key, Move, Pause, Stage, move_through, track
 
-TAKE = (Pause("wait", 0.5), Movement("reach", 1.0), Movement("grasp", 0.25))
+TAKE = (Pause("wait", 0.5), Move("reach", 1.0), Move("grasp", 0.25))
 """Stages until the thing leaves its place."""
 
 PUT_BACK = (
-    Movement("return", 1.0),
-    Movement("release", 0.25),
-    Movement("withdraw", 1.0),
+    Move("return", 1.0),
+    Move("release", 0.25),
+    Move("withdraw", 1.0),
     Pause("wait", 0.5),
 )
 """Stages from the way back to its place on."""
@@ -39,7 +39,7 @@ def reaching_hand(
     bow is how far its way to the thing and back swings out, in metres.
     """
     reach, withdraw = named(stages, "reach"), named(stages, "withdraw")
-    return follow(
+    return move_through(
         times,
         [
             Key(reach.start, rest),
@@ -55,7 +55,7 @@ def helping_hand(times: Array, stages: list[Stage], rest: Transform, place: Tran
     lift, back = named(stages, "lift"), named(stages, "return")
     there = place.repeated(len(times))
     above = Transform(there.translation + FROM_ABOVE, there.rotation)
-    return follow(
+    return move_through(
         times,
         [
             Key(lift.start, rest),
@@ -69,9 +69,9 @@ def helping_hand(times: Array, stages: list[Stage], rest: Transform, place: Tran
 def held_by_right_hand(times: Array, stages: list[Stage]) -> Bytes:
     """What carries the thing (T,): the right hand from the end of "grasp" to "release"."""
     changes = [
-        (0.0, Contact.RESTING),
-        (named(stages, "grasp").end, Contact.RIGHT_HAND),
-        (named(stages, "release").start, Contact.RESTING),
+        (0.0, ContactKind.RESTING),
+        (named(stages, "grasp").end, ContactKind.RIGHT_HAND),
+        (named(stages, "release").start, ContactKind.RESTING),
     ]
     return contacts(times, changes)
 

@@ -6,10 +6,10 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, interpolate, rotation_about
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
-    Contact,
+    ContactKind,
     Performance,
     Stance,
     contacts,
@@ -19,14 +19,23 @@ from inhand_lab.motions.performance import (
     stand,
 )
 from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, named, reaching_hand
-from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
+from inhand_lab.motions.timeline import (
+    Key,
+    Move,
+    Pause,
+    Stage,
+    drift,
+    move_through,
+    schedule,
+    track,
+)
 from inhand_lab.objects.camera import CAMERA_HEIGHT, GRIP_OFFSET
 from inhand_lab.people.kinematics import Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (*TAKE, Movement("fetch", 1.0), Pause("ready", 0.3), Movement("raise", 1.0))
-USE = (Pause("film", 0.9), Movement("pan", 1.1), Pause("film", 0.9), Movement("pan", 1.1))
-CLOSING = (Pause("film", 1.0), Movement("lower", 1.0), Pause("ready", 0.3), *PUT_BACK)
+OPENING = (*TAKE, Move("fetch", 1.0), Pause("ready", 0.3), Move("raise", 1.0))
+USE = (Pause("film", 0.9), Move("pan", 1.1), Pause("film", 0.9), Move("pan", 1.1))
+CLOSING = (Pause("film", 1.0), Move("lower", 1.0), Pause("ready", 0.3), *PUT_BACK)
 
 INWARDS = np.radians(25.0)
 """Turn of the fingers around the camera's front."""
@@ -53,7 +62,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_rest, left_rest = hanging_hands(person, trunk, random)
     fetch, lower, back = (named(stages, name) for name in ("fetch", "lower", "return"))
     joining = fetch.start + 0.2 * (fetch.end - fetch.start)
-    left_hand = follow(
+    left_hand = move_through(
         times,
         [
             Key(joining, left_rest),
@@ -63,11 +72,11 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
         ],
     )
     changes = [
-        (0.0, Contact.RESTING),
-        (named(stages, "grasp").end, Contact.RIGHT_HAND),
-        (fetch.end, Contact.BOTH_HANDS),
-        (lower.end, Contact.RIGHT_HAND),
-        (named(stages, "release").start, Contact.RESTING),
+        (0.0, ContactKind.RESTING),
+        (named(stages, "grasp").end, ContactKind.RIGHT_HAND),
+        (fetch.end, ContactKind.BOTH_HANDS),
+        (lower.end, ContactKind.RIGHT_HAND),
+        (named(stages, "release").start, ContactKind.RESTING),
     ]
     return Performance(
         posture,
@@ -119,7 +128,7 @@ def _raised(times: Array, stages: list[Stage]) -> Array:
     return track(times, [(up.start, 0.0), (up.end, 1.0), (down.start, 1.0), (down.end, 0.0)])
 
 
-def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[tuple[Box, ...], Array]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Array]:
     """A small table at the right hand and the camera's place on it (3,)."""
     size = person.height / 1.75
     x, y = np.array([0.28, 0.34]) * size + random.normal(0.0, 0.015, 2)
@@ -185,4 +194,4 @@ def _carry(
                 Key(stage.start, keys[-1].pose),
                 Key(stage.end, there, bow=(0.0, 0.02, 0.03)),
             ]
-    return follow(times, keys)
+    return move_through(times, keys)

@@ -6,7 +6,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, rotation_about
-from inhand_lab.motions.furniture import Box, side_table
+from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import Performance, Stance, feet_apart, hanging_hands, stand
 from inhand_lab.motions.reaching import (
@@ -17,16 +17,25 @@ from inhand_lab.motions.reaching import (
     named,
     reaching_hand,
 )
-from inhand_lab.motions.timeline import Key, Movement, Pause, Stage, drift, follow, schedule, track
+from inhand_lab.motions.timeline import (
+    Key,
+    Move,
+    Pause,
+    Stage,
+    drift,
+    move_through,
+    schedule,
+    track,
+)
 from inhand_lab.objects.vinegar_bottle import BOTTLE_HALF_HEIGHT, BOTTLE_RADIUS
 from inhand_lab.people.kinematics import place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (*TAKE, Movement("lift", 0.85))
+OPENING = (*TAKE, Move("lift", 0.85))
 USE = (
-    Movement("tip", 0.55),
-    Movement("shake", 1.05),
-    Movement("right", 0.45),
+    Move("tip", 0.55),
+    Move("shake", 1.05),
+    Move("right", 0.45),
     Pause("look", 0.5),
 )
 CLOSING = PUT_BACK
@@ -80,9 +89,7 @@ def _stance(times: Array, stages: list[Stage]) -> Stance:
     return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
 
 
-def _table(
-    person: SimulatedPerson, random: np.random.Generator
-) -> tuple[tuple[Box, ...], Array, Array]:
+def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Array, Array]:
     """A table ahead, the bottle's place on it (3,) and the middle of the plate (3,)."""
     size = person.height / 1.75
     top = 0.53 * person.height + random.normal(0.0, 0.015)
@@ -92,9 +99,9 @@ def _table(
     height = top + PLATE_HEIGHT
     narrow = 0.68 * PLATE_SIZE
     served = (
-        Box((x, y, top + PLATE_HEIGHT / 2.0), (PLATE_SIZE, narrow, PLATE_HEIGHT), CHINA),
-        Box((x, y, top + PLATE_HEIGHT / 2.0), (narrow, PLATE_SIZE, PLATE_HEIGHT), CHINA),
-        Box((x, y, height + 0.010), (0.13, 0.11, 0.020), CHIPS),
+        Cuboid((x, y, top + PLATE_HEIGHT / 2.0), (PLATE_SIZE, narrow, PLATE_HEIGHT), CHINA),
+        Cuboid((x, y, top + PLATE_HEIGHT / 2.0), (narrow, PLATE_SIZE, PLATE_HEIGHT), CHINA),
+        Cuboid((x, y, height + 0.010), (0.13, 0.11, 0.020), CHIPS),
     )
     table = side_table(0.10, 0.24 * size + 0.20, top, width=0.75)
     return (*table, *served), spot, np.array([x, y, height])
@@ -131,7 +138,7 @@ def _carry(
     sprinkler = plate + above + aside + wander * [1.0, 1.0, 0.6]
     middle = sprinkler + rotation[:, :, 2] * (SHAKE * shaken - BOTTLE_HALF_HEIGHT)[:, None]
     lift, back = named(stages, "lift"), named(stages, "return")
-    return follow(
+    return move_through(
         times,
         [
             Key(lift.start, first),

@@ -6,10 +6,10 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import MIRROR, Transform, normalised, rotation_about
-from inhand_lab.motions.furniture import Box
+from inhand_lab.motions.furniture import Cuboid, Furniture
 from inhand_lab.motions.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT, wrap_bar
 from inhand_lab.motions.performance import (
-    Contact,
+    ContactKind,
     Performance,
     Stance,
     contacts,
@@ -20,12 +20,12 @@ from inhand_lab.motions.performance import (
 )
 from inhand_lab.motions.timeline import (
     Key,
-    Movement,
+    Move,
     Pause,
     Stage,
     drift,
-    follow,
     minimum_jerk,
+    move_through,
     schedule,
     track,
 )
@@ -35,15 +35,15 @@ from inhand_lab.people.person import SimulatedPerson
 
 OPENING = (
     Pause("wait", 0.4),
-    Movement("reach", 0.9),
-    Movement("grasp", 0.25),
-    Movement("take", 1.1),
+    Move("reach", 0.9),
+    Move("grasp", 0.25),
+    Move("take", 1.1),
 )
-USE = (Movement("stroke", 0.8), Movement("back", 0.7), Pause("gather", 0.2))
+USE = (Move("stroke", 0.8), Move("back", 0.7), Pause("gather", 0.2))
 CLOSING = (
-    Movement("return", 1.1),
-    Movement("release", 0.25),
-    Movement("withdraw", 0.9),
+    Move("return", 1.1),
+    Move("release", 0.25),
+    Move("withdraw", 0.9),
     Pause("wait", 0.4),
 )
 
@@ -72,7 +72,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     start = {stage.name: stage.start for stage in stages}
     end = {stage.name: stage.end for stage in stages}
     first_stroke = min(stage.start for stage in stages if stage.name == "stroke")
-    carried = follow(
+    carried = move_through(
         times,
         [
             Key(start["take"], rest),
@@ -83,7 +83,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     )
     right_held, left_held = _hold(person, times, random, trunk, carried)
     right_rest, left_rest = hanging_hands(person, trunk, random)
-    right_hand = follow(
+    right_hand = move_through(
         times,
         [
             Key(start["reach"], right_rest),
@@ -93,7 +93,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
         ],
     )
     joined = start["take"] + 0.85 * (end["take"] - start["take"])
-    left_hand = follow(
+    left_hand = move_through(
         times,
         [
             Key(start["take"], left_rest),
@@ -103,11 +103,11 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
         ],
     )
     changes = [
-        (0.0, Contact.RESTING),
-        (end["grasp"], Contact.RIGHT_HAND),
-        (joined, Contact.BOTH_HANDS),
-        (start["return"], Contact.RIGHT_HAND),
-        (start["release"], Contact.RESTING),
+        (0.0, ContactKind.RESTING),
+        (end["grasp"], ContactKind.RIGHT_HAND),
+        (joined, ContactKind.BOTH_HANDS),
+        (start["return"], ContactKind.RIGHT_HAND),
+        (start["release"], ContactKind.RESTING),
     ]
     contact = contacts(times, changes)
     return Performance(posture, right_hand, left_hand, carried, contact, cupboard)
@@ -175,14 +175,14 @@ def _stance(
     return Stance(right_foot, left_foot, np.zeros(count), shift, trunk, head)
 
 
-def _lean_on_cupboard(random: np.random.Generator) -> tuple[tuple[Box, ...], Transform]:
+def _lean_on_cupboard(random: np.random.Generator) -> tuple[Furniture, Transform]:
     """A cupboard at the right, and the broom leaning on its near edge, world_from_object."""
     x, y = 0.36 + random.normal(0.0, 0.02), 0.24 + random.normal(0.0, 0.03)
     axis = np.array([np.sin(LEAN), 0.0, np.cos(LEAN)])
     standing = _stand_on_floor(axis[None], np.zeros(1), np.array([[x, y]]), np.zeros(1))[0]
     edge = x + CUPBOARD_HEIGHT * np.tan(LEAN) + 0.02
     centre = (float(edge) + 0.175, y - 0.11, CUPBOARD_HEIGHT / 2.0)
-    return (Box(centre, (0.35, 0.30, CUPBOARD_HEIGHT), (206, 200, 188)),), standing
+    return (Cuboid(centre, (0.35, 0.30, CUPBOARD_HEIGHT), (206, 200, 188)),), standing
 
 
 def _sweep(

@@ -1,6 +1,6 @@
 """Stages of an interaction in time, and smooth movement through key poses.
 
-Movement between rests is minimum-jerk (Flash & Hogan, 1985).
+Move between rests is minimum-jerk (Flash & Hogan, 1985).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ SHORTEST_PAUSE = 0.4
 
 
 @dataclass(frozen=True)
-class Movement:
+class Move:
     """A stage in which something moves; its duration is for a person of average tempo."""
 
     name: str
@@ -50,7 +50,7 @@ class Stage:
     end: float
 
 
-Step = Movement | Pause
+Step = Move | Pause
 
 
 def schedule(
@@ -150,7 +150,7 @@ class Key:
     by: Transform | None = None
 
 
-def follow(times: Array, keys: Sequence[Key]) -> Transform:
+def move_through(times: Array, keys: Sequence[Key]) -> Transform:
     """The poses (T, ...) through the keys, in order of time, at rest relative to each of them."""
     here = keys[0].pose
     translation, rotation = here.translation.copy(), here.rotation.copy()

@@ -15,14 +15,14 @@ from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, normalised, rotation_about, rotation_from_axes
 from inhand_lab.motions.performance import (
-    Contact,
+    ContactKind,
     Stance,
     feet_apart,
     hanging_hands,
     heading_of,
     stand,
 )
-from inhand_lab.motions.timeline import Key, drift, follow, minimum_jerk
+from inhand_lab.motions.timeline import Key, drift, minimum_jerk, move_through
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.joint_sequence import JointSequence
 from inhand_lab.people.kinematics import Trunk, place_body, place_trunk
@@ -114,7 +114,7 @@ def simulate_idle(
         reading.confidences,
         seen,
         Transform(np.array([0.0, 0.0, -9.0]), np.eye(3)).repeated(frames),
-        np.full(frames, Contact.RESTING, np.uint8),
+        np.full(frames, ContactKind.RESTING, np.uint8),
         camera_from_world @ Transform(further, np.eye(3)),
         float(np.arctan2(-viewpoint[0], viewpoint[1])),
         (),
@@ -148,7 +148,7 @@ def _stand(
     posture = stand(person, times, random, Stance(right, left, turn, weight, still, glances))
     trunk = place_trunk(person, posture)
     hanging = hanging_hands(person, trunk, random)
-    hands = [follow(times, keys) for keys in move(person, times, random, trunk, hanging)]
+    hands = [move_through(times, keys) for keys in move(person, times, random, trunk, hanging)]
     return place_body(person, posture, hands[0], hands[1])
 
 

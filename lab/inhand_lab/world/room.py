@@ -6,7 +6,7 @@ import numpy as np
 
 from inhand_lab.geometry.surfaces import Colour, Surface, block, join_surfaces
 from inhand_lab.geometry.transforms import Transform, rotation_about
-from inhand_lab.motions.furniture import Box
+from inhand_lab.motions.furniture import Furniture
 
 HALF_WIDTH = 4.0
 BEHIND = 1.1
@@ -17,7 +17,7 @@ UPRIGHT = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
 """Turns the plane z = 0, seen from above, into the plane y = 0, seen from the front."""
 
 
-def build_room(random: np.random.Generator, facing: float, furniture: tuple[Box, ...]) -> Surface:
+def build_room(random: np.random.Generator, facing: float, furniture: Furniture) -> Surface:
     """The room's surface in the person's world.
 
     facing is the direction to the camera as a turn to the left of the person's y axis, radians;

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from inhand_lab.geometry.rasteriser import Canvas
 from inhand_lab.geometry.surfaces import Surface
 from inhand_lab.geometry.transforms import Transform, normalised, quaternions, rotation_about
-from inhand_lab.motions.furniture import Box
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.furniture import Furniture
+from inhand_lab.motions.performance import ContactKind
 from inhand_lab.objects.model import ObjectModel
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.kinematics import place_body
@@ -76,7 +76,7 @@ class Simulation:
     joints_in_camera (T, 20, 3), joint_states (T, 20) as 0 missing, 1 inferred, 2 tracked, and
     joint_confidences (T, 20) are a skeleton tracker's. true_joints_in_camera (T, 20, 3),
     translations (T, 3) and rotations (T, 4) (w, x, y, z) of camera_from_object, and contact (T,)
-    as values of Contact are the truth.
+    as values of ContactKind are the truth.
     """
 
     interaction: str
@@ -95,7 +95,7 @@ class Simulation:
     contact: Bytes
     camera_from_world: Transform
     facing: float
-    furniture: tuple[Box, ...]
+    furniture: Furniture
 
     @property
     def intrinsics(self) -> Intrinsics:
@@ -261,11 +261,11 @@ def simulate(
 
 MIRRORED_CONTACT = np.array(
     [
-        Contact.RESTING,
-        Contact.LEFT_HAND,
-        Contact.RIGHT_HAND,
-        Contact.BOTH_HANDS,
-        Contact.WORN,
+        ContactKind.RESTING,
+        ContactKind.LEFT_HAND,
+        ContactKind.RIGHT_HAND,
+        ContactKind.BOTH_HANDS,
+        ContactKind.WORN,
     ],
     np.uint8,
 )

@@ -13,7 +13,7 @@ from inhand_lab.driven.denoising import bone_lengths, denoise
 from inhand_lab.driven.recorded_body import RecordedBody, drive
 from inhand_lab.geometry.transforms import MIRROR
 from inhand_lab.importers.utd_mhad import import_utd_mhad
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.performance import ContactKind
 from inhand_lab.world.messages import person_message
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_schemas.joints import MIRRORED_JOINTS, PARENTS, Joint
@@ -106,7 +106,7 @@ def test_the_tracker_is_given_what_was_measured() -> None:
 def test_a_held_object_stays_in_the_hand_and_slowly_shifts_in_it() -> None:
     driven = drive(recorded(source()), "drinkFromMug", seed=1)
     side = "right" if driven.person.handedness == "right" else "left"
-    assert set(driven.contact) == {Contact[f"{side.upper()}_HAND"]}
+    assert set(driven.contact) == {ContactKind[f"{side.upper()}_HAND"]}
     hand = getattr(driven.body_in_camera, f"from_{side}_hand")
     held = hand.inverse() @ driven.camera_from_object
     assert 1e-3 < np.ptp(held.translation, axis=0).max() < 0.05
@@ -118,7 +118,7 @@ def test_a_held_object_stays_in_the_hand_and_slowly_shifts_in_it() -> None:
 
 def test_a_long_object_points_from_hand_to_hand() -> None:
     driven = drive(recorded(source(participant=4)), "sweepFloor", seed=1)
-    assert set(driven.contact) == {Contact.BOTH_HANDS}
+    assert set(driven.contact) == {ContactKind.BOTH_HANDS}
     body = driven.body_in_camera
     way = body.from_left_hand.translation - body.from_right_hand.translation
     apart = np.linalg.norm(way, axis=1)
@@ -131,7 +131,7 @@ def test_a_long_object_points_from_hand_to_hand() -> None:
 
 def test_worn_glasses_stay_on_the_nose() -> None:
     driven = drive(recorded(source()), "putOnGlasses", seed=1)
-    assert set(driven.contact) == {Contact.WORN}
+    assert set(driven.contact) == {ContactKind.WORN}
     worn = driven.body_in_camera.from_head.inverse() @ driven.camera_from_object
     assert np.ptp(worn.translation, axis=0).max() < 1e-9
     assert worn.translation[0, 1] > 0.05
@@ -175,7 +175,7 @@ def test_a_left_handed_recording_is_the_mirror_image() -> None:
         source(), joints=(body.joints * MIRROR)[:, MIRRORED_JOINTS], handedness="left"
     )
     right, left = (drive(each, "drinkFromMug", seed=1) for each in (body, mirrored))
-    assert set(left.contact) == {Contact.LEFT_HAND}
+    assert set(left.contact) == {ContactKind.LEFT_HAND}
     assert np.allclose(left.translations, right.translations * MIRROR, atol=1e-3)
 
 

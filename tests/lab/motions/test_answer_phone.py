@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from inhand_lab.geometry.transforms import Transform
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.performance import ContactKind
 from performers import FRAME_RATE, depth_in_head, object_points, performed
 
 PARTICIPANTS = range(10)
@@ -32,9 +32,9 @@ def test_some_change_ears_and_both_hands_hold_the_phone_meanwhile() -> None:
     changed = []
     for participant in PARTICIPANTS:
         _, performance, _ = performed("answerPhone", participant)
-        left = performance.contact == Contact.LEFT_HAND
+        left = performance.contact == ContactKind.LEFT_HAND
         if left.any():
             changed.append(participant)
-            assert (performance.contact == Contact.BOTH_HANDS).any()
+            assert (performance.contact == ContactKind.BOTH_HANDS).any()
             assert head_from_phone(participant).translation[left, 0].min() < -0.07
     assert 0 < len(changed) < len(PARTICIPANTS)

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from inhand_lab.motions.hammer_nail import BLOCK_SIZE, FACE, NAIL_STANDING
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.performance import ContactKind
 from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array
 from performers import performed
@@ -36,7 +36,7 @@ def test_strokes_come_down_on_the_nail_one_after_the_other(participant: int) -> 
 def test_the_hammer_swings_further_once_the_nail_stands(participant: int) -> None:
     _, performance, body = performed("hammerNail", participant)
     height = above_block(participant)[:, 2]
-    worked = performance.contact == Contact.RIGHT_HAND
+    worked = performance.contact == ContactKind.RIGHT_HAND
     tops, _ = find_peaks(np.where(worked, height, 0.0), prominence=0.05)
     left = body.joints[:, Joint.HAND_LEFT]
     block = np.array(performance.furniture[-1].centre)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.performance import ContactKind
 from inhand_lab.objects.barbell import PLATE_RADIUS, barbell
 from inhand_schemas.joints import Joint
 from performers import angles_at, performed
@@ -28,7 +28,7 @@ def test_the_bar_is_curled_more_than_once_by_bending_the_elbows(participant: int
 @everybody
 def test_the_bar_stays_level_in_the_hands(participant: int) -> None:
     _, performance, _ = performed("liftWeights", participant)
-    held = performance.contact == Contact.BOTH_HANDS
+    held = performance.contact == ContactKind.BOTH_HANDS
     slope = np.degrees(np.arcsin(performance.world_from_object.rotation[held, 2, 0]))
     assert np.abs(slope).max() < 6.0
 
@@ -36,7 +36,7 @@ def test_the_bar_stays_level_in_the_hands(participant: int) -> None:
 @everybody
 def test_the_bar_is_taken_in_a_stoop_to_the_right(participant: int) -> None:
     _, performance, body = performed("liftWeights", participant)
-    taken = int(np.argmax(performance.contact == Contact.BOTH_HANDS))
+    taken = int(np.argmax(performance.contact == ContactKind.BOTH_HANDS))
     head = body.joints[:, Joint.HEAD]
     assert head[taken, 2] < head[0, 2] - 0.30
     assert performance.world_from_object.translation[0, 0] > 0.20

@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from inhand_lab.motions.performance import Contact, mouth
-from inhand_lab.motions.timeline import Movement, Pause, minimum_jerk, schedule
+from inhand_lab.motions.performance import ContactKind, mouth
+from inhand_lab.motions.timeline import Move, Pause, minimum_jerk, schedule
 from inhand_lab.objects.mug import MUG_HEIGHT, MUG_RADIUS
 from inhand_lab.people.kinematics import BALL_HEIGHT, place_trunk
 from inhand_lab.people.person import sample_person
@@ -85,10 +85,10 @@ def test_movement_is_continuous(interaction: str, participant: int) -> None:
 def test_a_held_object_moves_with_its_hands(interaction: str, participant: int) -> None:
     """The pinch of glasses is shifted on purpose, so that only a few centimetres are asked."""
     _, performance, body = performed(interaction, participant)
-    both = Contact.BOTH_HANDS
+    both = ContactKind.BOTH_HANDS
     for hand, target, holder in (
-        (body.from_right_hand, performance.right_hand, Contact.RIGHT_HAND),
-        (body.from_left_hand, performance.left_hand, Contact.LEFT_HAND),
+        (body.from_right_hand, performance.right_hand, ContactKind.RIGHT_HAND),
+        (body.from_left_hand, performance.left_hand, ContactKind.LEFT_HAND),
     ):
         held = np.isin(performance.contact, [holder, both])
         missed = np.linalg.norm(hand.translation - target.translation, axis=1)
@@ -101,7 +101,7 @@ def test_a_held_object_moves_with_its_hands(interaction: str, participant: int) 
 @everybody
 def test_an_object_at_rest_stays_where_it_is(interaction: str, participant: int) -> None:
     _, performance, _ = performed(interaction, participant)
-    resting = performance.contact == Contact.RESTING
+    resting = performance.contact == ContactKind.RESTING
     assert resting[0]
     assert resting[-1]
     assert not resting.all()
@@ -166,7 +166,7 @@ def test_drinking_brings_the_rim_to_the_lips_and_tilts_the_mug(participant: int)
 @pytest.mark.parametrize("participant", PARTICIPANTS)
 def test_worn_glasses_turn_with_the_head(participant: int) -> None:
     _, performance, body = performed("putOnGlasses", participant)
-    worn = performance.contact == Contact.WORN
+    worn = performance.contact == ContactKind.WORN
     assert worn.sum() > FRAME_RATE
     head_from_glasses = (body.from_head.inverse() @ performance.world_from_object)[worn]
     assert np.ptp(head_from_glasses.translation, axis=0).max() < 1e-9
@@ -176,7 +176,7 @@ def test_worn_glasses_turn_with_the_head(participant: int) -> None:
 @pytest.mark.parametrize("participant", PARTICIPANTS)
 def test_sweeping_repeats_strokes_over_the_floor_with_both_hands(participant: int) -> None:
     _, performance, _ = performed("sweepFloor", participant)
-    working = performance.contact == Contact.BOTH_HANDS
+    working = performance.contact == ContactKind.BOTH_HANDS
     points = object_points("sweepFloor", performance.world_from_object)
     brush = points[working][:, points[0, :, 2].argmin()]
     lowest = points[working][..., 2].min(axis=1)
@@ -189,8 +189,8 @@ def test_sweeping_repeats_strokes_over_the_floor_with_both_hands(participant: in
 
 def test_a_schedule_fills_its_time_and_repeats_the_use() -> None:
     person, random = sample_person(0, 0), np.random.default_rng(0)
-    opening, closing = (Pause("wait", 0.5), Movement("reach", 1.0)), (Movement("leave", 1.0),)
-    use = (Movement("do", 1.0), Pause("hold", 0.5))
+    opening, closing = (Pause("wait", 0.5), Move("reach", 1.0)), (Move("leave", 1.0),)
+    use = (Move("do", 1.0), Pause("hold", 0.5))
     stages = schedule(person, random, 30.0, opening, use, closing)
     assert stages[0].start == 0.0
     assert stages[-1].end == pytest.approx(30.0)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from inhand_lab.motions.performance import Contact, mouth
+from inhand_lab.motions.performance import ContactKind, mouth
 from inhand_lab.objects.flute import EMBOUCHURE, FLUTE_HALF_LENGTH, TUBE_RADIUS
 from inhand_lab.people.kinematics import place_trunk
 from inhand_tracker.geometry.arrays import Array
@@ -25,7 +25,7 @@ def test_it_is_played_more_than_once_with_pauses_between(participant: int) -> No
     played = gap_to_lips(participant) < 0.02
     assert np.count_nonzero(np.diff(played.astype(int)) == 1) >= 2
     assert played.sum() > 1.5 * FRAME_RATE
-    assert (performance.contact[played] == Contact.BOTH_HANDS).all()
+    assert (performance.contact[played] == ContactKind.BOTH_HANDS).all()
 
 
 @everybody

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.performance import ContactKind
 from inhand_lab.people.kinematics import BALL_HEIGHT
 from inhand_schemas.joints import Joint
 from performers import FRAME_RATE, performed
@@ -13,7 +13,7 @@ PARTICIPANTS = range(10)
 @pytest.mark.parametrize("participant", PARTICIPANTS)
 def test_a_worn_shoe_moves_with_its_foot(participant: int) -> None:
     _, performance, body = performed("putOnShoe", participant)
-    worn = performance.contact == Contact.WORN
+    worn = performance.contact == ContactKind.WORN
     assert worn.sum() > FRAME_RATE
     foot_from_shoe = (
         performance.posture.world_from_right_foot.inverse() @ performance.world_from_object
@@ -30,7 +30,7 @@ def test_the_foot_is_raised_to_the_shoe_and_its_toes_tap(participant: int) -> No
     ball = body.joints[:, Joint.FOOT_RIGHT, 2] - BALL_HEIGHT
     heel = performance.posture.world_from_right_foot.translation[:, 2]
     assert ball.max() > 0.10
-    tapping = (heel < 0.03) & (performance.contact == Contact.WORN)
+    tapping = (heel < 0.03) & (performance.contact == ContactKind.WORN)
     assert ball[tapping].max() > 0.02
     raised = ball[tapping] > 0.01
     assert np.count_nonzero(np.diff(raised.astype(int)) == 1) >= 2

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.performance import ContactKind
 from performers import FRAME_RATE, performed
 
 PARTICIPANTS = range(10)
@@ -15,7 +15,7 @@ def test_filming_is_done_with_both_hands_before_and_just_above_the_face(particip
     height = camera.translation[:, 2] - body.from_head.translation[:, 2]
     up = height > 0.0
     assert up.sum() > 3 * FRAME_RATE
-    assert (performance.contact[up] == Contact.BOTH_HANDS).all()
+    assert (performance.contact[up] == ContactKind.BOTH_HANDS).all()
     assert height.max() < 0.15
     distance = np.linalg.norm(camera.translation - body.from_head.translation, axis=1)
     assert distance[up].min() > 0.15

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.performance import ContactKind
 from inhand_lab.objects.vinegar_bottle import BOTTLE_HALF_HEIGHT
 from performers import FRAME_RATE, performed
 from scipy.signal import find_peaks
@@ -38,4 +38,4 @@ def test_it_is_shaken_over_the_plate(participant: int) -> None:
 @everybody
 def test_only_the_right_hand_carries_it(participant: int) -> None:
     _, performance, _ = performed("shakeVinegar", participant)
-    assert set(performance.contact) == {Contact.RESTING, Contact.RIGHT_HAND}
+    assert set(performance.contact) == {ContactKind.RESTING, ContactKind.RIGHT_HAND}

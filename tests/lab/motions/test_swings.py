@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from inhand_lab.geometry.transforms import Transform
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.performance import ContactKind
 from inhand_lab.objects.golf_club import SOLE
 from inhand_lab.objects.racket import TIP
 from inhand_lab.people.body_motion import BodyMotion
@@ -101,7 +101,7 @@ def test_the_club_starts_at_the_ball_on_the_floor(participant: int) -> None:
     sole = club.apply(np.array([0.0, 0.03, SOLE]))
     hit = int(speeds(sole).argmax())
     before = slice(hit - 3 * RATE // 2, hit - RATE // 2)
-    assert (contact[before] == Contact.BOTH_HANDS).all()
+    assert (contact[before] == ContactKind.BOTH_HANDS).all()
     address = before.start + int(sole[before, 2].argmin())
     assert -0.005 < sole[address, 2] < 0.06
     assert sole[address, 1] > 0.35

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from inhand_lab.geometry.transforms import MIRROR
-from inhand_lab.motions.performance import Contact
+from inhand_lab.motions.performance import ContactKind
 from inhand_lab.people.person import SimulatedPerson, sample_person
 from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.sensing.skeleton_noise import INFERRED, MISSING, TRACKED
@@ -129,13 +129,13 @@ def test_a_left_handed_person_is_the_mirror_image(
     )
     assert np.allclose(theirs.apply(marked * MIRROR), ours.apply(marked) * MIRROR)
     ours_held, theirs_held = (set(simulation.contact) for simulation in simulations)
-    assert (Contact.LEFT_HAND in theirs_held) == (Contact.RIGHT_HAND in ours_held)
-    assert (Contact.RIGHT_HAND in theirs_held) == (Contact.LEFT_HAND in ours_held)
+    assert (ContactKind.LEFT_HAND in theirs_held) == (ContactKind.RIGHT_HAND in ours_held)
+    assert (ContactKind.RIGHT_HAND in theirs_held) == (ContactKind.LEFT_HAND in ours_held)
 
 
 def test_the_object_is_where_the_hand_is() -> None:
     simulation = simulate("drinkFromMug", 0, seed=7)
-    held = simulation.contact == Contact.RIGHT_HAND
+    held = simulation.contact == ContactKind.RIGHT_HAND
     hand = simulation.true_joints_in_camera[held, Joint.HAND_RIGHT]
     assert np.linalg.norm(hand - simulation.translations[held], axis=1).max() < 0.15
 
