@@ -7,9 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from inhand_lab.benchmarks.ablation import Worth, ablate, varied
-from inhand_lab.benchmarks.likelihood import ObjectCheck, check_likelihood
+from inhand_lab.benchmarks.likelihood_check import ObjectCheck, check_likelihood
 from inhand_lab.benchmarks.tracker_speed import TrackerSpeed, measure_tracker
-from inhand_lab.benchmarks.training_cost import SIZES, TrainingCost, benchmark_training, steps
+from inhand_lab.benchmarks.training_cost import (
+    SIZES,
+    TrainingCost,
+    benchmark_training,
+    training_steps,
+)
 from inhand_lab.datasets.dataset import load_dataset
 from inhand_lab.evaluation.folds import leave_one_out
 from inhand_lab.workers import usable_cores
@@ -187,7 +192,7 @@ def _ablation_row(worth: Worth) -> dict[str, Any]:
 
 
 def _training(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
-    with progress_bars(steps(SIZES)) as advance:
+    with progress_bars(training_steps(SIZES)) as advance:
         costs = list(benchmark_training(SIZES, usable_cores(), advance))
     sizes = [{**asdict(cost.learning), **asdict(cost.asking)} for cost in costs]
     return training_table(costs), {"sizes": sizes}

@@ -9,13 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from inhand_lab.demonstration.demonstration import (
-    TRAINED_PARTICIPANTS,
-    draw_picture,
-    train_demonstration,
-    write_rig_file,
-)
+from inhand_lab.demonstration.parameters import DEFAULT_DEMONSTRATION
+from inhand_lab.demonstration.preparation import train_demonstration, write_rig_file
 from inhand_lab.demonstration.review import Review, review
+from inhand_lab.demonstration.typical_frame import draw_typical_frame
 from inhand_lab.world.simulation import INTERACTIONS
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_schemas.topics import POSE
@@ -58,7 +55,9 @@ def run(arguments: argparse.Namespace) -> int:
     console = Console()
     folder = arguments.folder / time.strftime("%Y%m%d_%H%M%S")
     folder.mkdir(parents=True)
-    with progress_bar("simulating people to learn from", TRAINED_PARTICIPANTS) as advance:
+    with progress_bar(
+        "simulating people to learn from", DEFAULT_DEMONSTRATION.trained_participants
+    ) as advance:
         model, model_path = train_demonstration(folder, arguments.interaction, advance)
     config = write_rig_file(folder, arguments.interaction, model_path)
     _run_rig(config, arguments.seconds)
@@ -67,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
     if len(seen.vertex_errors_m) == 0:
         raise InhandError(f"{recording} holds no pose that can be compared with the truth")
     picture = folder / "picture.png"
-    draw_picture(recording, seen, model, picture)
+    draw_typical_frame(recording, seen, model.shape, picture)
     result = _result(seen, recording, picture, time.monotonic() - began)
     console.print(_table(seen))
     for line in _summary(result):

@@ -10,7 +10,7 @@ from inhand_lab.datasets.dataset import load_dataset
 from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
 from inhand_lab.evaluation.protocol import Protocol, Terms, Trial, evaluate
 from inhand_lab.evaluation.summary import summarise, terms_name, with_terms, worth
-from inhand_lab.report.folder import prepare_folder, write_report
+from inhand_lab.report.report_folder import prepare_report_folder, write_report
 from inhand_lab.report.tables import shown_grids
 from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     began = time.monotonic()
     protocol = _protocol(arguments)
     if arguments.report is not None:
-        prepare_folder(arguments.report)
+        prepare_report_folder(arguments.report)
     cores = usable_cores()
     with progress_bar("evaluating", protocol.trials()) as advance:
         trials = evaluate(protocol, cores, advance)

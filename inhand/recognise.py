@@ -24,7 +24,7 @@ from inhand_lab.recognition.tables import (
     recognition_grids,
     summarise_recognition,
 )
-from inhand_lab.report.folder import prepare_folder
+from inhand_lab.report.report_folder import prepare_report_folder
 from inhand_lab.report.tables import Grid
 from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
@@ -88,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Measure and show; raises SettingsError, DatasetError, InhandError or RecordingError."""
     began = time.monotonic()
     if arguments.report is not None:
-        prepare_folder(arguments.report)
+        prepare_report_folder(arguments.report)
     dataset = load_dataset(arguments.dataset)
     if arguments.alone:
         result, grids = _alone(dataset, arguments.report)

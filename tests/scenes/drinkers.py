@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+from inhand_lab.evaluation.vertex_error import vertex_error
 from inhand_lab.world.messages import camera_info, shape_of
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.camera import intrinsics_of
-from inhand_tracker.geometry.estimate import Estimate, vertex_error
+from inhand_tracker.geometry.estimate import Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.methods.fusion.tracker import FusionTracker

@@ -89,7 +89,7 @@ class TrainingCost:
     asking: Asking
 
 
-def steps(sizes: Sequence[int]) -> dict[str, int]:
+def training_steps(sizes: Sequence[int]) -> dict[str, int]:
     """What the benchmark goes through, each with the number of its steps."""
     return {"simulating people": _people(max(sizes)) + 1, "learning and asking": 2 * len(sizes)}
 
@@ -98,7 +98,7 @@ def benchmark_training(
     sizes: Sequence[int], processes: int, on_step: Callable[[str], None]
 ) -> Iterator[TrainingCost]:
     """The cost of learning each number of frames; ``on_step`` is called at every step."""
-    simulating, asking = steps(sizes)
+    simulating, asking = training_steps(sizes)
     with tempfile.TemporaryDirectory(prefix="inhand-bench-") as name:
         folder = Path(name)
         people = [*range(_people(max(sizes))), STRANGER]

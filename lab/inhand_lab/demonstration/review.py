@@ -1,20 +1,23 @@
 """What a recording of a rig shows: traffic, latency, and errors where truth was recorded."""
 
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from inhand_runtime.recording import read_metadata, read_recording
+from inhand_runtime.recording import RecordedMessage, read_metadata, read_recording
+from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import Health, ObjectPose
 from inhand_schemas.topics import HEALTH, LABEL, POSE
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.geometry.estimate import vertex_error
+
+from inhand_lab.evaluation.vertex_error import vertex_error
 
 
 @dataclass(frozen=True)
 class Traffic:
-    """Messages of one stream, over all of its keys."""
+    """Numbers of messages of one stream, over all of its keys."""
 
     published: int
     received: int
@@ -38,25 +41,39 @@ class Review:
     labels: dict[int, ObjectPose]
 
 
-def review(path: Path, object_name: str, marked_vertices: Array) -> Review:
-    """Review a whole recording; raises RecordingError."""
-    recorded: Counter[str] = Counter()
-    health: dict[str, Health] = {}
-    poses: dict[int, ObjectPose] = {}
-    labels: dict[int, ObjectPose] = {}
-    latencies = []
-    for sample in read_recording(path):
-        recorded[sample.key] += 1
+@dataclass
+class _Contents:
+    """What one pass over a recording collects."""
+
+    object_name: str
+    recorded: Counter[str] = field(default_factory=Counter)
+    health: dict[str, Health] = field(default_factory=dict)
+    poses: dict[int, ObjectPose] = field(default_factory=dict)
+    labels: dict[int, ObjectPose] = field(default_factory=dict)
+    latencies_ms: list[float] = field(default_factory=list)
+
+    def take(self, sample: RecordedMessage) -> None:
+        """Count one message, and keep it where it says something of health or of the object."""
+        self.recorded[sample.key] += 1
+        if sample.topic is POSE:
+            self.latencies_ms.append((sample.received_ns - sample.captured_ns) / 1e6)
         if sample.topic is HEALTH:
             message = sample.message()
             if isinstance(message, Health):
-                health[message.instance + message.service] = message
-        elif sample.topic in (POSE, LABEL) and sample.name == object_name:
+                self.health[message.instance + message.service] = message
+        elif sample.topic in (POSE, LABEL) and sample.name == self.object_name:
             message = sample.message()
             if isinstance(message, ObjectPose):
-                (poses if sample.topic is POSE else labels)[message.sequence] = message
-        if sample.topic is POSE:
-            latencies.append((sample.received_ns - sample.captured_ns) / 1e6)
+                kept = self.poses if sample.topic is POSE else self.labels
+                kept[message.sequence] = message
+
+
+def review(path: Path, object_name: str, marked_vertices: Array) -> Review:
+    """Review a whole recording; raises RecordingError."""
+    contents = _Contents(object_name)
+    for sample in read_recording(path):
+        contents.take(sample)
+    poses, labels = contents.poses, contents.labels
     sequences = [
         sequence
         for sequence, pose in poses.items()
@@ -66,8 +83,10 @@ def review(path: Path, object_name: str, marked_vertices: Array) -> Review:
         float(vertex_error(_pose(poses[s]), _pose(labels[s]), marked_vertices)) for s in sequences
     ]
     return Review(
-        _traffic(recorded, list(health.values()), read_metadata(path).get("losses", {})),
-        np.array(latencies),
+        _traffic(
+            contents.recorded, contents.health.values(), read_metadata(path).get("losses", {})
+        ),
+        np.array(contents.latencies_ms),
         np.array(sequences, np.int64),
         np.array(errors),
         poses,
@@ -76,15 +95,16 @@ def review(path: Path, object_name: str, marked_vertices: Array) -> Review:
 
 
 def _traffic(
-    recorded: Counter[str], health: list[Health], losses: dict[str, str]
+    recorded: Counter[str], health: Iterable[Health], losses: Mapping[str, str]
 ) -> dict[str, Traffic]:
-    """Published is what the instances said last of themselves, received what the recorder noted."""
+    """Traffic by stream: published by what instances last reported, received by the recorder."""
+    instances = list(health)
     streams: dict[str, Traffic] = {}
     for key in sorted(recorded):
-        stream = key.split("/")[-2]
+        stream = parse_key(key).stream
         if stream == HEALTH.stream:
             continue
-        published = sum(one.topics[key].published for one in health if key in one.topics)
+        published = sum(one.topics[key].published for one in instances if key in one.topics)
         noted = dict(entry.split("=") for entry in losses.get(key, "").split())
         before = streams.get(stream, Traffic(0, 0, 0, 0))
         streams[stream] = Traffic(
@@ -97,9 +117,7 @@ def _traffic(
 
 
 def _pose(message: ObjectPose) -> tuple[Array, Array]:
-    if message.camera_from_object is None:
+    pose = message.camera_from_object
+    if pose is None:
         raise ValueError("a lost object has no pose")
-    return (
-        np.array(message.camera_from_object.translation),
-        np.array(message.camera_from_object.rotation),
-    )
+    return np.array(pose.translation), np.array(pose.rotation)

@@ -18,7 +18,6 @@ from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.body.skeleton import PARTS, RIGHT_HAND, mirror_pose
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.geometry.estimate import vertex_error
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.mapping.mapping import BodyPoseIndex, Mapping
 from inhand_tracker.methods.darby2014.particles import mixing_fractions
@@ -30,6 +29,7 @@ from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.datasets.tracks import true_joints
 from inhand_lab.evaluation.folds import Fold, leave_one_out
+from inhand_lab.evaluation.vertex_error import vertex_error
 
 EVERY = 3
 """Of so many frames one is looked at."""
@@ -50,7 +50,7 @@ class PartErrors:
     fractions: Array
 
 
-def part_errors(dataset: Dataset, *, by_true_joints: bool) -> PartErrors:
+def measure_part_errors(dataset: Dataset, *, by_true_joints: bool) -> PartErrors:
     """The errors for unseen people, means over interactions; raises DatasetError.
 
     True joints stand for the measured ones both of those who are learned from and of those tested.
@@ -62,7 +62,7 @@ def part_errors(dataset: Dataset, *, by_true_joints: bool) -> PartErrors:
     return _mean([_mean(errors) for errors in of_interaction.values()])
 
 
-def predictions(mapping: Mapping, cluster: Indices, body: Body) -> tuple[Array, Array]:
+def predict_by_parts(mapping: Mapping, cluster: Indices, body: Body) -> tuple[Array, Array]:
     """What the 19 parts predict, and the mean of all: (20, 3) and (20, 4), of right-handed people
     in the camera frame."""
     upright = np.array([1.0, 0.0, 0.0, 0.0])
@@ -89,7 +89,7 @@ def _of_fold(
             if frame % EVERY or body is None or not np.isfinite(truth[0]).all():
                 continue
             nearest, _ = index.nearest(body.pose)
-            predicted = predictions(mapping, index.cluster(nearest), body)
+            predicted = predict_by_parts(mapping, index.cluster(nearest), body)
             if tested.left_handed:
                 predicted = mirror_pose(*predicted, shape.mirror_normal)
             yield PartErrors(
@@ -169,8 +169,8 @@ def main() -> None:
     )
     parser.add_argument("dataset", type=Path, metavar="DATASET")
     dataset = load_dataset(parser.parse_args().dataset)
-    columns = {"measured": part_errors(dataset, by_true_joints=False)}
-    truth = part_errors(dataset, by_true_joints=True) if _simulated(dataset) else None
+    columns = {"measured": measure_part_errors(dataset, by_true_joints=False)}
+    truth = measure_part_errors(dataset, by_true_joints=True) if _simulated(dataset) else None
     Console().print(_table(columns if truth is None else {**columns, "true": truth}))
 
 

@@ -14,12 +14,12 @@ import numpy as np
 import trimesh
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Flags
-from inhand_tracker.geometry.estimate import vertex_error
 from inhand_tracker.prior.learning import CHI_SQUARE_90
 from inhand_tracker.shape.shape import ObjectShape, Symmetry
 from scipy.spatial import KDTree
 
 from inhand_lab.datasets.tracks import Track
+from inhand_lab.evaluation.vertex_error import vertex_error
 
 SURFACE_POINTS = 2000
 """That the nearest is searched among, about 3 mm apart on a mug."""

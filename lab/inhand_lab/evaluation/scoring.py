@@ -8,7 +8,7 @@ from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.datasets.recorded_frames import RecordedFrame
 from inhand_lab.datasets.tracks import Track, true_joints, true_track
-from inhand_lab.evaluation.losses import (
+from inhand_lab.evaluation.lost_tracks import (
     Recoveries,
     lost_bodies,
     lost_frames,

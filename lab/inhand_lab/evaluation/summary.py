@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from inhand_lab.evaluation.losses import Recoveries
+from inhand_lab.evaluation.lost_tracks import Recoveries
 from inhand_lab.evaluation.protocol import Terms, Trial
 from inhand_lab.evaluation.published import REFERENCE_METHOD, VERTEX_ERROR_CM
 from inhand_lab.evaluation.scoring import Score

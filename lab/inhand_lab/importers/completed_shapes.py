@@ -15,13 +15,13 @@ TOLERANCE_M = 0.0015
 FITTING_STEPS = 30
 
 
-def box_around(name: str, points: Array) -> ObjectShape:
+def complete_box(name: str, points: Array) -> ObjectShape:
     """The least box that holds points (N, 3): a box's three seen sides tell all of it."""
     to_box, extents = trimesh.bounds.oriented_bounds(points)  # type: ignore[no-untyped-call]
     return _shape(name, trimesh.creation.box(extents, np.linalg.inv(to_box)))
 
 
-def cup_around(name: str, points: Array) -> ObjectShape:
+def complete_cup(name: str, points: Array) -> ObjectShape:
     """A hollow cup with a lip that stands along z, from points (N, 3) of its surface.
 
     It has no handle, and so looks the same turned about its axis.

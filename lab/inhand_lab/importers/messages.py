@@ -10,7 +10,7 @@ from inhand_lab.datasets.dataset import CAMERA
 PERSON = 0
 
 
-def skeletons_message(sequence: int, time_ns: int, joints: Array) -> Skeletons:
+def imported_skeletons(sequence: int, time_ns: int, joints: Array) -> Skeletons:
     """One person's joints (20, 3) in the camera frame; those that are not finite are missing."""
     seen = np.asarray(np.isfinite(joints).all(axis=1))
     if not seen.any():
@@ -25,7 +25,7 @@ def skeletons_message(sequence: int, time_ns: int, joints: Array) -> Skeletons:
     return Skeletons(sequence=sequence, time_ns=time_ns, people=(person,))
 
 
-def label_message(
+def imported_label(
     sequence: int,
     time_ns: int,
     name: str,

@@ -12,7 +12,7 @@ from inhand_tracker.shape.shape import ObjectShape
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
-from inhand_lab.importers.messages import PERSON, label_message, skeletons_message
+from inhand_lab.importers.messages import PERSON, imported_label, imported_skeletons
 from inhand_lab.importers.motion_archive import Motion, read_motion
 from inhand_lab.importers.shapes import shape_of_mesh, shape_of_points
 from inhand_lab.importers.sources import find_files
@@ -83,10 +83,10 @@ def _messages(motion: Motion, timing: Timing) -> Iterator[Message]:
     )
     for sequence, frame in enumerate(range(0, len(joints), timing.step)):
         time_ns = timing.time_ns(sequence)
-        yield skeletons_message(sequence, time_ns, joints[frame])
+        yield imported_skeletons(sequence, time_ns, joints[frame])
         translation, orientation = translations[frame], orientations[frame]
         if np.isfinite(translation).all():
-            yield label_message(sequence, time_ns, motion.object, translation, orientation, PERSON)
+            yield imported_label(sequence, time_ns, motion.object, translation, orientation, PERSON)
 
 
 def _shapes(motions: Sequence[Motion]) -> list[ObjectShape]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.matlab import read_mat
-from inhand_lab.importers.messages import skeletons_message
+from inhand_lab.importers.messages import imported_skeletons
 from inhand_lab.importers.sources import find_files
 from inhand_lab.importers.timing import FRAME_RATE, Timing, thin
 
@@ -93,7 +93,7 @@ _STEM = re.compile(r"a(\d{1,2})_(s\d+)_t\d+")
 
 
 @dataclass(frozen=True)
-class Trial:
+class UtdMhadTrial:
     """One person's one performance; ``joints_in_camera`` (T, 20, 3) in metres."""
 
     stem: str
@@ -133,7 +133,7 @@ def import_utd_mhad(
     return writer.finish({"importer": "utd-mhad", "unpaired_frames": unpaired})
 
 
-def read_trial(path: Path) -> Trial:
+def read_trial(path: Path) -> UtdMhadTrial:
     """Read one ``*_skeleton.mat``; raises DatasetError."""
     stem = path.name.removesuffix(SKELETON_SUFFIX)
     match = _STEM.fullmatch(stem)
@@ -146,7 +146,7 @@ def read_trial(path: Path) -> Trial:
         raise DatasetError(f"{path}: d_skel is {skeletons.shape}, and should be (20, 3, frames)")
     joints = np.moveaxis(skeletons.astype(np.float64), -1, 0)[:, _OUR_ORDER]
     depth_file = path.with_name(stem + DEPTH_SUFFIX)
-    return Trial(
+    return UtdMhadTrial(
         stem,
         ACTIONS[int(match[1]) - 1],
         match[2],
@@ -191,4 +191,4 @@ def _messages(
         if depth is not None:
             image = encode_depth(depth[frame])
             yield RgbdFrame(sequence=sequence, time_ns=time_ns, depth=image)
-        yield skeletons_message(sequence, time_ns, joints[frame])
+        yield imported_skeletons(sequence, time_ns, joints[frame])

@@ -17,7 +17,7 @@ from inhand_schemas.messages import CameraInfo, Message, RgbdFrame
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.images import read_image
-from inhand_lab.importers.messages import label_message
+from inhand_lab.importers.messages import imported_label
 from inhand_lab.importers.timing import FRAME_RATE, Timing, thin
 from inhand_lab.importers.ycb_annotations import Annotation, read_annotation, read_poses_file
 from inhand_lab.importers.ycb_shapes import find_shape
@@ -116,7 +116,7 @@ def _messages(clip: Clip, timing: Timing) -> Iterator[Message]:
             depth=encode_depth(depth),
         )
         for name, (translation, rotation) in annotation.camera_from_objects.items():
-            yield label_message(number, time_ns, name, translation, rotation)
+            yield imported_label(number, time_ns, name, translation, rotation)
 
 
 def _camera_info(clip: Clip, timing: Timing) -> CameraInfo:

@@ -170,7 +170,7 @@ def interval(people: list[Recorded]) -> tuple[Array, Array]:
     )
 
 
-def _real_people(trials: list[utd_mhad.Trial]) -> list[Recorded]:
+def _real_people(trials: list[utd_mhad.UtdMhadTrial]) -> list[Recorded]:
     return [
         Recorded(
             [Observed.of(trial.joints_in_camera) for trial in own],
@@ -198,7 +198,7 @@ def _simulated_people(seed: int, participants: int) -> list[Recorded]:
     return people
 
 
-def _returns(recordings: Sequence[utd_mhad.Trial] | Sequence[Simulation]) -> Array:
+def _returns(recordings: Sequence[utd_mhad.UtdMhadTrial] | Sequence[Simulation]) -> Array:
     """How nearly each joint (20,) of one person comes back in doing the same, in body heights."""
     actions = sorted({one.interaction for one in recordings})
     return np.mean(
@@ -216,7 +216,7 @@ def _returns(recordings: Sequence[utd_mhad.Trial] | Sequence[Simulation]) -> Arr
     )
 
 
-def _real_pairs(trial: utd_mhad.Trial) -> Iterator[DepthPair]:
+def _real_pairs(trial: utd_mhad.UtdMhadTrial) -> Iterator[DepthPair]:
     if trial.depth_file is None:
         return
     depth = utd_mhad.read_depth(trial.depth_file)

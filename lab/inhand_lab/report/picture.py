@@ -16,6 +16,7 @@ Colour = tuple[int, int, int]
 BONE: Colour = (255, 210, 60)
 TRUE: Colour = (60, 220, 90)
 TRACKED: Colour = (250, 70, 60)
+WHITE: Colour = (255, 255, 255)
 ENLARGEMENT = 2
 
 

@@ -10,12 +10,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+from inhand_lab.evaluation.vertex_error import vertex_error
 from inhand_lab.world.messages import shape_of
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_schemas.joints import JOINT_NAMES
 from inhand_tracker.body.skeleton import pelvis_basis
 from inhand_tracker.geometry import rotations
-from inhand_tracker.geometry.estimate import Estimate, vertex_error
+from inhand_tracker.geometry.estimate import Estimate
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from inhand_tracker.methods.registry import FUSION, new_tracker

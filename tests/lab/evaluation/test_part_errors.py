@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import Dataset
-from inhand_lab.evaluation.part_errors import PartErrors, part_errors
+from inhand_lab.evaluation.part_errors import PartErrors, measure_part_errors
 from inhand_tracker.body.skeleton import PARTS, RIGHT_HAND
 from waving import write_dataset
 
@@ -20,7 +20,7 @@ def waved(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
 
 @pytest.fixture(scope="module")
 def errors(waved: Dataset) -> PartErrors:
-    return part_errors(waved, by_true_joints=False)
+    return measure_part_errors(waved, by_true_joints=False)
 
 
 def test_the_carrying_hand_predicts_translation_better_than_most_parts(errors: PartErrors) -> None:

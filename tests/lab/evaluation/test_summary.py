@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from inhand_lab.evaluation.losses import Recoveries
+from inhand_lab.evaluation.lost_tracks import Recoveries
 from inhand_lab.evaluation.protocol import Candidate, Terms, Trial
 from inhand_lab.evaluation.scoring import Score
 from inhand_lab.evaluation.summary import summarise, terms_name, with_terms, worth

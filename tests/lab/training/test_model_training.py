@@ -9,7 +9,7 @@ from shutil import copytree
 import msgspec
 import numpy as np
 import pytest
-from inhand_lab.benchmarks.training_cost import benchmark_training, steps
+from inhand_lab.benchmarks.training_cost import benchmark_training, training_steps
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError, load_dataset
 from inhand_lab.datasets.generation import generate
 from inhand_lab.training.checks import check_hands, check_sequence
@@ -265,7 +265,7 @@ def test_the_cost_of_training_is_measured_for_every_size() -> None:
     told: Counter[str] = Counter()
     sizes = (720, 2160)
     costs = list(benchmark_training(sizes, 1, lambda stage: told.update([stage])))
-    assert told == steps(sizes)
+    assert told == training_steps(sizes)
     assert [cost.learning.recordings for cost in costs] == [2, 6]
     for cost, size in zip(costs, sizes, strict=True):
         assert 0.9 * size < cost.learning.frames <= size

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from inhand_tracker.geometry.estimate import vertex_error, weighted_estimate
+from inhand_tracker.geometry.estimate import weighted_estimate
 from people import quaternion_of, same_rotation, scipy_rotation
 from scipy.spatial.transform import Rotation
 
@@ -77,32 +77,3 @@ def test_confidence_counts_rotations_within_thirty_degrees() -> None:
     turns = np.array([about_z(a) for a in (0, 29, -29, 31, -31)])
     estimate = weighted_estimate(np.zeros((5, 3)), turns, np.array([0.4, 0.1, 0.1, 0.2, 0.2]))
     assert estimate.confidence == pytest.approx(0.6)
-
-
-def test_a_pure_shift_is_the_vertex_error() -> None:
-    vertices = np.random.default_rng(1).normal(size=(6, 3))
-    error = vertex_error((np.array([0.03, 0, 0.04]), IDENTITY), (np.zeros(3), IDENTITY), vertices)
-    assert error == pytest.approx(0.05)
-
-
-def test_a_quarter_turn_moves_each_vertex_along_its_chord() -> None:
-    # Chords of a quarter turn: radius × √2; a vertex on the axis stays.
-    vertices = np.array([[0.1, 0.0, 0.0], [0.0, 0.3, 0.5], [0.0, 0.0, 1.0]])
-    error = vertex_error((np.zeros(3), about_z(90)), (np.zeros(3), IDENTITY), vertices)
-    assert error == pytest.approx((0.1 + 0.3) * np.sqrt(2) / 3)
-
-
-def test_vertex_errors_of_a_sequence_are_those_of_its_frames() -> None:
-    vertices = np.array([[0.1, 0.0, 0.0], [0.0, 0.2, 0.0]])
-    truth = (np.zeros((3, 3)), np.tile(IDENTITY, (3, 1)))
-    estimates = (
-        np.array([[0, 0, 0], [0, 0, 0.5], [0, 0, 0]]),
-        np.array([IDENTITY, IDENTITY, about_z(180)]),
-    )
-    np.testing.assert_allclose(vertex_error(estimates, truth, vertices), [0, 0.5, 0.3], atol=1e-12)
-
-
-def test_the_sign_of_a_quaternion_does_not_change_the_vertex_error() -> None:
-    vertices = np.array([[0.1, 0.2, 0.3]])
-    error = vertex_error((np.zeros(3), -about_z(40)), (np.zeros(3), about_z(40)), vertices)
-    assert error == pytest.approx(0.0, abs=1e-12)

@@ -48,17 +48,3 @@ def weighted_estimate(translations: Array, orientations: Array, weights: Array) 
         rotation,
         np.einsum("p,pi,pj->ij", weights, deviations, deviations),
     )
-
-
-def vertex_error(
-    estimate: tuple[Array, Array], truth: tuple[Array, Array], marked_vertices: Array
-) -> Array:
-    """The paper's error score in metres: mean distance of corresponding vertices (M, 3).
-
-    Both poses are translations (..., 3) and rotations (..., 4); the result is (...).
-    """
-    placed = [
-        rotations.rotate(orientation[..., None, :], marked_vertices) + translation[..., None, :]
-        for translation, orientation in (estimate, truth)
-    ]
-    return np.asarray(np.linalg.norm(placed[0] - placed[1], axis=-1).mean(axis=-1))

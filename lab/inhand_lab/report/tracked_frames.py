@@ -10,13 +10,13 @@ from inhand_schemas.messages import Pose
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Bytes
 from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
-from inhand_tracker.geometry.estimate import vertex_error
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.wire.poses import pose_message
 from matplotlib.figure import Figure
 
 from inhand_lab.datasets.recorded_frames import RecordedFrame, iterate_pixels, load_camera_info
 from inhand_lab.datasets.tracks import Track, true_track
+from inhand_lab.evaluation.vertex_error import vertex_error
 from inhand_lab.report.picture import TRACKED, TRUE, Picture, picture_of
 
 COLUMNS, ROWS = 4, 2
@@ -31,7 +31,7 @@ JPEG_QUALITY = 85
 
 
 @dataclass(frozen=True)
-class Seen:
+class TrackedRecording:
     """A recording at ``path``, the joints (T, 20, 3) and the track of its object."""
 
     path: Path
@@ -40,7 +40,7 @@ class Seen:
     track: Track
 
 
-def draw_tracked_frames(seen: Seen, shape: ObjectShape, title: str, file: Path) -> bool:
+def draw_tracked_frames(seen: TrackedRecording, shape: ObjectShape, title: str, file: Path) -> bool:
     """Draw the true and the tracked object on frames spread over a recording, as a JPEG file.
 
     False where the recording does not tell its camera, or no label has a pose.

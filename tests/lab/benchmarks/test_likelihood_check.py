@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from inhand_lab.benchmarks.likelihood import check_likelihood
+from inhand_lab.benchmarks.likelihood_check import check_likelihood
 from inhand_lab.datasets.dataset import DatasetError
-from inhand_lab.importers.completed_shapes import box_around, cup_around
+from inhand_lab.importers.completed_shapes import complete_box, complete_cup
 from real_data import DATA
 
 from inhand.__main__ import main
@@ -25,7 +25,7 @@ def test_three_sides_of_a_box_tell_all_of_it() -> None:
     points, faces = trimesh.sample.sample_surface(box, 20_000, seed=0)
     seen = (box.face_normals[faces] @ [1.0, 2.0, 2.0]) > 0.0
     turn = trimesh.transformations.rotation_matrix(0.7, [1.0, 1.0, 0.3], [0.2, 0.0, 0.1])
-    shape = box_around("box", trimesh.transform_points(points[seen], turn))
+    shape = complete_box("box", trimesh.transform_points(points[seen], turn))
     whole = trimesh.Trimesh(shape.vertices, shape.faces)
     assert whole.volume == pytest.approx(0.006, rel=0.02)
     expected = trimesh.transform_points(np.zeros((1, 3)), turn)[0]
@@ -44,7 +44,7 @@ def test_a_third_of_a_cups_side_and_its_rim_tell_the_cup() -> None:
             np.column_stack((lip, np.full(500, 0.04))),
         )
     ) + np.array([0.01, -0.02, 0.0])
-    shape = cup_around("cup", points)
+    shape = complete_cup("cup", points)
     (symmetry,) = shape.symmetries
     np.testing.assert_allclose(symmetry.centre[:2], [0.01, -0.02], atol=0.001)
     radius = np.linalg.norm(shape.vertices[:, :2] - [0.01, -0.02], axis=1)

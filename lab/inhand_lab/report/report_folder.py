@@ -22,10 +22,10 @@ from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.protocol import Candidate, Protocol, Trial, fold_model, tracker_of
 from inhand_lab.evaluation.published import REFERENCE_METHOD
-from inhand_lab.report.illustration import Seen, draw_tracked_frames
 from inhand_lab.report.part_measures import part_measures
 from inhand_lab.report.plots import plot_rotation_stability, plot_spread, plot_translation
 from inhand_lab.report.text import markdown, report_grids, tab_separated
+from inhand_lab.report.tracked_frames import TrackedRecording, draw_tracked_frames
 from inhand_lab.workers import in_processes
 
 FIGURE_SUFFIXES = {"spread": ".png", "rotation": ".png", "translation": ".png", "frames": ".jpg"}
@@ -40,7 +40,7 @@ class _Drawing:
     fold: Fold
 
 
-def prepare_folder(folder: Path) -> None:
+def prepare_report_folder(folder: Path) -> None:
     """Make the folder, before hours of work; raises InhandError."""
     with _reporting(folder):
         folder.mkdir(parents=True, exist_ok=True)
@@ -114,7 +114,9 @@ def _draw_frames(task: _Drawing, model: Model, file: Path) -> bool:
     frames = load_frames(path, entry.object)
     joints, (track,) = track_together([tracker], path, frames, candidate.needs())
     title = f"{entry.interaction}, participant {entry.participant}, {method}"
-    return draw_tracked_frames(Seen(path, frames, joints, track), model.shape, title, file)
+    return draw_tracked_frames(
+        TrackedRecording(path, frames, joints, track), model.shape, title, file
+    )
 
 
 def _slug(interaction: str) -> str:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from inhand_lab.evaluation.losses import lost_bodies, lost_frames, recoveries, recoveries_after
+from inhand_lab.evaluation.lost_tracks import lost_bodies, lost_frames, recoveries, recoveries_after
 from waving import HAND, STANDING
 
 SECOND = 10**9

@@ -26,7 +26,7 @@ from inhand_tracker.sight.sight import Sight, SightView
 from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.datasets.tracks import Track
 from inhand_lab.evaluation.pose_errors import ErrorGauge
-from inhand_lab.importers.completed_shapes import box_around, cup_around
+from inhand_lab.importers.completed_shapes import complete_box, complete_cup
 from inhand_lab.importers.images import read_image
 from inhand_lab.importers.ycb_shapes import model_shape, seen_points
 from inhand_lab.importers.ycb_video import COLOUR_SUFFIX, DEPTH_SUFFIX, Clip, read_clips
@@ -90,8 +90,8 @@ def whole_shape(name: str, clip: Clip) -> tuple[ObjectShape, str]:
             "-meta.mat and -label.png"
         )
     if name.endswith("_mug"):
-        return cup_around(name, points), "cup"
-    return box_around(name, points), "box"
+        return complete_cup(name, points), "cup"
+    return complete_box(name, points), "box"
 
 
 def _check(clip: Clip, name: str, starts: int, scattered: int, seed: int) -> ObjectCheck:

@@ -8,7 +8,7 @@ from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.evaluation.folds import leave_one_out
 from inhand_lab.evaluation.protocol import Protocol, Terms, evaluate
 from inhand_lab.evaluation.summary import summarise, terms_name, with_terms, worth
-from inhand_lab.report.folder import prepare_folder, write_report
+from inhand_lab.report.report_folder import prepare_report_folder, write_report
 from waving import box, entry_of, messages, write_dataset
 
 EDGES: Terms = ("edges",)
@@ -32,7 +32,7 @@ def test_the_report_holds_tables_sequences_and_the_papers_figures(tmp_path: Path
         "seconds": 1.0,
     }
     folder = tmp_path / "report"
-    prepare_folder(folder)
+    prepare_report_folder(folder)
     write_report(folder, plan, trials, result, 1)
     pictures = [f"{name}_wave.png" for name in ("spread", "rotation", "translation")]
     pictures.append("frames_wave.jpg")
@@ -67,7 +67,7 @@ def test_a_recording_without_camera_and_with_an_odd_name_is_reported_without_fra
         "frames": 30,
         "seconds": 1.0,
     }
-    prepare_folder(tmp_path / "report")
+    prepare_report_folder(tmp_path / "report")
     write_report(tmp_path / "report", plan, trials, result, 1)
     assert sorted(file.name for file in (tmp_path / "report").glob("*_*.*g")) == [
         "rotation_wave_it.png",
