@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import load_frames
 from inhand_lab.datasets.observations import observe
+from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_tracker.methods.registry import new_tracker
 from inhand_tracker.model.model_file import load_model
 
