@@ -7,16 +7,8 @@ import pytest
 from inhand_tracker.model.archive import ArchiveKind, Arrays, read_archive, write_archive
 from inhand_tracker.model.model import ModelError
 
-KIND = ArchiveKind(
-    entry="toy",
-    format="inhand-toy",
-    version=2,
-    noun="Inhand toy",
-    version_noun="a toy of version",
-    read_noun="version",
-    make="carve one",
-    make_again="carve it again",
-)
+NOUNS = ("a toy of version", "version")
+KIND = ArchiveKind("toy", "inhand-toy", 2, "Inhand toy", NOUNS, "carve one", "carve it again")
 ARRAYS: Arrays = {"wheels": np.arange(4), "edges": np.eye(2, dtype=np.float32)}
 
 

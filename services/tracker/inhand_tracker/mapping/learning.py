@@ -109,11 +109,7 @@ def learn(
         body_poses=poses.body_poses,
         translations=poses.translations,
         rotations=poses.rotations,
-        translation_variation=measures.translation_variation,
-        rotation_variation=measures.rotation_variation,
-        stable_translation_part=measures.stable_translation_part,
-        stable_rotation_part=measures.stable_rotation_part,
-        proximate_part=measures.proximate_part,
+        **vars(measures),
     )
 
 

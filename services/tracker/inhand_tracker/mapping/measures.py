@@ -1,7 +1,7 @@
 """Variation, stability and proximity over the clusters of a sequence (Darby et al. 2014, TR2, TR3).
 
-All clusters of a stretch are summed up at once: a matrix of who belongs to whom, times what is
-summed. Only the rotations' variation needs every frame of every cluster by itself.
+All clusters of a stretch are summed up at once: a matrix of which frames belong to which cluster,
+times what is summed. Only the rotations' variation needs every frame of every cluster by itself.
 """
 
 from collections.abc import Iterator

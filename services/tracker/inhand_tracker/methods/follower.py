@@ -73,7 +73,7 @@ class FollowingTracker(ABC):
         self._follower = self._start(alone=False)
 
     def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
-        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
+        """Take a frame: the person's joints (20, 3) in the camera frame, or None, and an image.
 
         Missing joints are NaN. While the body is not seen the last pose stands for a second, as
         predicted; then the object is lost.
@@ -81,20 +81,20 @@ class FollowingTracker(ABC):
         return self._follower.step(joints, time_ns, image)
 
     def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
-        """One frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
+        """Take a frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
         return self._follower.step_body(body, time_ns, image)
 
     @property
     def support(self) -> Support | None:
-        """What the last image says for the object; None where it says nothing."""
+        """Support of the last image for the object; None where it shows nothing of it."""
         return self._follower.support
 
     def remember(self, body: Body, time_ns: int) -> None:
-        """A frame in which the object is not looked for; what the body did before counts later."""
+        """Take a frame in which the object is not looked for; what the body did counts later."""
         self._follower.remember(body, time_ns)
 
     def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
-        """The object's pose in a frame by itself; what is tracked is neither used nor changed."""
+        """Estimate the pose in a frame by itself; what is tracked is neither used nor changed."""
         return self._start(alone=True).step(joints, 1, image)
 
     def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:

@@ -1,4 +1,4 @@
-"""What every method's tracker can do."""
+"""The protocol of trackers: what every method's tracker can do."""
 
 from typing import Protocol
 
@@ -15,7 +15,7 @@ class ObjectTracker(Protocol):
 
     @property
     def support(self) -> Support | None:
-        """What the last image says for the object; None where it says nothing."""
+        """Support of the last image for the object; None where it shows nothing of it."""
 
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""
@@ -24,16 +24,16 @@ class ObjectTracker(Protocol):
         """A reader of bodies for trackers of this model and handedness."""
 
     def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
-        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image."""
+        """Take a frame: the person's joints (20, 3) in the camera frame, or None, and an image."""
 
     def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
-        """One frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
+        """Take a frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
 
     def remember(self, body: Body, time_ns: int) -> None:
-        """A frame in which the object is not looked for; what the body did before counts later."""
+        """Take a frame in which the object is not looked for; what the body did counts later."""
 
     def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
-        """The object's pose in a frame by itself; what is tracked is neither used nor changed."""
+        """Estimate the pose in a frame by itself; what is tracked is neither used nor changed."""
 
     def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:
         """Pixels (B, 2) of the boundary of the object at an estimate; None for a lost one."""

@@ -1,4 +1,7 @@
-"""Every method by name. To add one: give it a package, and a record in ``METHODS``."""
+"""Every method by name.
+
+To add one: give it a package, its name in ``MethodName``, and a record in ``METHODS``.
+"""
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace

@@ -33,10 +33,9 @@ class ArchiveKind:
     version: int
     noun: str
     """Name of the thing in a file, as in "PATH is no NOUN"."""
-    version_noun: str
-    """Name of a version that this release cannot read, as in "PATH is VERSION_NOUN 7"."""
-    read_noun: str
-    """Name of the version that this release reads, as in "reads READ_NOUN 7"."""
+    version_nouns: tuple[str, str]
+    """Names of a version that this release cannot read, and of that which it reads, as in "PATH is
+    NOUN 7, and this release reads NOUN 6"."""
     make: str
     """What to do without a file of this kind."""
     make_again: str
@@ -96,9 +95,10 @@ def _check(kind: ArchiveKind, description: Any, path: Path) -> None:
     if not isinstance(description, dict) or description.get("format") != kind.format:
         raise ModelError(f"{path} is no {kind.noun}: {kind.make}")
     if description["version"] != kind.version:
+        other, own = kind.version_nouns
         raise ModelError(
-            f"{path} is {kind.version_noun} {description['version']}, and this release reads "
-            f"{kind.read_noun} {kind.version}: update Inhand, or train again"
+            f"{path} is {other} {description['version']}, and this release reads "
+            f"{own} {kind.version}: update Inhand, or train again"
         )
 
 

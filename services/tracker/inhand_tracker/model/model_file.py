@@ -16,12 +16,11 @@ from inhand_tracker.sight.appearance import Appearance
 Part = TypeVar("Part", Contours, Appearance)
 
 MODEL_FILE = ArchiveKind(
-    entry="model",
-    format="inhand-model",
+    "model",
+    "inhand-model",
     version=1,
     noun="Inhand model",
-    version_noun="a model of version",
-    read_noun="version",
+    version_nouns=("a model of version", "version"),
     make="make one with `inhand train`",
     make_again="make it anew with `inhand train`",
 )

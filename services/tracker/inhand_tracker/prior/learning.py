@@ -12,15 +12,7 @@ from inhand_tracker.body.window import VIEWS, describe, earlier_frames, places, 
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
 from inhand_tracker.mapping.learning import LabelledSequence
-from inhand_tracker.prior.combination import (
-    combination_weights,
-    covariance_at,
-    fuse,
-    locality,
-    products_at,
-    repeated,
-    rotation_error,
-)
+from inhand_tracker.prior import combination
 from inhand_tracker.prior.kernel_ridge import KernelRidge, fit
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR_LEARNING, PriorLearningParameters
 from inhand_tracker.prior.prior import TARGETS, Prior
@@ -50,9 +42,9 @@ def learn_prior(
     products = _products(residuals, landmarks, spread)
     kernel = regressions[0].kernel(landmarks.descriptions[0])
     kernel[landmarks.groups[:, None] == landmarks.groups] = 0.0
-    local, nearness = locality(kernel)
+    local, nearness = combination.locality(kernel)
     errors = _errors(landmarks, residuals, local, products, spread)
-    covariances = covariance_at(local, nearness, errors)
+    covariances = combination.covariance_at(local, nearness, errors)
     return Prior(
         centre,
         spread,
@@ -181,7 +173,7 @@ def _regressions(
 def _products(residuals: Array, landmarks: _Samples, spread: Array) -> tuple[Singles, Singles]:
     """Inner products (L, E, E) of errors (L, E, 12): of translations in metres, and of rotations by
     how far they take the marked vertices."""
-    axes = repeated(landmarks.anchors, VIEWS).axes
+    axes = combination.repeated(landmarks.anchors, VIEWS).axes
     moved = np.einsum("leij,lej->lei", axes, residuals[..., :3]) * landmarks.heights[:, None, None]
     root = np.linalg.cholesky(spread + 1e-9 * np.eye(3))
     turned = axes @ residuals[..., 3:].reshape(*residuals.shape[:-1], 3, 3) @ root
@@ -200,14 +192,19 @@ def _errors(
 ) -> Array:
     """Held-out errors (L, 6) of the fused estimate, in the trunk's axes and body heights."""
     targets = landmarks.targets.reshape(len(local), -1, TARGETS)
-    translation_products, rotation_products = (products_at(local, one) for one in products)
-    weights = combination_weights(translation_products), combination_weights(rotation_products)
-    anchors = repeated(landmarks.anchors, VIEWS)
+    translation_products, rotation_products = (
+        combination.products_at(local, one) for one in products
+    )
+    weights = (
+        combination.combination_weights(translation_products),
+        combination.combination_weights(rotation_products),
+    )
+    anchors = combination.repeated(landmarks.anchors, VIEWS)
     predicted = np.tile(targets, (1, VIEWS, 1)) - residuals
-    centres, turns = fuse(predicted, anchors, landmarks.heights, weights, spread)
+    centres, turns = combination.fuse(predicted, anchors, landmarks.heights, weights, spread)
     axes = landmarks.anchors.axes[:, 0]
     moved = (centres - landmarks.centres) / landmarks.heights[:, None]
-    turned = rotation_error(turns, landmarks.rotations)
+    turned = combination.rotation_error(turns, landmarks.rotations)
     return np.concatenate(
         [np.einsum("lji,lj->li", axes, moved), np.einsum("lji,lj->li", axes, turned)], axis=1
     )

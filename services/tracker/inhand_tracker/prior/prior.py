@@ -115,7 +115,7 @@ def predict(
 
 @dataclass(frozen=True)
 class _Predictions:
-    """What E predictions say for one body.
+    """All predictions for one body, E of them.
 
     ``predicted`` (E, 12) in ``anchors`` (1, E), and the expected inner products (1, E, E) of the
     errors of translations and rotations.
@@ -140,8 +140,8 @@ class _Predictions:
         """The same for a new body, the more different the newer it is, ``novelty`` from 0 to 1.
 
         What is nearest to an object takes it along (Darby et al. 2014, section 5.2): each anchor
-        says what it has at the nearest landmarks, (E, 12), and errs by so many times more as the
-        object is farther from it.
+        predicts what it has at the nearest landmarks, (E, 12), and its error grows with the square
+        of the object's distance from it.
         """
         square = np.square(nearest[:, :3]).sum(axis=1)
         shares = square / max(float(square.min()), 1e-6)

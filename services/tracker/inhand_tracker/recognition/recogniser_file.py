@@ -10,15 +10,10 @@ from inhand_tracker.recognition.pairwise_svm import PairwiseSvm
 from inhand_tracker.recognition.presence import Presence
 from inhand_tracker.recognition.recogniser import Recogniser
 
+MEND = "make one with `inhand train --recogniser`"
+NOUNS = ("inhand-recogniser version", "inhand-recogniser version")
 RECOGNISER_FILE = ArchiveKind(
-    entry="recogniser",
-    format="inhand-recogniser",
-    version=4,
-    noun="Inhand recogniser",
-    version_noun="inhand-recogniser version",
-    read_noun="inhand-recogniser version",
-    make="make one with `inhand train --recogniser`",
-    make_again="make one with `inhand train --recogniser`",
+    "recogniser", "inhand-recogniser", 4, "Inhand recogniser", NOUNS, make=MEND, make_again=MEND
 )
 _ARRAYS = {
     "svm": tuple(field.name for field in fields(PairwiseSvm) if field.name != "gamma"),

@@ -1,4 +1,4 @@
-"""How well hypotheses agree with an image: a sum of terms that can be chosen."""
+"""The likelihood of hypotheses by an image: a sum of terms that can be chosen."""
 
 from collections.abc import Collection
 from typing import Literal, get_args
@@ -18,7 +18,7 @@ Term = Literal["edges", "depth"]
 
 TERMS: tuple[Term, ...] = get_args(Term)
 DEFAULT_TERMS: tuple[Term, ...] = ("edges",)
-"""What Darby et al. 2014 publish figures for."""
+"""The terms that Darby et al. 2014 publish figures for."""
 
 
 class Likelihood:

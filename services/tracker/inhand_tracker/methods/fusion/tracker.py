@@ -124,7 +124,7 @@ class FusionFollower(Follower):
         return seen
 
     def _sharpness(self, expected: PoseGaussian, image: Image) -> float:
-        """How well an object is seen that moved to where it is expected, from 0 to 1."""
+        """Sharpness, from 0 to 1, of an object that moved to where it is expected."""
         if self._before is None:
             return 1.0
         earlier, now = (
