@@ -165,7 +165,8 @@ def ablation_table(worths: Sequence[Worth]) -> Table:
     whole = worths[0].vertex_error_cm
     for worth in worths:
         error, variant = worth.vertex_error_cm, worth.variant
-        instead = f" (instead: {variant.instead})" if variant.instead else ""
+        _, separator, value = variant.instead.partition("=")
+        instead = f" (instead {value.strip()})" if separator else ""
         table.add_row(
             variant.part, variant.without + instead, f"{error:.2f}", f"{error / whole:.2f}"
         )
