@@ -13,9 +13,10 @@ from inhand_runtime.inbox import Inbox, Received
 from inhand_runtime.session import Session, open_session, subscribe, watch_instances
 from inhand_runtime.settings import load_rig_file
 from inhand_runtime.signals import set_on_signals
-from inhand_schemas.errors import KeyFormatError
+from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import VERSION, Site
-from inhand_schemas.topics import BULK, TOPICS, AnyTopic, topic_of
+from inhand_schemas.messages import Health
+from inhand_schemas.topics import BULK, HEALTH, TOPICS, AnyTopic, topic_of
 from rich.console import Console
 
 QUEUE_BYTES = 64 << 20
@@ -54,6 +55,16 @@ class Look:
     def follow_tokens(self, on_change: Callable[[str, str, bool], None]) -> None:
         """Call ``on_change(service, instance, lives)`` now and at each change, from any thread."""
         self._subscribers.append(watch_instances(self._session, self.site, on_change))
+
+    def follow_health(self, on_health: Callable[[Health], None]) -> None:
+        """Call ``on_health`` for each report from Zenoh's threads; it must return quickly."""
+
+        def receive(sample: Received) -> None:
+            with contextlib.suppress(MessageError, KeyFormatError):  # `inhand status` names them
+                on_health(HEALTH.decode(sample.payload, sample.encoding))
+
+        pattern = HEALTH.pattern(self.site)
+        self._subscribers.append(subscribe(self._session, pattern, HEALTH.delivery, receive))
 
     def samples(self, seconds: float | None) -> Iterator[Received | None]:
         """What arrives within ``seconds`` (None = without end); None when nothing just did.

@@ -15,6 +15,7 @@ from inhand_schemas.messages import Message
 from rich.live import Live
 from rich.table import Table
 
+from inhand.instances import short_key
 from inhand.looking import (
     add_looking_arguments,
     nothing_heard,
@@ -97,12 +98,12 @@ class Meter:
 
 
 def _table(meter: Meter) -> Table:
-    table = Table("key", "messages", "Hz", "longest pause ms", "delay ms", "bytes", "lost")
+    table = Table("topic", "messages", "Hz", "pause ms", "delay ms", "bytes", "lost")
     for column in table.columns[1:]:
         column.justify = "right"
     for key, rate in meter.rates().items():
         table.add_row(
-            key,
+            short_key(key),
             str(rate["messages"]),
             f"{rate['rate_hz']:.1f}",
             f"{rate['longest_pause_ms']:.1f}",

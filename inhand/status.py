@@ -1,18 +1,23 @@
-"""``inhand status``: list the live instances of a site and how they do."""
+"""``inhand status``: list the live instances of a site, and all that is wrong there.
+
+Exit code 1 when anything is wrong: somebody whom the settings name is missing, hangs, has trouble,
+or two publish the same.
+"""
 
 import argparse
-import time
 from pathlib import Path
 from typing import Any
 
 import msgspec
-from inhand_runtime.daemon import HEALTH_PERIOD_S
+from inhand_runtime.exit_codes import DONE, FAILED
+from inhand_runtime.settings import SERVICES, load_rig_file
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.messages import Health
 from inhand_schemas.topics import HEALTH
 from rich.console import Console
 from rich.table import Table
 
+from inhand.instances import Heard, Instance, Roll, short_key
 from inhand.looking import (
     Look,
     add_looking_arguments,
@@ -23,9 +28,6 @@ from inhand.looking import (
 from inhand.results import write_json
 
 SECONDS = 5.0
-SETTLED_S = 1.5 * HEALTH_PERIOD_S
-
-Instance = tuple[str, str]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,85 +37,99 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print who lives and what they last said; raises InhandError when nobody answers."""
+    """Print who lives, what they last said and what is wrong; InhandError when nobody answers."""
+    expected = expected_instances(arguments.config)
     roll = Roll()
     with open_look(arguments.config) as look:
         look.follow_tokens(roll.change)
         look.follow(HEALTH)
-        _listen(look, roll, arguments.seconds)
-    instances = roll.living()
-    if not instances:
+        _listen(look, roll, expected, arguments.seconds)
+    living, problems = roll.living(), roll.problems(expected)
+    if not living and not expected:
         raise nothing_heard(look.site, arguments.seconds)
-    output().print(_table(instances))
+    if living:
+        output().print(_table(living))
+    for line in _left_unused(living):
+        print(line)
+    for line in problems:
+        print(f"WRONG: {line}")
     if arguments.json is not None:
-        rows = [_row(instance, health) for instance, health in instances.items()]
-        write_json(arguments.json, {"instances": rows})
-    return 0
+        rows = [_row(instance, heard) for instance, heard in living.items()]
+        write_json(arguments.json, {"instances": rows, "problems": problems})
+    return FAILED if problems else DONE
 
 
-class Roll:
-    """Who lives, and each one's last health."""
-
-    def __init__(self) -> None:
-        self._living: set[Instance] = set()
-        self._healths: dict[Instance, Health] = {}
-        self._changed = time.monotonic()
-
-    def change(self, service: str, instance: str, lives: bool) -> None:
-        """Take note of a liveliness token, from any thread."""
-        self._changed = time.monotonic()
-        (self._living.add if lives else self._living.discard)((service, instance))
-
-    def hear(self, health: Health) -> None:
-        """Take note of a health message."""
-        self._healths[(health.service, health.instance)] = health
-
-    def living(self) -> dict[Instance, Health | None]:
-        """The live instances, with None for one that said nothing yet."""
-        return {instance: self._healths.get(instance) for instance in sorted(self._living)}
-
-    def settled(self) -> bool:
-        """Whether everybody who lives spoke, and nobody came or went of late."""
-        quiet = time.monotonic() - self._changed > SETTLED_S
-        return quiet and bool(self._living) and None not in self.living().values()
+def expected_instances(config: Path | None) -> tuple[Instance, ...]:
+    """Whom the settings file names; raises SettingsError."""
+    rig_file = load_rig_file(config)
+    return tuple((service, name) for service in SERVICES for name in getattr(rig_file, service))
 
 
-def _listen(look: Look, roll: Roll, seconds: float | None) -> None:
+def _listen(look: Look, roll: Roll, expected: tuple[Instance, ...], seconds: float | None) -> None:
     for sample in look.samples(seconds):
         if sample is not None:
             try:
                 roll.hear(HEALTH.decode(sample.payload, sample.encoding))
             except (MessageError, KeyFormatError) as error:
                 Console(stderr=True).print(f"{sample.key}: {error}", soft_wrap=True)
-        if roll.settled():
+        if roll.settled(expected):
             return
 
 
-def _row(instance: Instance, health: Health | None) -> dict[str, Any]:
+def _row(instance: Instance, heard: Heard | None) -> dict[str, Any]:
     service, name = instance
-    told = None if health is None else msgspec.to_builtins(health)
-    return {"service": service, "instance": name, "health": told}
+    health = None if heard is None else msgspec.to_builtins(heard.health)
+    return {"service": service, "instance": name, "health": health}
 
 
-def _table(instances: dict[Instance, Health | None]) -> Table:
-    table = Table(
-        "service", "instance", "state", "up s", "MB", "latency ms", "in/s", "dropped", "last error"
-    )
-    for (service, name), health in instances.items():
-        if health is None:
-            table.add_row(service, name, "silent")
+def _table(living: dict[Instance, Heard | None]) -> Table:
+    table = Table("instance", "state", "up s", "MB", "latency ms", "msg/s", "unused")
+    table.columns[0].no_wrap = True
+    for column in table.columns[2:]:
+        column.justify = "right"
+    for instance, heard in living.items():
+        if heard is None:
+            table.add_row(" ".join(instance), "silent")
             continue
+        health = heard.health
         latency = health.latency_ms
-        topics = health.topics.values()
         table.add_row(
-            service,
-            name,
+            " ".join(instance),
             health.state,
             f"{health.uptime_s:.0f}",
             f"{health.resident_bytes / 1e6:.0f}",
             "" if latency is None else f"{latency.p50:.1f} / {latency.p99:.1f}",
-            f"{sum(topic.rate_hz for topic in topics):.1f}",
-            str(sum(topic.dropped + topic.malformed for topic in topics)),
-            health.last_error or "",
+            f"{sum(topic.rate_hz for topic in health.topics.values()):.1f}",
+            str(sum(_unused(health).values())),
         )
     return table
+
+
+def _unused(health: Health) -> dict[str, int]:
+    """How many messages of each key came and were not used, or never came."""
+    return {
+        key: topic.dropped + topic.malformed + topic.lost
+        for key, topic in health.topics.items()
+        if topic.dropped or topic.malformed or topic.lost
+    }
+
+
+def _left_unused(living: dict[Instance, Heard | None]) -> list[str]:
+    """One line for each key that an instance did not use every message of, and why."""
+    lines = []
+    for instance, heard in living.items():
+        if heard is None:
+            continue
+        for key in _unused(heard.health):
+            topic = heard.health.topics[key]
+            reasons = [
+                f"{count} {reason}"
+                for count, reason in (
+                    (topic.dropped, "came too late or too fast"),
+                    (topic.malformed, "could not be read"),
+                    (topic.lost, "never came"),
+                )
+                if count
+            ]
+            lines.append(f"{' '.join(instance)}, {short_key(key)}: {', '.join(reasons)}")
+    return lines

@@ -15,11 +15,15 @@ from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
 log = logging.getLogger(__name__)
 
 TICK_S = 0.05
+LONGEST_TICK_S = 1.0
 FIRST_RESTART_S, LAST_RESTART_S = 0.5, 30.0
 HEALTHY_AFTER_S = 10.0
 UP_WITHIN_S = 20.0
-STOP_WITHIN_S = 4.0
-"""What a daemon promises (2 s), and 2 s more for a busy machine."""
+HANGS_AFTER_S = 10.0
+"""Seconds without a report of a main loop that came round, after which a child is killed and
+started again."""
+STOP_WITHIN_S = 10.0
+"""What a daemon promises (2 s), and time for a busy machine on which it has just begun."""
 
 _PR_SET_PDEATHSIG = 1
 
@@ -34,6 +38,9 @@ class Child:
         self._process: subprocess.Popen[bytes] | None = None
         self._start_at = 0.0
         self._delay = FIRST_RESTART_S
+        self._reports: int | None = None
+        self._silent_s = 0.0
+        self._tended_at = time.monotonic()
 
     def tend(self) -> int | None:
         """Start the process when its time has come; returns the exit code when it just ended."""
@@ -63,6 +70,27 @@ class Child:
             self._delay = min(2 * self._delay, LAST_RESTART_S)
         return code
 
+    def kill_if_it_hangs(self, reports: int | None) -> None:
+        """End the process when it has reported before and does so no more, for long.
+
+        Only time in which this process itself ran counts: after a suspended night, or on a machine
+        that was too busy to let anybody run, all have time to speak again.
+        """
+        now = time.monotonic()
+        awake, self._tended_at = min(now - self._tended_at, LONGEST_TICK_S), now
+        if self._process is None or not reports or reports != self._reports:
+            self._reports, self._silent_s = reports, 0.0
+            return
+        self._silent_s += awake
+        if self._silent_s > HANGS_AFTER_S:
+            log.error(
+                "%s has not come round for %.0f s: it hangs, and is killed",
+                self.name,
+                self._silent_s,
+            )
+            self._reports, self._silent_s = None, 0.0
+            self._process.kill()
+
     def send(self, number: int) -> None:
         """Send a signal, when it runs."""
         if self._process is not None:
@@ -83,13 +111,17 @@ class Supervisor:
     """Runs children until all are done, one has wrong settings, or SIGTERM or SIGINT comes.
 
     They are stopped stage by stage in the given order, so that what is under way reaches the
-    last, and started in reverse: a stage begins when the one after it ``is_up`` (asked by a
-    child's name), or has had time enough, so that nothing early is missed.
+    last, and started in reverse: a stage begins when the one after it is up, or has had time
+    enough, so that nothing early is missed. ``reports`` says how many reports of its health came
+    from a child of that name so far, None while it is not up; a child from which no more come is
+    killed, and so started again.
     """
 
-    def __init__(self, stages: Sequence[Sequence[Child]], is_up: Callable[[str], bool]) -> None:
+    def __init__(
+        self, stages: Sequence[Sequence[Child]], reports: Callable[[str], int | None]
+    ) -> None:
         self._stages = stages
-        self._is_up = is_up
+        self._reports = reports
         self._signals = 0
 
     def run(self) -> int:
@@ -117,7 +149,7 @@ class Supervisor:
         deadline = time.monotonic()
         while not self._signals:
             if waiting and (
-                all(child.done or self._is_up(child.name) for child in started)
+                all(child.done or self._reports(child.name) is not None for child in started)
                 or time.monotonic() > deadline
             ):
                 started += waiting.pop()
@@ -126,6 +158,7 @@ class Supervisor:
                 if child.tend() == WRONG_USAGE:
                     log.error("%s has wrong settings (see above): stopping everything", child.name)
                     return WRONG_USAGE
+                child.kill_if_it_hangs(self._reports(child.name))
             if not waiting and all(child.done for child in started):
                 return DONE
             time.sleep(TICK_S)

@@ -7,9 +7,11 @@ from pathlib import Path
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.logs import configure_logs
 from inhand_runtime.settings import RigFile, load_rig_file
+from inhand_schemas.messages import Health
 
+from inhand.instances import Roll
 from inhand.looking import open_look
-from inhand.supervisor import Child, Supervisor
+from inhand.supervisor import HANGS_AFTER_S, Child, Supervisor
 
 STOP_ORDER = ("capture", "tracker", "recorder")
 
@@ -29,14 +31,24 @@ def run(arguments: argparse.Namespace) -> int:
             "[capture.front], or give --config"
         )
     configure_logs(rig_file.log, "up")
-    alive: set[str] = set()
+    roll = Roll()
 
-    def note(service: str, instance: str, lives: bool) -> None:
-        (alive.add if lives else alive.discard)(f"{service} {instance}")
+    def reports(name: str) -> int | None:
+        living = roll.living()
+        instance = tuple(name.split(" "))
+        if instance not in living:
+            return None
+        heard = living[instance]
+        return 0 if heard is None else heard.reports
+
+    def hear(health: Health) -> None:
+        if health.loop_age_s < HANGS_AFTER_S:
+            roll.hear(health)
 
     with open_look(arguments.config) as look:
-        look.follow_tokens(note)
-        return Supervisor(stages, alive.__contains__).run()
+        look.follow_tokens(roll.change)
+        look.follow_health(hear)
+        return Supervisor(stages, reports).run()
 
 
 def _children(rig_file: RigFile, config: Path | None, service: str) -> list[Child]:

@@ -213,13 +213,18 @@ class Event(Message, frozen=True, kw_only=True):
 
 
 class TopicHealth(Struct, frozen=True, kw_only=True):
-    """The traffic of one key at one instance since it started."""
+    """The traffic of one key at one instance since it started.
+
+    ``dropped`` reached the instance and was not used, ``lost`` is what the numbers of those that
+    came show as missing.
+    """
 
     published: Count = 0
     received: Count = 0
     dropped: Count = 0
     malformed: Count = 0
     rate_hz: NonNegative = 0.0
+    lost: Count = 0
 
     def __post_init__(self) -> None:
         _require_finite("rate", (self.rate_hz,))
@@ -236,7 +241,11 @@ class Latency(Struct, frozen=True, kw_only=True):
 
 
 class Health(Message, frozen=True, kw_only=True):
-    """How an instance does, once a second."""
+    """How an instance does, once a second.
+
+    ``troubles`` is what is wrong now, ``last_error`` what went wrong last; ``loop_age_s`` is how
+    long ago the instance's main loop last came round, in seconds.
+    """
 
     service: Name
     instance: Name
@@ -246,6 +255,8 @@ class Health(Message, frozen=True, kw_only=True):
     topics: Annotated[dict[str, TopicHealth], Meta(max_length=4096)] = {}
     latency_ms: Latency | None = None
     last_error: Text | None = None
+    troubles: Annotated[tuple[Text, ...], Meta(max_length=64)] = ()
+    loop_age_s: NonNegative = 0.0
 
     def __post_init__(self) -> None:
-        _require_finite("uptime", (self.uptime_s,))
+        _require_finite("time", (self.uptime_s, self.loop_age_s))

@@ -21,22 +21,22 @@ class Delivery:
     """Quality of service of a stream, in words of our own.
 
     ``newest`` readers keep the newest messages only, ``every`` readers queue them; a ``kept``
-    stream hands its last message to late joiners. Where a link is full, ``drop`` drops a message
-    and ``wait_for_first`` lets a fragmented one that is under way finish; in both a slow reader
-    never slows another. Small messages ``drop``: a busy machine loses some of a burst of them that
-    would ``wait_for_first``.
+    stream hands its last message to late joiners, and repeats it. Where a link's queue is full,
+    ``drop`` drops a message and ``wait_for_first`` lets a fragmented one that is under way finish;
+    in both a slow reader never slows another, nor the publisher. Small messages ``drop``: a busy
+    machine loses some of a burst of them that would ``wait_for_first``.
     """
 
     readers: Literal["newest", "every"]
-    congestion: Literal["drop", "wait_for_first", "wait"]
+    congestion: Literal["drop", "wait_for_first"]
     priority: Literal["urgent", "normal", "bulk"]
     kept: bool = False
 
 
 BULK = Delivery("newest", "wait_for_first", "bulk")
 URGENT = Delivery("every", "drop", "urgent")
-RELIABLE = Delivery("every", "wait", "normal")
-KEPT = Delivery("every", "wait", "normal", kept=True)
+RELIABLE = Delivery("every", "drop", "normal")
+KEPT = Delivery("every", "drop", "normal", kept=True)
 
 
 class Topic(Generic[T]):

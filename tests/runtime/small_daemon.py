@@ -21,7 +21,7 @@ def run(settings: Settings[SmallSettings]) -> None:
         daemon.subscribe(SKELETONS)
         daemon.health.state = "running"
         while settings.service.stuck or not daemon.stop.is_set():
-            sample = daemon.inbox.get(0.1)
+            sample = daemon.receive(0.1)
             if settings.service.stuck and daemon.stop.is_set():
                 print("does not care", flush=True)
                 time.sleep(60)

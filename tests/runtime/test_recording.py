@@ -77,6 +77,17 @@ def test_messages_come_in_the_order_of_reception(tmp_path: Path) -> None:
     assert received == [20, 40, 50]
 
 
+def test_what_was_received_after_a_clock_was_set_back_comes_after(tmp_path: Path) -> None:
+    hour_ns = 3600 * 10**9
+    times = (hour_ns + 50, hour_ns + 20, 30, 10, hour_ns + 60)
+    with RecordingWriter(tmp_path / "set.mcap") as writer:
+        for sequence, received_ns in enumerate(times):
+            write_pose(writer, sequence, received_ns)
+            writer.sync()
+    received = [message.received_ns for message in read_recording(tmp_path / "set.mcap")]
+    assert received == [hour_ns + 20, hour_ns + 50, 10, 30, hour_ns + 60]
+
+
 def test_streams_are_chosen_by_name(tmp_path: Path) -> None:
     with RecordingWriter(tmp_path / "walk.mcap") as writer:
         write_pose(writer, 0)

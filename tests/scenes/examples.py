@@ -93,11 +93,13 @@ EXAMPLES: tuple[Message, ...] = (
         resident_bytes=200_000_000,
         topics={
             "inhand/@v1/rig/rgbd/kitchen": TopicHealth(
-                published=1, received=360, dropped=2, malformed=3, rate_hz=30.0
+                published=1, received=360, dropped=2, malformed=3, rate_hz=30.0, lost=4
             )
         },
         latency_ms=Latency(p50=12.5, p99=40.0),
         last_error="none yet",
+        troubles=("no camera info of kitchen yet",),
+        loop_age_s=0.25,
     ),
 )
 

@@ -158,11 +158,14 @@ healths = st.builds(
             dropped=counts,
             malformed=counts,
             rate_hz=non_negative,
+            lost=counts,
         ),
         max_size=3,
     ),
     latency_ms=st.none() | st.builds(Latency, p50=finite, p99=finite),
     last_error=st.none() | texts,
+    troubles=st.lists(texts, max_size=3).map(tuple),
+    loop_age_s=non_negative,
 )
 
 MESSAGES = {

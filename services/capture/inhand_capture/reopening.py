@@ -2,9 +2,10 @@
 
 import contextlib
 import threading
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Generator, Iterator
 
-from inhand_runtime.source import Captured, Source, SourceError, SourceLostError
+from inhand_runtime.source import QUIET_S, Captured, Source, SourceError, SourceLostError
 from inhand_schemas.messages import CameraInfo
 
 FIRST_PAUSE_S = 0.5
@@ -28,12 +29,12 @@ def captures(
     opened: Callable[[CameraInfo], None],
     lost: Callable[[SourceError], None],
     pauses: Callable[[], Iterator[float]] = growing_pauses,
-) -> Iterator[Captured]:
+) -> Iterator[Captured | None]:
     """A source's moments until it ends or ``stop`` is set, across losses of its device.
 
-    ``opened`` is told each time before the first moment, ``lost`` each loss and each attempt
-    that failed. Raises SourceError when the source cannot be opened the first time, or cannot
-    go on.
+    None comes while nothing happens, also while a lost source is waited for. ``opened`` is called
+    each time before the first moment, ``lost`` at each loss and each attempt that failed. Raises
+    SourceError when the source cannot be opened the first time, or cannot go on.
     """
     source: Source | None = open_source()
     remaining = pauses()
@@ -44,14 +45,15 @@ def captures(
                 for captured in source.captures(wanted):
                     if stop.is_set():
                         return
-                    remaining = pauses()
+                    if captured is not None:
+                        remaining = pauses()
                     yield captured
             return
         except SourceLostError as error:
             if stop.is_set():
                 return
             lost(error)
-        source = _open_again(open_source, stop, remaining, lost)
+        source = yield from _open_again(open_source, stop, remaining, lost)
 
 
 def _open_again(
@@ -59,10 +61,13 @@ def _open_again(
     stop: threading.Event,
     pauses: Iterator[float],
     lost: Callable[[SourceError], None],
-) -> Source | None:
+) -> Generator[None, None, Source | None]:
     for pause in pauses:
-        if stop.wait(pause):
-            break
+        end = time.monotonic() + pause
+        while (rest := end - time.monotonic()) > 0.0:
+            if stop.wait(min(rest, QUIET_S)):
+                return None
+            yield None
         try:
             return open_source()
         except SourceError as error:

@@ -1,7 +1,6 @@
 """The capture service: the only file of capture that touches a session."""
 
 import logging
-import threading
 import time
 from collections.abc import Callable
 from typing import Annotated, Any
@@ -69,26 +68,30 @@ def _publish(daemon: Daemon, chosen: CaptureSettings, open_source: Callable[[], 
 
     def opened(info: CameraInfo) -> None:
         camera.introduce(info)
-        _wait_for_readers(camera, chosen.wait_for_reader_s, daemon.stop)
+        _wait_for_readers(camera, chosen.wait_for_reader_s, daemon)
 
     def lost(error: SourceError) -> None:
-        daemon.health.state = "degraded"
-        daemon.health.error(f"source {chosen.source}: {error}")
+        daemon.health.state = "running"
+        daemon.health.trouble("source", f"source {chosen.source}: {error}")
 
     for captured in captures(
         open_source, camera.wants_pixels, daemon.stop, opened=opened, lost=lost
     ):
-        camera.publish(captured)
-        daemon.health.state = "running"
-        daemon.health.latency(captured.time_ns)
+        daemon.health.came_round()
+        if captured is not None:
+            camera.publish(captured)
+            daemon.health.state = "running"
+            daemon.health.well("source")
+            daemon.health.latency(captured.time_ns)
     if not daemon.stop.is_set():
         log.info("source %s has come to its end", chosen.source)
 
 
-def _wait_for_readers(camera: CameraPublisher, seconds: float, stop: threading.Event) -> None:
+def _wait_for_readers(camera: CameraPublisher, seconds: float, daemon: Daemon) -> None:
     """Wait until somebody listens, and then for the rest of what that reader asks for."""
     deadline = time.monotonic() + seconds
-    while time.monotonic() < deadline and not stop.wait(READER_POLL_S):
+    while time.monotonic() < deadline and not daemon.stop.wait(READER_POLL_S):
+        daemon.health.came_round()
         if camera.has_readers():
-            stop.wait(READER_SETTLES_S)
+            daemon.stop.wait(READER_SETTLES_S)
             return

@@ -133,7 +133,7 @@ class _Recorder:
         self._daemon.health.state = "running"
         next_sync = time.monotonic() + SYNC_PERIOD_S
         while not self._daemon.stop.is_set():
-            sample = self._daemon.inbox.get(IDLE_S)
+            sample = self._daemon.receive(IDLE_S)
             if sample is not None:
                 self._write(sample)
             if time.monotonic() >= next_sync:

@@ -8,13 +8,14 @@ import contextlib
 import logging
 import threading
 from collections.abc import Iterator
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import Health, Message
 from inhand_schemas.topics import HEALTH, AnyTopic, Topic
 
+from inhand_runtime.errors import InhandError
 from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import UNBOUNDED, Inbox, Received
 from inhand_runtime.logs import configure_logs
@@ -23,7 +24,9 @@ from inhand_runtime.session import (
     Session,
     Subscription,
     announced,
+    hear_namesakes,
     is_alone,
+    lives,
     open_session,
     subscribe,
 )
@@ -36,6 +39,7 @@ T = TypeVar("T", bound=Message)
 
 HEALTH_PERIOD_S = 1.0
 REPORTS_UNTIL_LONELY = 3
+NAMESAKE_LASTS_S = 3.0
 NEWEST_SAMPLES = 4
 EVERY_SAMPLES = 256
 
@@ -53,10 +57,20 @@ class Daemon:
         self.stop = stop
         self._session = session
         self._subscriptions: list[Subscription] = []
+        self._kept: list[Publisher[Any]] = []
 
     def publisher(self, topic: Topic[T], name: str) -> Publisher[T]:
-        """A counted publisher of this site."""
-        return Publisher(self._session, topic, topic.key(self.site, name), self.health.published)
+        """A counted publisher of this site; the last value of a kept topic is repeated."""
+        key = topic.key(self.site, name)
+        publisher = Publisher(self._session, topic, key, self.health.published)
+        if topic.delivery.kept:
+            self._kept.append(publisher)
+        return publisher
+
+    def repeat_kept(self) -> None:
+        """Send the last values of all kept topics again."""
+        for publisher in list(self._kept):
+            publisher.repeat()
 
     def subscribe(
         self,
@@ -77,9 +91,27 @@ class Daemon:
         pattern = topic.pattern(self.site) if name is None else topic.key(self.site, name)
         self._subscriptions.append(subscribe(self._session, pattern, topic.delivery, lane.put))
 
+    def hear_namesakes(self, key: str) -> Subscription:
+        """Note, as a trouble, that another process publishes on a key of this instance's own."""
+
+        def note() -> None:
+            self.health.trouble(
+                f"namesake {key}",
+                f"another process publishes on {key} as well: two instances have one name, and "
+                "readers get both; stop one",
+                lasts_s=NAMESAKE_LASTS_S,
+            )
+
+        return hear_namesakes(self._session, key, note)
+
     def is_alone(self) -> bool:
         """Whether no other process is connected now."""
         return is_alone(self._session)
+
+    def receive(self, timeout_s: float) -> Received | None:
+        """The next sample of the inbox, or None; a main loop that calls it is seen to live."""
+        self.health.came_round()
+        return self.inbox.get(timeout_s)
 
     def decode(self, topic: Topic[T], sample: Received) -> T | None:
         """The sample's message; None when it is malformed, which is counted and logged."""
@@ -88,7 +120,7 @@ class Daemon:
         except (MessageError, KeyFormatError) as error:
             self.health.malformed(sample.key, error)
             return None
-        self.health.received(sample.key)
+        self.health.received(sample.key, message.sequence)
         return message
 
 
@@ -97,11 +129,13 @@ def running_daemon(service: str, settings: Settings[Section]) -> Iterator[Daemon
     """Open the session, announce the instance, and publish its health until the block ends.
 
     SIGTERM or SIGINT sets ``daemon.stop``; a second one ends the process at once. Raises
-    SettingsError or InhandError when the session cannot be opened.
+    SettingsError or InhandError when the session cannot be opened, and InhandError when an
+    instance of that name lives already.
     """
     configure_logs(settings.log, settings.instance)
     stop = threading.Event()
     with set_on_signals(stop), open_session(settings.zenoh) as session:
+        _refuse_namesake(session, settings.site, service, settings.instance)
         daemon = Daemon(session, settings.site, service, settings.instance, stop)
         with (
             announced(session, settings.site, service, settings.instance),
@@ -117,10 +151,22 @@ def running_daemon(service: str, settings: Settings[Section]) -> Iterator[Daemon
         log.info("%s %s stopped", service, settings.instance)
 
 
+def _refuse_namesake(session: Session, site: Site, service: str, instance: str) -> None:
+    if lives(session, site, service, instance):
+        raise InhandError(
+            f"{service} {instance} runs already in rig {site.rig!r} of realm {site.realm!r}: "
+            "stop it first, or give this one another name"
+        )
+
+
 @contextlib.contextmanager
 def _publishing_health(daemon: Daemon, settings: ZenohSettings) -> Iterator[None]:
-    """Publish the health once a second, and a last time at the end of the block."""
+    """Publish the health once a second, and a last time at the end of the block.
+
+    Whoever publishes health under the same name is a namesake, and both say so.
+    """
     publisher = daemon.publisher(HEALTH, daemon.instance)
+    handle = daemon.hear_namesakes(publisher.key)
     finished = threading.Event()
     reporter = threading.Thread(
         target=_report, args=(daemon, publisher, finished, settings), name="health"
@@ -131,6 +177,7 @@ def _publishing_health(daemon: Daemon, settings: ZenohSettings) -> Iterator[None
     finally:
         finished.set()
         reporter.join()
+        del handle
 
 
 def _report(
@@ -139,6 +186,7 @@ def _report(
     reports = 0
     while not finished.wait(HEALTH_PERIOD_S):
         publisher.put(daemon.health.report())
+        daemon.repeat_kept()
         reports += 1
         if reports == REPORTS_UNTIL_LONELY and daemon.is_alone():
             log.warning("no other process is connected yet; %s", _where_to_meet(settings))

@@ -1,9 +1,11 @@
-"""What an instance counts about itself, and tells once a second."""
+"""What an instance counts and knows about itself, and publishes once a second."""
 
 import logging
 import threading
 import time
 from collections import Counter, deque
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import psutil
@@ -11,43 +13,75 @@ from inhand_schemas.messages import Health, Latency, ServiceState, TopicHealth
 
 log = logging.getLogger(__name__)
 
-LATENCY_SAMPLES = 300
+WINDOW_S = 10.0
+"""Seconds over which latencies are told: what is older says nothing of how things go."""
+LATENCY_SAMPLES = 1000
 MOST_KEYS = 1024
 OTHER_KEYS = "(other keys)"
+MOST_TROUBLES = 64
+MALFORMED_LASTS_S = 5.0
+"""Seconds for which a malformed message is a trouble of now."""
+FARTHEST_GAP = 1 << 20
+"""Number of missing messages from which on a gap is another publisher's numbering."""
+LOOP_LATE_S = 3.0
+"""Seconds after which a main loop that did not come round is called late."""
+
+
+@dataclass(frozen=True)
+class _Trouble:
+    text: str
+    ends_at: float
 
 
 class HealthBoard:
-    """Thread-safe counters of one instance."""
+    """Thread-safe counters of one instance, its troubles, and when its main loop came round."""
 
-    def __init__(self, service: str, instance: str) -> None:
+    def __init__(
+        self, service: str, instance: str, now: Callable[[], float] = time.monotonic
+    ) -> None:
         self.state: ServiceState = "starting"
         self._service = service
         self._instance = instance
+        self._now = now
         self._lock = threading.Lock()
-        self._started = time.monotonic()
+        self._started = now()
         self._process = psutil.Process()
         self._published: Counter[str] = Counter()
         self._received: Counter[str] = Counter()
         self._dropped: Counter[str] = Counter()
         self._malformed: Counter[str] = Counter()
+        self._lost: Counter[str] = Counter()
+        self._sequences: dict[str, int] = {}
         self._keys: set[str] = set()
         self._kinds_logged: set[tuple[str, str]] = set()
-        self._latencies_ms: deque[float] = deque(maxlen=LATENCY_SAMPLES)
+        self._latencies_ms: deque[tuple[float, float]] = deque(maxlen=LATENCY_SAMPLES)
+        self._troubles: dict[str, _Trouble] = {}
         self._last_error: str | None = None
         self._last_totals: Counter[str] = Counter()
         self._last_report = self._started
+        self._came_round = self._started
         self._sequence = 0
 
     def published(self, key: str) -> None:
         """Count a message sent."""
         self._count(self._published, key)
 
-    def received(self, key: str) -> None:
-        """Count a message taken out of the inbox."""
-        self._count(self._received, key)
+    def received(self, key: str, sequence: int | None = None) -> None:
+        """Count a message taken out of the inbox, and those that its number shows as missing.
+
+        A number that goes back, or far ahead, tells of a publisher that began anew, and of no loss.
+        """
+        key = self._count(self._received, key)
+        if sequence is None or key == OTHER_KEYS:
+            return
+        with self._lock:
+            missing = sequence - self._sequences.get(key, sequence) - 1
+            self._sequences[key] = sequence
+            if 0 < missing < FARTHEST_GAP:
+                self._lost[key] += missing
 
     def dropped(self, key: str) -> None:
-        """Count a message that the inbox had no room for."""
+        """Count a message that the inbox had no room for, or that was skipped as too old."""
         self._count(self._dropped, key)
 
     def drops(self) -> dict[str, int]:
@@ -56,26 +90,59 @@ class HealthBoard:
             return dict(self._dropped)
 
     def malformed(self, key: str, error: Exception) -> None:
-        """Count a message that cannot be read; each kind is logged once."""
-        kind = (self._count(self._malformed, key), type(error).__name__)
+        """Count a message that cannot be read; each kind is logged once, and is a trouble while
+        such messages come."""
+        counted = self._count(self._malformed, key)
+        kind = (counted, type(error).__name__)
+        text = f"{key}: dropped a message: {error}"[:4096]
         with self._lock:
             first = kind not in self._kinds_logged
             self._kinds_logged.add(kind)
+            self._last_error = text
+            self._set_trouble(f"malformed {counted}", text, self._now() + MALFORMED_LASTS_S)
         if first:
-            log.warning("%s: dropped a message: %s (further ones are only counted)", key, error)
+            log.warning("%s (further ones are only counted)", text)
 
     def latency(self, captured_ns: int) -> None:
         """Note the time from capture to now; a clock that jumped says nothing."""
         latency_ms = (time.time_ns() - captured_ns) / 1e6
         if 0 <= latency_ms < 60_000:
             with self._lock:
-                self._latencies_ms.append(latency_ms)
+                self._latencies_ms.append((self._now(), latency_ms))
+
+    def came_round(self) -> None:
+        """Note that the main loop lives: a service says so each time it comes round."""
+        self._came_round = self._now()
 
     def error(self, text: str) -> None:
         """Remember the last thing that went wrong, and log it."""
         with self._lock:
             self._last_error = text[:4096]
         log.error("%s", text)
+
+    def trouble(self, name: str, text: str, *, lasts_s: float = float("inf")) -> None:
+        """Say what is wrong from now on, until ``well(name)`` or for some seconds.
+
+        While anything is wrong a running instance is degraded. A text is logged when it is new.
+        """
+        text = text[:4096]
+        with self._lock:
+            before = self._troubles.get(name)
+            self._set_trouble(name, text, self._now() + lasts_s)
+            self._last_error = text
+        if before is None or before.text != text:
+            log.error("%s", text)
+
+    def well(self, name: str) -> None:
+        """Take back a trouble; nothing happens where there is none."""
+        with self._lock:
+            ended = self._troubles.pop(name, None)
+        if ended is not None:
+            log.info("no longer: %s", ended.text)
+
+    def _set_trouble(self, name: str, text: str, ends_at: float) -> None:
+        if name in self._troubles or len(self._troubles) < MOST_TROUBLES:
+            self._troubles[name] = _Trouble(text, ends_at)
 
     def _count(self, counter: Counter[str], key: str) -> str:
         """Count under the key, or under one for all others where a sender invents ever new ones."""
@@ -88,7 +155,7 @@ class HealthBoard:
 
     def report(self) -> Health:
         """The message for now; rates are over the time since the last report."""
-        now = time.monotonic()
+        now = self._now()
         with self._lock:
             totals = self._published + self._received
             elapsed = max(now - self._last_report, 1e-3)
@@ -98,25 +165,41 @@ class HealthBoard:
                     received=self._received[key],
                     dropped=self._dropped[key],
                     malformed=self._malformed[key],
+                    lost=self._lost[key],
                     rate_hz=(totals[key] - self._last_totals[key]) / elapsed,
                 )
                 for key in sorted(self._keys)
             }
-            latency = None
-            if self._latencies_ms:
-                p50, p99 = np.percentile(self._latencies_ms, (50, 99)).tolist()
-                latency = Latency(p50=p50, p99=p99)
             self._last_totals, self._last_report = totals, now
             self._sequence += 1
+            troubles = self._current_troubles(now)
             return Health(
                 sequence=self._sequence - 1,
                 time_ns=time.time_ns(),
                 service=self._service,
                 instance=self._instance,
-                state=self.state,
+                state="degraded" if troubles and self.state == "running" else self.state,
                 uptime_s=now - self._started,
                 resident_bytes=self._process.memory_info().rss,
                 topics=topics,
-                latency_ms=latency,
+                latency_ms=self._current_latency(now),
                 last_error=self._last_error,
+                troubles=troubles,
+                loop_age_s=max(now - self._came_round, 0.0),
             )
+
+    def _current_troubles(self, now: float) -> tuple[str, ...]:
+        for name in [name for name, trouble in self._troubles.items() if trouble.ends_at <= now]:
+            del self._troubles[name]
+        troubles = [trouble.text for trouble in self._troubles.values()]
+        late = now - self._came_round
+        if self.state == "running" and late > LOOP_LATE_S:
+            troubles.append(f"its main loop has not come round for {late:.0f} s: it may hang")
+        return tuple(troubles[:MOST_TROUBLES])
+
+    def _current_latency(self, now: float) -> Latency | None:
+        latencies = [ms for at, ms in self._latencies_ms if now - at <= WINDOW_S]
+        if not latencies:
+            return None
+        p50, p99 = np.percentile(latencies, (50, 99)).tolist()
+        return Latency(p50=p50, p99=p99)

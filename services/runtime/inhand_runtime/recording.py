@@ -4,6 +4,7 @@ A recording grows as ``NAME.mcap.part`` and gets its final name when it is whole
 says whether a file may be trusted. Its channels are Zenoh keys, its payloads MessagePack.
 """
 
+import heapq
 import json
 import os
 import struct
@@ -35,6 +36,8 @@ SCHEMA_ENCODING = "jsonschema"
 MESSAGE_ENCODING = "msgpack"
 CHUNK_BYTES = 1024 * 1024
 SEQUENCE_MASK = 0xFFFFFFFF
+REORDERED_NS = 1_000_000_000
+"""Messages that were received this much apart, in nanoseconds, stand in order in a file of ours."""
 
 DAMAGE = (
     McapError,
@@ -203,6 +206,9 @@ def read_recording(
 ) -> Iterator[RecordedMessage]:
     """The messages of a whole recording in the order of their reception.
 
+    Where the clock was set back while it was recorded, what stands later in the file comes later;
+    in files of other writers the times alone say the order.
+
     ``streams`` chooses; keys that are not Inhand's are passed over. Raises RecordingError for a
     file that is missing, foreign, cut off or damaged, and UnknownVersionError.
     """
@@ -243,13 +249,37 @@ def _choose(
 def _records(
     path: Path, reader: SeekingReader, keys: Collection[str]
 ) -> Iterator[tuple[str, MessageRecord]]:
-    records = reader.iter_messages(topics=keys)
+    with _explaining_damage(path):
+        ours = reader.get_header().profile == PROFILE
+    records = (
+        (channel.topic, message)
+        for _, channel, message in reader.iter_messages(topics=keys, log_time_order=not ours)
+    )
+    in_order = _in_order_of_reception(records) if ours else records
     while True:
         with _explaining_damage(path):
-            record = next(records, None)
+            record = next(in_order, None)
         if record is None:
             return
-        yield record[1].topic, record[2]
+        yield record
+
+
+def _in_order_of_reception(
+    records: Iterator[tuple[str, MessageRecord]],
+) -> Iterator[tuple[str, MessageRecord]]:
+    """Sort what lies within a second; what lies farther back comes after a clock that was set."""
+    waiting: list[tuple[int, int, tuple[str, MessageRecord]]] = []
+    newest_ns = 0
+    for number, record in enumerate(records):
+        time_ns = record[1].log_time
+        if time_ns < newest_ns - REORDERED_NS:
+            yield from (heapq.heappop(waiting)[2] for _ in range(len(waiting)))
+            newest_ns = 0
+        newest_ns = max(newest_ns, time_ns)
+        heapq.heappush(waiting, (time_ns, number, record))
+        while waiting[0][0] < newest_ns - REORDERED_NS:
+            yield heapq.heappop(waiting)[2]
+    yield from (heapq.heappop(waiting)[2] for _ in range(len(waiting)))
 
 
 @contextmanager

@@ -30,9 +30,15 @@ Subscription = zenoh.Subscriber[None] | zenoh.ext.AdvancedSubscriber[None]
 """A handle: what it subscribes to arrives as long as somebody keeps it."""
 
 HEARTBEAT_S = 0.5
+REPEAT_S = 1.0
+"""Seconds between repetitions of a kept value: a subscriber that starts beside its publisher can
+miss the first one for ever (see ``Publisher.repeat``)."""
+MOST_KEPT_KEYS = 1024
+"""Number of keys whose last kept value a subscription remembers, to pass no repetition on."""
 CLIENT_TIMEOUT_MS = 3_000
 HANDSHAKE_TIMEOUT_MS = 1_500
 FOR_EVER_MS = -1
+LIVELINESS_TIMEOUT_S = 0.5
 LONGEST_QUEUE = 16
 """Batches of 64 KiB that may wait for a link: some frames, or bursts of small messages, which share
 batches, so that a busy moment drops none."""
@@ -45,7 +51,6 @@ _PRIORITIES = {
 _CONGESTION = {
     "drop": zenoh.CongestionControl.DROP,
     "wait_for_first": zenoh.CongestionControl.BLOCK_FIRST,
-    "wait": zenoh.CongestionControl.BLOCK,
 }
 
 
@@ -102,6 +107,7 @@ def _config(
         "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000},
         "transport/unicast/open_timeout": HANDSHAKE_TIMEOUT_MS,
         "scouting/multicast/enabled": False,
+        "transport/link/tx/queue/size/data": LONGEST_QUEUE,
         "transport/link/tx/queue/size/data_low": LONGEST_QUEUE,
         "transport/link/tx/queue/size/real_time": LONGEST_QUEUE,
         "transport/shared_memory/enabled": False,
@@ -113,7 +119,11 @@ def _config(
 
 
 class Publisher(Generic[T]):
-    """Publishes one topic under one name; ``kept`` topics hand the last value to late joiners."""
+    """Publishes one topic under one name; ``kept`` topics hand the last value to late joiners.
+
+    No reader holds a publisher up: what a stuck or slow one cannot take waits in its link's queue,
+    and is then dropped; it sees that by the messages' numbers.
+    """
 
     def __init__(
         self,
@@ -125,6 +135,7 @@ class Publisher(Generic[T]):
         self.key = key
         self._topic = topic
         self._on_put = on_put
+        self._last: bytes | None = None
         delivery = topic.delivery
         quality: dict[str, Any] = {
             "encoding": topic.encoding,
@@ -148,8 +159,20 @@ class Publisher(Generic[T]):
 
     def put(self, message: T) -> None:
         """Encode and send."""
-        self._publisher.put(self._topic.encode(message))
+        payload = self._topic.encode(message)
+        if self._topic.delivery.kept:
+            self._last = payload
+        self._publisher.put(payload)
         self._on_put(self.key)
+
+    def repeat(self) -> None:
+        """Send the last value of a kept topic again, to those who missed it; it is not counted.
+
+        Zenoh's cache of the last value does not reach every subscriber: where a third process holds
+        the meeting address, one that starts within seconds of its publisher may never get it.
+        """
+        if self._last is not None:
+            self._publisher.put(self._last)
 
     def wanted(self) -> bool:
         """Whether anybody listens now; a kept topic is always wanted, for those to come."""
@@ -167,18 +190,22 @@ def subscribe(
 ) -> Subscription:
     """Call ``on_sample`` from Zenoh's threads for what matches; keep the returned handle.
 
-    ``on_sample`` must return quickly and never raise: give it a lane's ``put``.
+    ``on_sample`` must return quickly and never raise: give it a lane's ``put``. A kept value that
+    is only repeated is not passed on, nor is the deletion of a key, which no publisher of ours
+    sends.
     """
+    kept: dict[str, bytes] = {}
 
     def receive(sample: zenoh.Sample) -> None:
-        on_sample(
-            Received(
-                str(sample.key_expr),
-                sample.payload.to_bytes(),
-                str(sample.encoding),
-                time.time_ns(),
-            )
-        )
+        if sample.kind != zenoh.SampleKind.PUT:
+            return
+        key, payload = str(sample.key_expr), sample.payload.to_bytes()
+        if delivery.kept:
+            if kept.get(key) == payload:
+                return
+            if key in kept or len(kept) < MOST_KEPT_KEYS:
+                kept[key] = payload
+        on_sample(Received(key, payload, str(sample.encoding), time.time_ns()))
 
     if not delivery.kept:
         return session.declare_subscriber(pattern, receive)
@@ -195,6 +222,22 @@ def is_alone(session: Session) -> bool:
     """Whether no other process is connected now."""
     info = session.info
     return not (info.peers_zid() or info.routers_zid())
+
+
+def lives(session: Session, site: Site, service: str, instance: str) -> bool:
+    """Whether an instance of that name announced itself and lives, as far as is known now."""
+    key = site.live_key(service, instance)
+    replies = session.liveliness().get(key, timeout=LIVELINESS_TIMEOUT_S)
+    return any(reply.ok is not None for reply in replies)
+
+
+def hear_namesakes(session: Session, key: str, on_sample: Callable[[], None]) -> Subscription:
+    """Call ``on_sample`` when another process publishes on a key that is this process's own."""
+
+    def receive(_sample: zenoh.Sample) -> None:
+        on_sample()
+
+    return session.declare_subscriber(key, receive, allowed_origin=zenoh.Locality.REMOTE)
 
 
 @contextlib.contextmanager

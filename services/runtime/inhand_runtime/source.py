@@ -22,6 +22,10 @@ from numpy.typing import NDArray
 ENTRY_POINT_GROUP = "inhand.sources"
 
 
+QUIET_S = 1.0
+"""Seconds after which a source that has nothing to give says so."""
+
+
 class SourceError(Exception):
     """A source that cannot start or go on; the message tells the user the mend."""
 
@@ -59,11 +63,12 @@ class Source(Protocol):
     def info(self) -> CameraInfo:
         """How it sees; capture fills in the sequence, and the time where it is 0."""
 
-    def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured]:
+    def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured | None]:
         """Moments at the pace at which they happen; ``wanted`` tells whether pixels are.
 
-        Ends when the source has no more. Raises SourceLostError when a device went away, and
-        SourceError when opening it again cannot help.
+        While nothing happens it gives None at least once a second (``QUIET_S``), so that a source
+        that waits is told from one that hangs. Ends when the source has no more. Raises
+        SourceLostError when a device went away, and SourceError when opening it again cannot help.
         """
 
     def close(self) -> None:

@@ -94,7 +94,7 @@ class TrackerService:
         """Track until the daemon stops."""
         self._daemon.health.state = "running"
         while not self._daemon.stop.is_set():
-            sample = self._daemon.inbox.get(POLL_S)
+            sample = self._daemon.receive(POLL_S)
             if sample is not None:
                 self._take(sample)
             while (pair := self._pairing.pop(time.monotonic())) is not None:

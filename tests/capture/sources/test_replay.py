@@ -6,9 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
-from inhand_capture.sources.replay import ReplaySource
+from inhand_capture.sources.replay import LONGEST_DELAY_S, ReplaySource
+from inhand_runtime.recording import RecordingWriter
 from inhand_runtime.source import Captured, Pixels, SourceError
+from inhand_schemas.keys import Site
 from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS, AnyTopic
 from played import (
     CAMERA_INFO,
@@ -28,7 +31,8 @@ def _wanted() -> bool:
 
 
 def _play(path: Path, **options: Any) -> list[Captured]:
-    return list(ReplaySource({"file": str(path), "rate": 0, **options}).captures(_wanted))
+    played = ReplaySource({"file": str(path), "rate": 0, **options}).captures(_wanted)
+    return [captured for captured in played if captured is not None]
 
 
 def _times(captured: list[Captured]) -> list[int]:
@@ -106,16 +110,65 @@ def test_a_rate_of_two_takes_half_the_time(recording: Path) -> None:
     assert took >= 9 * FRAME_NS / 2e9 - 1e-3
 
 
-def test_a_reader_that_was_held_up_catches_up(recording: Path) -> None:
-    played_frame_s = 10 * FRAME_NS / 1e9
+def _arrivals_after_a_pause(recording: Path, pause_s: float) -> list[float]:
     arrivals = []
-    for _ in ReplaySource({"file": recording, "rate": 0.1}).captures(_wanted):
-        arrivals.append(time.monotonic())
-        if len(arrivals) == 1:
-            time.sleep(6 * played_frame_s)
-        if len(arrivals) == 6:
-            break
-    assert arrivals[5] - arrivals[1] < 2 * played_frame_s
+    for captured in ReplaySource({"file": recording, "rate": 0.2}).captures(_wanted):
+        if captured is not None:
+            arrivals.append(time.monotonic())
+            if len(arrivals) == 1:
+                time.sleep(pause_s)
+    return arrivals
+
+
+PLAYED_FRAME_S = 5 * FRAME_NS / 1e9
+
+
+def test_a_reader_that_was_held_up_a_moment_catches_up(recording: Path) -> None:
+    arrivals = _arrivals_after_a_pause(recording, 0.9 * LONGEST_DELAY_S)
+    assert arrivals[4] - arrivals[1] < 2 * PLAYED_FRAME_S
+
+
+def test_after_a_pause_playback_goes_on_from_now_and_sends_no_burst(recording: Path) -> None:
+    arrivals = _arrivals_after_a_pause(recording, LONGEST_DELAY_S + 5 * PLAYED_FRAME_S)
+    assert arrivals[5] - arrivals[1] > 3 * PLAYED_FRAME_S
+
+
+@pytest.mark.parametrize("step_s", [3600, -3600])
+def test_a_clock_that_was_set_is_told_and_played_over_in_the_files_order(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, step_s: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("inhand_capture.sources.replay.LONGEST_STEP_S", 0.5)
+    path = tmp_path / "set.mcap"
+    with RecordingWriter(path) as writer:
+        for topic, name, message in entries(10):
+            late = step_s * 10**9 if message.sequence >= 105 else 0
+            stamped = msgspec.structs.replace(message, time_ns=message.time_ns + late)
+            writer.write(
+                topic.key(Site(), name),
+                topic.encode(stamped),
+                received_ns=stamped.time_ns,
+                captured_ns=stamped.time_ns,
+                sequence=stamped.sequence,
+            )
+    begin = time.monotonic()
+    captured = [one for one in ReplaySource({"file": path}).captures(_wanted) if one is not None]
+    assert time.monotonic() - begin < 2.0
+    steps = [0] * 5 + [step_s * 10**9] * 5
+    assert [one.time_ns for one in captured] == [
+        START_NS + number * FRAME_NS + step for number, step in enumerate(steps)
+    ]
+    assert caplog.text.count("the recorded time jumps by") == 1
+
+
+def test_a_long_wait_gives_signs_of_life(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("inhand_capture.sources.replay.QUIET_S", 0.02)
+    played = list(
+        ReplaySource({"file": write(tmp_path / "slow.mcap", entries(2)), "rate": 0.1}).captures(
+            _wanted
+        )
+    )
+    assert sum(each is None for each in played) >= 3
+    assert sum(each is not None for each in played) == 2
 
 
 def test_a_loop_begins_again_with_the_original_times(recording: Path) -> None:

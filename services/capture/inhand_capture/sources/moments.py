@@ -16,17 +16,24 @@ def moments(recorded: Iterable[RecordedMessage], camera: str) -> Iterator[Captur
     """What a camera captured, in the order of capture.
 
     Messages of one sequence number and time belong together; they may lie as far apart in the
-    recording as was received within half a second. Raises MessageError.
+    recording as was received within half a second. Where the recorded clock was set back, what
+    comes after in the file comes after. Raises MessageError.
     """
     waiting: dict[tuple[int, int], Moment] = {}
+    received_ns = captured_ns = 0
     for message in recorded:
         if message.topic.stream != "label" and message.name != camera:
             continue
+        went_back = message.received_ns < received_ns - LOOK_AHEAD_NS
+        if went_back or message.captured_ns < captured_ns - LOOK_AHEAD_NS:
+            received_ns = captured_ns = 0
         complete = message.received_ns - LOOK_AHEAD_NS
         for key in sorted(waiting):
-            if waiting[key][0].received_ns > complete:
+            if received_ns and waiting[key][0].received_ns > complete:
                 break
             yield from _captured(waiting.pop(key), camera)
+        received_ns = max(received_ns, message.received_ns)
+        captured_ns = max(captured_ns, message.captured_ns)
         waiting.setdefault((message.captured_ns, message.sequence), []).append(message)
     for key in sorted(waiting):
         yield from _captured(waiting[key], camera)

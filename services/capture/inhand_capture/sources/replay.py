@@ -1,6 +1,7 @@
 """The source ``replay``: a recording instead of a camera."""
 
 import contextlib
+import logging
 import threading
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
@@ -10,7 +11,7 @@ from typing import Annotated, Any
 from inhand_runtime.recording import RecordingError, read_recording
 from inhand_runtime.settings import Section
 from inhand_runtime.settings_errors import explain
-from inhand_runtime.source import Captured, SourceError
+from inhand_runtime.source import QUIET_S, Captured, SourceError
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.messages import CameraInfo
 from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS
@@ -18,7 +19,16 @@ from pydantic import Field, ValidationError
 
 from inhand_capture.sources.moments import moments
 
+log = logging.getLogger(__name__)
+
 PLAYED_STREAMS = frozenset(topic.stream for topic in (RGBD, SKELETONS, LABEL))
+
+
+LONGEST_DELAY_S = 0.5
+"""Seconds late from which on playback goes on from now instead of hurrying after its times."""
+LONGEST_STEP_S = 5.0
+"""Longest pause between two moments, in recorded seconds: a longer one is a clock that was set, or
+a time in which nothing was recorded."""
 
 
 class ReplayOptions(Section):
@@ -50,26 +60,51 @@ class ReplaySource:
         """How the recorded camera saw."""
         return self._info
 
-    def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured]:
-        """The recorded moments, each when it is due; raises SourceError for a damaged file."""
-        begin = time.monotonic()
+    def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured | None]:
+        """The recorded moments, each when it is due; raises SourceError for a damaged file.
+
+        After a pause of the process, or where it cannot keep up, playback goes on from now: what
+        was due meanwhile is not sent in a burst.
+        """
+        due = time.monotonic()
         while True:
-            offset = 0.0
-            first_ns: int | None = None
+            before_ns: int | None = None
             with contextlib.closing(self._moments()) as recorded:
                 for captured in recorded:
-                    first_ns = captured.time_ns if first_ns is None else first_ns
-                    offset = self._played((captured.time_ns - first_ns) / 1e9)
-                    if self._closed.wait(max(0.0, begin + offset - time.monotonic())):
+                    due += self._played(self._step_s(before_ns, captured.time_ns))
+                    before_ns = captured.time_ns
+                    yield from self._wait_until(due)
+                    if self._closed.is_set():
                         return
+                    if time.monotonic() - due > LONGEST_DELAY_S:
+                        due = time.monotonic()
                     yield captured
-            if first_ns is None or not self._options.loop:
+            if before_ns is None or not self._options.loop:
                 return
-            begin += offset + self._played(1 / self._info.frame_rate)
+            due += self._played(1 / self._info.frame_rate)
 
     def close(self) -> None:
         """End ``captures``."""
         self._closed.set()
+
+    def _step_s(self, before_ns: int | None, time_ns: int) -> float:
+        """Seconds from one moment to the next, bounded where the recorded clock was set."""
+        step_s = 0.0 if before_ns is None else (time_ns - before_ns) / 1e9
+        if step_s < -LONGEST_DELAY_S or step_s > LONGEST_STEP_S:
+            log.warning(
+                "%s: the recorded time jumps by %+.1f s, where the clock was set or nothing was "
+                "recorded; playback goes on",
+                self._options.file,
+                step_s,
+            )
+        return min(max(step_s, 0.0), LONGEST_STEP_S)
+
+    def _wait_until(self, due: float) -> Iterator[None]:
+        while (rest := due - time.monotonic()) > 0.0:
+            if self._closed.wait(min(rest, QUIET_S)):
+                return
+            if rest > QUIET_S:
+                yield None
 
     def _played(self, seconds: float) -> float:
         """How long a recorded time span takes here."""
