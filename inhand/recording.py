@@ -68,6 +68,10 @@ def _recover(arguments: argparse.Namespace) -> int:
             f"{report.output}: {report.messages} messages of {report.keys} keys; "
             f"{report.skipped_bytes} bytes could not be saved"
         )
+        if report.undecodable:
+            print(f"  {report.undecodable} messages were left out: they cannot be decoded")
+        if report.unchecked:
+            print(f"  {report.unchecked} messages are unchecked: no checksum covers them")
         reports.append(_report_values(path, report))
     _result(arguments, "recovered", reports)
     return 0
@@ -137,4 +141,6 @@ def _report_values(path: Path, report: RecoveryReport) -> dict[str, Any]:
         "messages": report.messages,
         "keys": report.keys,
         "skipped_bytes": report.skipped_bytes,
+        "unchecked": report.unchecked,
+        "undecodable": report.undecodable,
     }

@@ -62,15 +62,22 @@ def test_no_message_makes_no_file(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_new_file_begins_after_the_time_limit_and_repeats_the_calibration(tmp_path: Path) -> None:
-    one = journal(tmp_path, split_seconds=60.0)
+@pytest.mark.parametrize("clock_set_by_s", [0.0, -3600.0, 3600.0])
+def test_a_new_file_begins_after_the_time_limit_and_repeats_the_calibration(
+    tmp_path: Path, clock_set_by_s: float
+) -> None:
+    passed = [0.0]
+    limits = Limits(split_seconds=60.0)
+    one = Journal(tmp_path, "rig", limits, dict, clock=lambda: passed[0])
     one.write(info())
     for number in range(5):
-        one.write(frame(number, after_s=20.0 * number))
+        passed[0] = 20.0 * number
+        one.write(frame(number, after_s=20.0 * number + (clock_set_by_s if number > 1 else 0.0)))
     one.close()
-    assert numbers(tmp_path) == [[0, 1, 2], [3, 4]]
+    assert sorted(numbers(tmp_path)) == [[0, 1, 2], [3, 4]]
     assert numbers(tmp_path, INFO_KEY) == [[0], [0]]
-    assert [verify_recording(path) for path in tmp_path.iterdir()] == [[], []]
+    if clock_set_by_s == 0.0:
+        assert [verify_recording(path) for path in tmp_path.iterdir()] == [[], []]
 
 
 def test_each_file_tells_its_own_losses_and_drops(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from inhand_recorder.losses import (
     parse_losses,
 )
 from inhand_recorder.recovery import RECOVERY_RECORD, recover_recording
-from inhand_recorder.scanning import scan
+from inhand_recorder.scanning import HEADER_BYTES, MESSAGE_BYTES, scan
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.part_file import PartFile
 from inhand_runtime.recording import (
@@ -29,13 +29,14 @@ from inhand_runtime.recording import (
     read_metadata,
     read_recording,
 )
-from mcap.writer import Writer
+from mcap.writer import CompressionType, Writer
 from recordings import (
     FRAME_NS,
     POSE_KEY,
     RGBD_KEY,
     START_NS,
     contents,
+    flaws,
     frame_messages,
     write_frame,
     write_recording,
@@ -63,14 +64,19 @@ def test_a_whole_recording_recovers_to_the_same_messages(whole: Path, tmp_path: 
     assert report.output == tmp_path / "again.mcap"
     assert (report.messages, report.keys, report.skipped_bytes) == (90, 3, 0)
     assert contents(report.output) == contents(whole)
-    assert verify_recording(report.output) == []
+    assert flaws(report.output) == []
 
 
 def test_metadata_is_kept_and_the_origin_told(whole: Path, tmp_path: Path) -> None:
     report = recover_recording(whole, tmp_path / "again.mcap")
     metadata = read_metadata(report.output)
     assert metadata["session"] == {"participant": "p01"}
-    assert metadata[RECOVERY_RECORD] == {"source": "walk.mcap", "skipped_bytes": "0"}
+    assert metadata[RECOVERY_RECORD] == {
+        "source": "walk.mcap",
+        "skipped_bytes": "0",
+        "unchecked": "0",
+        "undecodable": "0",
+    }
 
 
 def test_a_recording_cut_in_half_gives_its_first_half(whole: Path, tmp_path: Path) -> None:
@@ -82,7 +88,7 @@ def test_a_recording_cut_in_half_gives_its_first_half(whole: Path, tmp_path: Pat
     saved = contents(report.output)
     assert saved == contents(whole)[: len(saved)]
     assert len(saved) > 30
-    assert verify_recording(report.output) == []
+    assert flaws(report.output) == []
     assert cut.read_bytes() == data[: len(data) // 2]
 
 
@@ -102,7 +108,7 @@ def test_a_cut_at_any_byte_gives_a_prefix(share: float, whole: Path, tmp_path: P
     recover_recording(cut, output)
     saved = contents(output)
     assert saved == everything[: len(saved)]
-    assert verify_recording(output) == []
+    assert flaws(output) == []
     assert all(
         data.index(payload) + len(payload) > length for _, payload, *_ in everything[len(saved) :]
     )
@@ -124,7 +130,7 @@ def test_a_changed_byte_costs_at_most_its_chunk_and_is_noticed(
     saved, everything = contents(output), contents(whole)
     assert is_subsequence(list(saved), list(everything))
     assert len(saved) >= len(everything) - 30
-    assert verify_recording(output) == []
+    assert flaws(output) == []
 
 
 def test_a_damaged_middle_is_skipped_and_its_bytes_are_told(whole: Path, tmp_path: Path) -> None:
@@ -136,18 +142,79 @@ def test_a_damaged_middle_is_skipped_and_its_bytes_are_told(whole: Path, tmp_pat
         list(read_recording(damaged))
     report = recover_recording(damaged, tmp_path / "saved.mcap")
     everything = contents(whole)
-    assert contents(report.output) == everything[:30] + everything[60:]
-    chunk = next(s for s in scan(bytes(data)) if s.state == "damaged")
-    assert report.skipped_bytes == chunk.length > 30 * 100
+    assert contents(report.output) == everything[:45] + everything[46:]
+    assert 0 < report.skipped_bytes < 600
+    assert (report.unchecked, report.undecodable) == (0, 0)
     losses = parse_losses(read_metadata(report.output)[LOSSES_RECORD])
-    assert losses[POSE_KEY] == Losses(received=20, lost=10)
+    assert losses[RGBD_KEY] == Losses(received=29, lost=1)
 
 
 def test_the_first_chunk_may_be_damaged_and_the_index_gone(whole: Path, tmp_path: Path) -> None:
     data = bytearray(whole.read_bytes()[:-500])
     data[data.index(frame_messages(2, 200)[0][2]) + 100] ^= 1
     report = recover_recording(damaged_copy(whole, tmp_path, bytes(data)), tmp_path / "saved.mcap")
-    assert contents(report.output) == contents(whole)[30:]
+    everything = contents(whole)
+    assert contents(report.output) == everything[:6] + everything[7:]
+
+
+def test_damage_in_every_chunk_costs_only_the_messages_that_it_hits(
+    whole: Path, tmp_path: Path
+) -> None:
+    data = bytearray(whole.read_bytes())
+    everything = contents(whole)
+    hit = set(range(4, len(everything), 15))
+    for number in hit:
+        data[data.index(everything[number][1]) + 3] ^= 0x10
+    report = recover_recording(damaged_copy(whole, tmp_path, bytes(data)), tmp_path / "saved.mcap")
+    kept = [one for number, one in enumerate(everything) if number not in hit]
+    assert contents(report.output) == kept
+    assert report.unchecked == 0
+
+
+def test_a_broken_length_costs_no_message_behind_it(whole: Path, tmp_path: Path) -> None:
+    data = bytearray(whole.read_bytes())
+    everything = contents(whole)
+    start = data.index(everything[50][1]) - MESSAGE_BYTES - HEADER_BYTES
+    data[start + 1] ^= 0xFF
+    report = recover_recording(damaged_copy(whole, tmp_path, bytes(data)), tmp_path / "saved.mcap")
+    assert contents(report.output) == everything[:50] + everything[51:]
+
+
+def test_a_flipped_bit_before_a_cut_is_left_out(whole: Path, tmp_path: Path) -> None:
+    data = bytearray(whole.read_bytes())
+    everything = contents(whole)
+    data[data.index(everything[75][1]) + 150] ^= 1
+    cut = damaged_copy(whole, tmp_path, bytes(data[: data.index(everything[85][1])]))
+    report = recover_recording(cut, tmp_path / "saved.mcap")
+    assert contents(report.output) == everything[:75] + everything[76:85]
+    assert report.unchecked == 0
+
+
+def test_without_checksums_what_decodes_is_saved_and_told_as_unchecked(tmp_path: Path) -> None:
+    path = tmp_path / "old.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file, compression=CompressionType.NONE)
+        writer.start(profile="inhand")
+        channel = writer.register_channel(POSE_KEY, "msgpack", 0)
+        for number in range(20):
+            payload = frame_messages(number, 1)[2][2]
+            writer.add_message(channel, START_NS + number, payload, START_NS, number)
+        writer.finish()
+    data = bytearray(path.read_bytes())
+    place = data.index(frame_messages(7, 1)[2][2])
+    data[place : place + 64] = bytes(64)
+    path.write_bytes(data)
+    report = recover_recording(path, tmp_path / "saved.mcap")
+    assert (report.messages, report.unchecked, report.undecodable) == (19, 19, 1)
+
+
+def test_what_does_not_decode_is_left_out_and_counted(tmp_path: Path) -> None:
+    with RecordingWriter(tmp_path / "walk.mcap") as writer:
+        write_frame(writer, LossCounter(), 0, 10)
+        stamp = {"received_ns": START_NS, "captured_ns": START_NS, "sequence": 1}
+        writer.write(POSE_KEY, b"\x80", **stamp)
+    report = recover_recording(writer.path, tmp_path / "saved.mcap")
+    assert (report.messages, report.undecodable, report.unchecked) == (3, 1, 0)
 
 
 def test_overwritten_structure_is_skipped_to_the_next_chunk(whole: Path, tmp_path: Path) -> None:
@@ -181,7 +248,7 @@ def test_zeros_at_the_end_of_a_crashed_disk_are_no_messages(whole: Path, tmp_pat
     cut = damaged_copy(whole, tmp_path, data[:position] + bytes(100_000))
     report = recover_recording(cut, tmp_path / "saved.mcap")
     assert contents(report.output) == contents(whole)[:75]
-    assert verify_recording(report.output) == []
+    assert flaws(report.output) == []
 
 
 def test_the_part_recovers_to_the_name_that_it_was_meant_for(tmp_path: Path) -> None:
@@ -334,4 +401,4 @@ def test_a_killed_recorder_loses_at_most_one_second(tmp_path: Path) -> None:
     sequences = [m.sequence for m in read_recording(path, streams=["rgbd"])]
     assert sequences == list(range(len(sequences)))
     assert last - 30 <= sequences[-1] <= last + 1
-    assert verify_recording(path) == []
+    assert flaws(path) == []

@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 from inhand_recorder.inspection import inspect_recording
 from inhand_recorder.losses import LOSSES_RECORD, Losses, parse_losses
-from inhand_recorder.verification import verify_recording
+from inhand_recorder.verification import examine_recording, verify_recording
 from inhand_runtime.recording import RecordingError, read_metadata, read_recording
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import RgbdFrame
 from inhand_schemas.topics import INFO, POSE, RGBD
+from recordings import flaws
 from running_rig import Process, RunningRig, eventually
 from wire import Wire
 
@@ -123,7 +124,7 @@ def test_frames_that_never_came_are_told_and_written_into_the_file(rig: RunningR
     assert losses[RGBD_KEY] == Losses(received=18, lost=2)
 
 
-def test_what_cannot_be_read_is_counted_told_once_a_kind_and_left_out(
+def test_what_cannot_be_read_is_counted_told_once_a_kind_and_kept_apart(
     rig: RunningRig, wire: Wire
 ) -> None:
     recorder = start_recorder(rig)
@@ -136,8 +137,12 @@ def test_what_cannot_be_read_is_counted_told_once_a_kind_and_left_out(
     eventually("the frame on the disk", lambda: frames_in(rig) == 1)
     assert rig.health("disk")["topics"][RGBD_KEY]["malformed"] == 6
     assert recorder.stderr.count("no valid RgbdFrame") == 1
-    assert recorder.stderr.count("'application/msgpack;RgbdFrame.v2'") == 1
+    assert recorder.stderr.count("RgbdFrame comes in version 2") == 1
     assert recorder.stop() == 0
+    (path,) = recordings(rig, "*.mcap")
+    assert len(list(read_recording(path, streams=["rgbd"]))) == 1
+    assert any("6 messages that cannot be decoded" in n for n in examine_recording(path).notes)
+    assert flaws(path) == []
     assert verify_recording(recordings(rig)[0]) == []
 
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
+from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import RecordedMessage, RecordingWriter, read_recording
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import ColourImage, Message, ObjectPose, RgbdFrame, Skeletons
@@ -56,6 +57,11 @@ def write_recording(
                 writer.sync()
         writer.add_metadata(LOSSES_RECORD, format_losses(counter.losses()))
     return path
+
+
+def flaws(path: Path) -> list[str]:
+    """What is wrong with a recording, but that these small ones have no camera's info."""
+    return [line for line in verify_recording(path) if "have no camera info" not in line]
 
 
 def contents(path: Path) -> list[tuple[str, bytes, int, int, int]]:

@@ -3,12 +3,17 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from inhand_runtime.checksums import CHECKSUMS_RECORD
+from inhand_runtime.recording import APART_ENCODING
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.topics import topic_of
-from mcap.records import Message, Metadata
+from mcap.records import Channel, Message, Metadata
 
 from inhand_recorder.losses import LossCounter
 from inhand_recorder.scanning import channels, is_complete, opened, scan
+
+UNDECODABLE = " (undecodable)"
+"""Stands behind the key of messages that a recording keeps apart."""
 
 
 @dataclass(frozen=True)
@@ -89,15 +94,15 @@ def inspect_recording(path: Path) -> RecordingInfo:
     contents = _Contents()
     with opened(path) as data:
         size, complete = len(data), is_complete(data)
-        keys = {number: channel.topic for number, channel in channels(data).items()}
+        keys = {number: _shown_key(channel) for number, channel in channels(data).items()}
         for stretch in scan(data):
             contents.unread_bytes += stretch.unread_bytes
-            for record in stretch.records:
+            for record in (*stretch.records, *stretch.doubtful):
                 if isinstance(record, Message) and record.channel_id in keys:
                     key = keys[record.channel_id]
                     contents.tallies.setdefault(key, _Tally()).add(record)
                     contents.counter.count(key, record.sequence)
-                elif isinstance(record, Metadata):
+                elif isinstance(record, Metadata) and record.name != CHECKSUMS_RECORD:
                     contents.metadata[record.name] = record.metadata
     tallies, losses = contents.tallies, contents.counter.losses()
     return RecordingInfo(
@@ -115,7 +120,14 @@ def inspect_recording(path: Path) -> RecordingInfo:
     )
 
 
+def _shown_key(channel: Channel) -> str:
+    apart = channel.message_encoding == APART_ENCODING
+    return channel.topic + UNDECODABLE if apart else channel.topic
+
+
 def _type(key: str) -> str:
+    if key.endswith(UNDECODABLE):
+        return "unreadable"
     try:
         topic, _ = topic_of(key)
     except KeyFormatError:

@@ -4,6 +4,7 @@ What stands only in memory when a file fails goes first into the next one.
 """
 
 import contextlib
+import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
 from datetime import UTC, datetime
@@ -20,17 +21,24 @@ class Journal:
     """Writes entries into files ``{rig}_{UTC time}.mcap`` of a folder, from one thread.
 
     ``write``, ``sync`` and ``close`` raise RecordingError; the next call then begins another
-    file, and ``waiting`` entries go into it. ``dropped`` tells how many messages of each key were
-    lost so far in a queue before the journal.
+    file, and ``waiting`` entries go into it. ``dropped`` says how many messages of each key were
+    lost so far in a queue before the journal. How long a file lasts is measured by the ``clock``,
+    in seconds, which nobody sets.
     """
 
     def __init__(
-        self, folder: Path, rig: str, limits: Limits, dropped: Callable[[], Mapping[str, int]]
+        self,
+        folder: Path,
+        rig: str,
+        limits: Limits,
+        dropped: Callable[[], Mapping[str, int]],
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._folder = folder
         self._rig = rig
         self._limits = limits
         self._dropped = dropped
+        self._clock = clock
         self._dropped_before: Mapping[str, int] = {}
         self._waiting: deque[Entry] = deque()
         self._kept: dict[str, Entry] = {}
@@ -45,6 +53,12 @@ class Journal:
         """Add an entry, in a new file when this one has reached a limit."""
         self._waiting.append(entry)
         self._write_waiting()
+
+    def note_clock_step(self, at_ns: int, step_ns: int) -> None:
+        """Write into the file that the wall clock was set, and by how much, in nanoseconds."""
+        if self._file is not None:
+            with self._giving_up_on_failure(self._file):
+                self._file.note_clock_step(at_ns, step_ns)
 
     def sync(self) -> None:
         """Bring everything to the disk."""
@@ -69,7 +83,7 @@ class Journal:
                 self._kept[entry.key] = entry
 
     def _file_at(self, now_ns: int) -> RecordingFile:
-        if self._file is not None and self._file.full(self._limits, now_ns):
+        if self._file is not None and self._file.full(self._limits, self._clock()):
             self._finish(self._file)
         if self._file is None:
             self._file = self._begin(now_ns)
@@ -83,7 +97,7 @@ class Journal:
                 f"cannot create {self._folder}: {error.strerror}: bring its disk or folder back"
             ) from error
         try:
-            file = RecordingFile(self._free_path(now_ns), now_ns)
+            file = RecordingFile(self._free_path(now_ns), now_ns, self._clock())
         except RecordingError as error:
             raise self._left_no_file(error) from error.__cause__
         with self._giving_up_on_failure(file):
@@ -119,9 +133,9 @@ class Journal:
         )
 
     def _free_path(self, now_ns: int) -> Path:
-        time = datetime.fromtimestamp(now_ns / 1e9, UTC).strftime("%Y%m%dT%H%M%SZ")
-        name, number = f"{self._rig}_{time}", 1
+        began = datetime.fromtimestamp(now_ns / 1e9, UTC).strftime("%Y%m%dT%H%M%SZ")
+        name, number = f"{self._rig}_{began}", 1
         while any(self._folder.glob(f"{name}{SUFFIX}*")):
             number += 1
-            name = f"{self._rig}_{time}_{number}"
+            name = f"{self._rig}_{began}_{number}"
         return self._folder / f"{name}{SUFFIX}"

@@ -8,6 +8,7 @@ from pathlib import Path
 from inhand_runtime.part_file import PART_SUFFIX
 from inhand_runtime.recording import RecordingError, RecordingWriter
 
+from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
 
 
@@ -15,7 +16,8 @@ from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
 class Entry:
     """One encoded message; times are nanoseconds since the epoch.
 
-    A ``kept`` one (calibration, say) belongs at the start of every later file.
+    A ``kept`` one (calibration, say) belongs at the start of every later file. One that cannot be
+    decoded is kept ``apart`` from what readers find under its key.
     """
 
     key: str
@@ -24,6 +26,7 @@ class Entry:
     captured_ns: int
     sequence: int
     kept: bool = False
+    apart: bool = False
 
 
 @dataclass(frozen=True)
@@ -40,9 +43,11 @@ class RecordingFile:
     It is ``worth_keeping`` as soon as the disk holds an entry that memory does not.
     """
 
-    def __init__(self, path: Path, opened_ns: int) -> None:
+    def __init__(self, path: Path, opened_ns: int, opened_s: float) -> None:
         self._part = path.with_name(path.name + PART_SUFFIX)
         self._opened_ns = opened_ns
+        self._opened_s = opened_s
+        self._clock_steps: dict[int, int] = {}
         self._losses = LossCounter()
         self._in_memory: list[Entry] = []
         self.worth_keeping = False
@@ -53,11 +58,16 @@ class RecordingFile:
                 self._remove_part()
             raise
 
-    def full(self, limits: Limits, now_ns: int) -> bool:
-        """Whether it has reached a limit."""
+    def full(self, limits: Limits, now_s: float) -> bool:
+        """Whether it has reached a limit; ``now_s`` is of the clock that ``opened_s`` is of."""
         by_size = 0 < limits.split_bytes <= self._writer.bytes_written
-        by_time = 0 < limits.split_seconds * 1e9 <= now_ns - self._opened_ns
+        by_time = 0 < limits.split_seconds <= now_s - self._opened_s
         return by_size or by_time
+
+    def note_clock_step(self, at_ns: int, step_ns: int) -> None:
+        """Write that the wall clock was set at a time, and by how much."""
+        self._clock_steps[at_ns] = step_ns
+        self._writer.add_metadata(CLOCK_RECORD, format_clock_steps(self._clock_steps))
 
     def repeat(self, entry: Entry) -> None:
         """Add an entry of an earlier file, as if it were received when this one was opened."""
@@ -107,6 +117,9 @@ class RecordingFile:
             self._part.unlink()
 
     def _write(self, entry: Entry) -> None:
+        if entry.apart:
+            self._writer.write_apart(entry.key, entry.payload, received_ns=entry.received_ns)
+            return
         self._losses.count(entry.key, entry.sequence)
         self._writer.write(
             entry.key,

@@ -4,6 +4,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from inhand_runtime.checksums import CHECKSUMS_RECORD
 from inhand_runtime.recording import MESSAGE_ENCODING, RecordingError, RecordingWriter
 from inhand_schemas.errors import KeyFormatError, MessageError, UnknownVersionError
 from inhand_schemas.topics import AnyTopic, topic_of
@@ -18,23 +19,27 @@ RECOVERING_SUFFIX = ".recovering"
 
 @dataclass(frozen=True)
 class RecoveryReport:
-    """What was saved: ``messages`` messages of ``keys`` keys.
+    """What was saved: ``messages`` messages of ``keys`` keys, and what was not.
 
-    ``skipped_bytes`` could not be read, or were no messages of Inhand's.
+    ``unchecked`` of them are covered by no checksum, and decode; ``undecodable`` messages were left
+    out. ``skipped_bytes`` could not be read, or were no messages of Inhand's.
     """
 
     output: Path
     messages: int
     keys: int
     skipped_bytes: int
+    unchecked: int = 0
+    undecodable: int = 0
 
 
 def recover_recording(path: Path, output: Path) -> RecoveryReport:
     """Write all messages that are left in ``path`` to the new file ``output``.
 
-    What a checksum contradicts is left out. The named records stay, ``losses`` is counted anew,
-    and ``recovery`` tells where the file comes from. Raises RecordingError, also when nothing is
-    left, and then leaves no file; neither the input nor an existing file is ever changed.
+    What a checksum contradicts is left out, and what does not decode. The named records stay,
+    ``losses`` is counted anew, and ``recovery`` says where the file comes from. Raises
+    RecordingError, also when nothing is left, and then leaves no file; neither the input nor an
+    existing file is ever changed.
     """
     with opened(path) as data:
         unfinished = output.with_name(output.name + RECOVERING_SUFFIX)
@@ -51,7 +56,14 @@ def recover_recording(path: Path, output: Path) -> RecoveryReport:
             ) from error
         finally:
             unfinished.unlink(missing_ok=True)
-    return RecoveryReport(output, rescue.messages, len(rescue.found), rescue.skipped_bytes)
+    return RecoveryReport(
+        output,
+        rescue.messages,
+        len(rescue.found),
+        rescue.skipped_bytes,
+        rescue.unchecked,
+        rescue.undecodable,
+    )
 
 
 def _rescue(path: Path, data: Bytes, writer: RecordingWriter) -> "_Rescue":
@@ -59,7 +71,7 @@ def _rescue(path: Path, data: Bytes, writer: RecordingWriter) -> "_Rescue":
     for stretch in scan(data):
         rescue.take(stretch)
     if rescue.messages == 0:
-        raise RecordingError(f"{path} holds no message that could be saved: delete it")
+        raise RecordingError(f"{path} holds no message of Inhand's that could be saved")
     rescue.finish(path)
     return rescue
 
@@ -73,26 +85,40 @@ class _Rescue:
         self.found: set[str] = set()
         self.messages = 0
         self.skipped_bytes = 0
+        self.unchecked = 0
+        self.undecodable = 0
 
     def take(self, stretch: Stretch) -> None:
         self.skipped_bytes += stretch.unread_bytes
         for record in stretch.records:
             if isinstance(record, Message):
-                self._take_message(record, checked=stretch.state == "whole")
+                self._take_message(record)
             elif isinstance(record, Metadata):
                 self._take_metadata(record)
+        for record in stretch.doubtful:
+            self.unchecked += self._take_message(record)
 
     def finish(self, source: Path) -> None:
         losses = self._counter.losses(self._dropped)
         self._writer.add_metadata(LOSSES_RECORD, format_losses(losses))
-        origin = {"source": source.name, "skipped_bytes": str(self.skipped_bytes)}
+        origin = {
+            "source": source.name,
+            "skipped_bytes": str(self.skipped_bytes),
+            "unchecked": str(self.unchecked),
+            "undecodable": str(self.undecodable),
+        }
         self._writer.add_metadata(RECOVERY_RECORD, origin)
 
-    def _take_message(self, record: Message, *, checked: bool) -> None:
+    def _take_message(self, record: Message) -> bool:
+        """Whether the message was saved."""
         key, topic = self._known.get(record.channel_id, (None, None))
-        if key is None or topic is None or not (checked or _decodes(topic, record.data)):
+        if key is None or topic is None:
             self.skipped_bytes += len(record.data)
-            return
+            return False
+        if not _decodes(topic, record.data):
+            self.undecodable += 1
+            self.skipped_bytes += len(record.data)
+            return False
         self._writer.write(
             key,
             record.data,
@@ -103,8 +129,11 @@ class _Rescue:
         self._counter.count(key, record.sequence)
         self.found.add(key)
         self.messages += 1
+        return True
 
     def _take_metadata(self, record: Metadata) -> None:
+        if record.name == CHECKSUMS_RECORD:
+            return
         if record.name != LOSSES_RECORD:
             self._writer.add_metadata(record.name, record.metadata)
             return

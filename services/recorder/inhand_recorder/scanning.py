@@ -16,6 +16,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO, Literal, TypeAlias
 
+from inhand_runtime.checksums import CHECKSUMS_RECORD, digest, parse_digests
 from inhand_runtime.recording import DAMAGE, RecordingError
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
@@ -67,6 +68,9 @@ _READERS: dict[int, Callable[[ReadDataStream], McapRecord]] = {
 }
 _IN_CHUNKS = (Schema, Channel, Message)
 
+# The start of a schema, channel or message within a chunk.
+_INNER_ANCHOR = re.compile(rb"(?=[\x03\x04\x05][\s\S]{5}\x00\x00\x00)")
+
 # The start of a chunk, metadata, end of data or footer: opcode, then a length below 2 ** 40.
 _ANCHOR = re.compile(rb"(?=[\x06\x0c\x0f\x02][\s\S]{5}\x00\x00\x00)")
 
@@ -75,9 +79,10 @@ _ANCHOR = re.compile(rb"(?=[\x06\x0c\x0f\x02][\s\S]{5}\x00\x00\x00)")
 class Stretch:
     """A part of a file, and what could be read of it.
 
-    A ``whole`` stretch is one record, or a chunk's records when their checksum holds. A ``cut``
-    one holds the records before the cut, which no checksum covers; a ``damaged`` one only what a
-    damaged chunk defines (schemas and channels).
+    A ``whole`` stretch is one record, or a chunk's records when their checksum holds. Of a ``cut``
+    or ``damaged`` chunk ``records`` are the messages whose own checksum holds, and what it defines
+    (schemas and channels); ``doubtful`` are messages that none covers. What a checksum contradicts
+    is among ``unread_bytes``.
     """
 
     offset: int
@@ -85,6 +90,7 @@ class Stretch:
     state: State
     records: tuple[McapRecord, ...] = ()
     unread_bytes: int = 0
+    doubtful: tuple[Message, ...] = ()
 
 
 @contextmanager
@@ -135,7 +141,7 @@ def is_complete(data: Bytes) -> bool:
 
 
 def summary_start(data: Bytes) -> int | None:
-    """Where the index begins, when the footer is there and the index fits its checksum."""
+    """Where the index begins, when the footer is there and the index fits its checksum, if any."""
     end = len(data) - len(MAGIC)
     if end < len(MAGIC) + FOOTER_BYTES or data[end:] != MAGIC:
         return None
@@ -143,66 +149,161 @@ def summary_start(data: Bytes) -> int | None:
     if not isinstance(footer, Footer):
         return None
     start = footer.summary_start
-    if start == 0 or zlib.crc32(data[start : end - 4]) != footer.summary_crc:
+    if start == 0 or (
+        footer.summary_crc and zlib.crc32(data[start : end - 4]) != footer.summary_crc
+    ):
         return None
     return start
+
+
+def has_checksums(data: Bytes) -> bool:
+    """Whether a finished file says what its index must add up to; they are optional in MCAP."""
+    footer = _record_at(data, len(data) - len(MAGIC) - FOOTER_BYTES)
+    return isinstance(footer, Footer) and footer.summary_crc != 0
 
 
 def channels(data: Bytes) -> dict[int, Channel]:
     """The channels by their number, from wherever the file still tells them."""
     found: dict[int, Channel] = {}
     doubtful: dict[int, Channel] = {}
-    for stretch in scan(data, summary_start(data) or len(MAGIC)):
-        for record in stretch.records:
-            if isinstance(record, Channel):
-                place = doubtful if stretch.state == "damaged" else found
-                place.setdefault(record.id, record)
+    for start in (summary_start(data), len(MAGIC)):
+        for stretch in scan(data, start) if start is not None else ():
+            for record in stretch.records:
+                if isinstance(record, Channel):
+                    place = doubtful if stretch.state == "damaged" else found
+                    place.setdefault(record.id, record)
+        if found:  # an index need not repeat the channels: then the data says them
+            break
     return doubtful | found
 
 
 def scan(data: Bytes, offset: int = len(MAGIC)) -> Iterator[Stretch]:
     """All stretches from ``offset`` on, without a hole between them."""
     end = len(data) - len(MAGIC) if data[-len(MAGIC) :] == MAGIC else len(data)
+    digests: frozenset[bytes] = frozenset()
     while offset < end:
-        stretch = _stretch_at(data, offset)
+        stretch = _stretch_at(data, offset, digests)
+        for record in stretch.records:
+            if isinstance(record, Metadata) and record.name == CHECKSUMS_RECORD:
+                digests = parse_digests(record.metadata)
         yield stretch
         offset += stretch.length
 
 
-def _stretch_at(data: Bytes, offset: int) -> Stretch:
+def _stretch_at(data: Bytes, offset: int, digests: frozenset[bytes]) -> Stretch:
     record = _record_at(data, offset)
     if isinstance(record, Chunk):
-        return _chunk(record, offset, _length_at(data, offset))
+        return _chunk(record, offset, _length_at(data, offset), digests)
     if record is not None:
         return Stretch(offset, _length_at(data, offset), "whole", (record,))
     anchor = _next_anchor(data, offset + 1)
     if anchor is not None:
         return Stretch(offset, anchor - offset, "damaged", (), anchor - offset)
-    return _cut(data, offset)
+    return _cut(data, offset, digests)
 
 
-def _chunk(chunk: Chunk, offset: int, length: int) -> Stretch:
+def _chunk(chunk: Chunk, offset: int, length: int, digests: frozenset[bytes]) -> Stretch:
     records = _checked_records(chunk)
     if records is not None:
         return Stretch(offset, length, "whole", records)
-    definitions = tuple(
-        record
-        for record in (_inner_records(chunk.data)[0] if not chunk.compression else ())
-        if isinstance(record, Schema | Channel)
-    )
-    return Stretch(offset, length, "damaged", definitions, length)
+    if chunk.compression:
+        return Stretch(offset, length, "damaged", (), length)
+    times = chunk.message_start_time, chunk.message_end_time
+    remains = _remains(chunk.data, digests, times)
+    unread = length if not remains.messages else remains.unread_bytes
+    return Stretch(offset, length, "damaged", remains.records, unread, remains.doubtful)
 
 
-def _cut(data: Bytes, offset: int) -> Stretch:
+def _cut(data: Bytes, offset: int, digests: frozenset[bytes]) -> Stretch:
     rest = data[offset:]
     chunk_head = struct.Struct("<BQQQQIIQ")
     if len(rest) >= chunk_head.size:
-        opcode, *_, compression_length, _ = chunk_head.unpack_from(rest)
+        opcode, _, start, end, _, _, compression_length, _ = chunk_head.unpack_from(rest)
         if opcode == Opcode.CHUNK and compression_length == 0:
-            records, read = _inner_records(rest[chunk_head.size :])
-            unread = len(rest) - chunk_head.size - read
-            return Stretch(offset, len(rest), "cut", records, unread)
+            remains = _remains(rest[chunk_head.size :], digests, (start, end))
+            return Stretch(
+                offset,
+                len(rest),
+                "cut",
+                remains.records,
+                remains.unread_bytes,
+                remains.doubtful,
+            )
     return Stretch(offset, len(rest), "cut", (), len(rest))
+
+
+@dataclass
+class _Remains:
+    """What is left of a chunk whose own checksum does not hold."""
+
+    records: tuple[McapRecord, ...] = ()
+    doubtful: tuple[Message, ...] = ()
+    unread_bytes: int = 0
+
+    @property
+    def messages(self) -> bool:
+        return bool(self.doubtful) or any(isinstance(one, Message) for one in self.records)
+
+
+def _remains(data: bytes, digests: frozenset[bytes], times: tuple[int, int]) -> _Remains:
+    """Walk a chunk's records, and past what is broken to the next one that proves itself.
+
+    A message proves itself by its checksum, where the file has any, and else by a time of reception
+    that lies within the chunk's.
+    """
+    proved: list[McapRecord] = []
+    doubtful: list[Message] = []
+    unread = offset = 0
+    while offset < len(data):
+        record = _record_at(data, offset)
+        if isinstance(record, Message) and _proves_itself(record, digests, times):
+            (proved if digests else doubtful).append(record)
+            offset += _length_at(data, offset)
+        elif isinstance(record, Schema | Channel):
+            proved.append(record)
+            offset += _length_at(data, offset)
+        else:
+            following = _next_inner(data, offset, digests, times)
+            unread += following - offset
+            offset = following
+    if digests and not any(isinstance(record, Message) for record in proved):
+        return _remains(data, frozenset(), times)  # they are another chunk's: the record was lost
+    return _Remains(tuple(proved), tuple(doubtful), unread)
+
+
+def _next_inner(data: bytes, offset: int, digests: frozenset[bytes], times: tuple[int, int]) -> int:
+    """Where the next record of a damaged chunk is that proves itself; its end where none does."""
+    record = _record_at(data, offset)
+    if isinstance(record, Message):
+        # A payload alone may be damaged: then the record behind it stands where its length says.
+        behind = offset + _length_at(data, offset)
+        if behind == len(data) or _is_inner(_record_at(data, behind), digests, times):
+            return behind
+    for match in _INNER_ANCHOR.finditer(data, offset + 1):
+        if _is_inner(_record_at(data, match.start()), digests, times):
+            return match.start()
+    return len(data)
+
+
+def _is_inner(record: McapRecord | None, digests: frozenset[bytes], times: tuple[int, int]) -> bool:
+    if isinstance(record, Message):
+        return _proves_itself(record, digests, times)
+    return isinstance(record, Schema | Channel)
+
+
+def _proves_itself(message: Message, digests: frozenset[bytes], times: tuple[int, int]) -> bool:
+    if not digests:
+        return times[0] <= message.log_time <= times[1]
+    return (
+        digest(
+            message.channel_id,
+            message.sequence,
+            message.log_time,
+            message.publish_time,
+            message.data,
+        )
+        in digests
+    )
 
 
 def _checked_records(chunk: Chunk) -> tuple[McapRecord, ...] | None:

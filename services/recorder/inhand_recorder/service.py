@@ -11,19 +11,24 @@ from inhand_runtime.inbox import Received
 from inhand_runtime.recording import RecordingError
 from inhand_runtime.settings import Section, Settings
 from inhand_schemas.errors import KeyFormatError, MessageError
-from inhand_schemas.topics import RGBD, TOPICS
+from inhand_schemas.topics import RGBD, TOPICS, topic_of
 from pydantic import AfterValidator, ByteSize, Field
 
+from inhand_recorder.clock import ClockWatch
 from inhand_recorder.gaps import GapTeller
+from inhand_recorder.infos import InfoWatch
 from inhand_recorder.journal import Journal
 from inhand_recorder.recording_file import Limits
-from inhand_recorder.stamps import entry_of
+from inhand_recorder.stamps import entry_apart, entry_of
 
 SYNC_PERIOD_S = 0.75
 """A crash loses this much and what a sync takes itself: a second at the most."""
 IDLE_S = 0.1
 FIRST_RETRY_S, LAST_RETRY_S = 1.0, 30.0
 QUEUE_SAMPLES = 1 << 16
+MOST_KEYS = 10_000
+"""Number of keys that are recorded; a file holds 65,535 channels, and a site has some dozens."""
+REFUSED_KEYS_LAST_S = 5.0
 FRAMES_WEIGHT = 3 * (len(TOPICS) - 1)
 SMALLEST_SPLIT_BYTES = 1 << 20
 SMALLEST_SPLIT_S = 1.0
@@ -114,6 +119,9 @@ class _Recorder:
         self._daemon = daemon
         self._journal = journal
         self._gaps = GapTeller(daemon.health.error)
+        self._keys: set[str] = set()
+        self._clock = ClockWatch()
+        self._infos = InfoWatch(daemon.health)
 
     def run(self) -> None:
         """Write until stopped; while the disk fails, what arrives waits in the inbox."""
@@ -122,23 +130,35 @@ class _Recorder:
             try:
                 self._write_until_stopped()
             except RecordingError as error:
-                delay = FIRST_RETRY_S if health.state == "running" else min(2 * delay, LAST_RETRY_S)
+                failed_before = health.state != "running"
+                delay = min(2 * delay, LAST_RETRY_S) if failed_before else FIRST_RETRY_S
                 health.state = "degraded"
-                health.error(str(error))
-                self._daemon.stop.wait(delay)
+                health.trouble("disk", str(error))
+                self._wait(delay)
         self._write_the_rest()
+
+    def _wait(self, seconds: float) -> None:
+        end = time.monotonic() + seconds
+        while (rest := end - time.monotonic()) > 0.0:
+            self._daemon.health.came_round()
+            if self._daemon.stop.wait(min(rest, SYNC_PERIOD_S)):
+                return
 
     def _write_until_stopped(self) -> None:
         self._journal.sync()
         self._daemon.health.state = "running"
+        self._daemon.health.well("disk")
         next_sync = time.monotonic() + SYNC_PERIOD_S
         while not self._daemon.stop.is_set():
             sample = self._daemon.receive(IDLE_S)
             if sample is not None:
                 self._write(sample)
             if time.monotonic() >= next_sync:
+                if (step := self._clock.step()) is not None:
+                    self._journal.note_clock_step(*step)
                 self._journal.sync()
                 self._gaps.tell()
+                self._infos.check(time.monotonic())
                 next_sync = time.monotonic() + SYNC_PERIOD_S
 
     def _write_the_rest(self) -> None:
@@ -161,13 +181,33 @@ class _Recorder:
 
     def _write(self, sample: Received) -> None:
         try:
+            topic, parsed = topic_of(sample.key)
+        except KeyFormatError as error:
+            self._daemon.health.malformed(sample.key, error)
+            return
+        if sample.key not in self._keys and len(self._keys) >= MOST_KEYS:
+            self._refuse_key(sample.key)
+            return
+        self._keys.add(sample.key)
+        try:
             entry = entry_of(sample)
         except (MessageError, KeyFormatError) as error:
             self._daemon.health.malformed(sample.key, error)
+            self._journal.write(entry_apart(sample))
             return
-        self._daemon.health.received(entry.key)
+        self._daemon.health.received(entry.key, entry.sequence)
         self._gaps.count(entry.key, entry.sequence)
+        self._infos.note(topic.stream, parsed.name, time.monotonic())
         self._journal.write(entry)
+
+    def _refuse_key(self, key: str) -> None:
+        self._daemon.health.dropped(key)
+        self._daemon.health.trouble(
+            "keys",
+            f"more than {MOST_KEYS} keys are published: what comes on new ones is not recorded; "
+            "some program invents names",
+            lasts_s=REFUSED_KEYS_LAST_S,
+        )
 
     def _count_what_is_left(self) -> None:
         left = self._journal.waiting

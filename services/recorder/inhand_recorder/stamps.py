@@ -1,37 +1,36 @@
-"""Reads of a sample only what a recorder must know, so that megabytes of pixels stay unread."""
+"""Makes a sample into an entry of a recording."""
 
-import msgspec
 from inhand_runtime.inbox import Received
-from inhand_schemas.errors import MessageError, UnknownVersionError
-from inhand_schemas.messages import Message
 from inhand_schemas.topics import topic_of
 
 from inhand_recorder.recording_file import Entry
 
-_decoder = msgspec.msgpack.Decoder(Message)
-
 
 def entry_of(sample: Received) -> Entry:
-    """The entry for a sample.
+    """The entry for a sample that can be read.
 
-    Raises MessageError, KeyFormatError, or UnknownVersionError; what stands behind number and
-    time is not looked at.
+    Raises MessageError, KeyFormatError, or UnknownVersionError. All of a message is decoded: one
+    that cannot be read would spoil its recording for whoever replays or trains from it.
     """
     topic, _ = topic_of(sample.key)
-    if sample.encoding != topic.encoding:
-        raise UnknownVersionError(
-            f"{topic.stream} comes as {sample.encoding!r}, and this release reads "
-            f"{topic.encoding!r}: update the older side"
-        )
-    try:
-        stamp = _decoder.decode(sample.payload)
-    except (msgspec.MsgspecError, RecursionError) as error:
-        raise MessageError(f"no valid {topic.message_type.__name__}: {error}") from None
+    message = topic.decode(sample.payload, sample.encoding)
     return Entry(
         key=sample.key,
         payload=sample.payload,
         received_ns=sample.received_ns,
-        captured_ns=stamp.time_ns,
-        sequence=stamp.sequence,
+        captured_ns=message.time_ns,
+        sequence=message.sequence,
         kept=topic.delivery.kept,
+    )
+
+
+def entry_apart(sample: Received) -> Entry:
+    """The entry that keeps an unreadable sample apart, under a key that must be Inhand's."""
+    return Entry(
+        key=sample.key,
+        payload=sample.payload,
+        received_ns=sample.received_ns,
+        captured_ns=sample.received_ns,
+        sequence=0,
+        apart=True,
     )

@@ -1,56 +1,93 @@
 """Whether a recording is whole, and all that it says is true."""
 
 import zlib
+from collections import Counter
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 
+from inhand_runtime.recording import APART_ENCODING
 from inhand_schemas.errors import KeyFormatError, MessageError
-from inhand_schemas.topics import topic_of
+from inhand_schemas.keys import parse_key
+from inhand_schemas.topics import INFO, RGBD, topic_of
 from mcap.records import DataEnd, Message, Metadata, Statistics
 
+from inhand_recorder.clock import CLOCK_RECORD, parse_clock_steps
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, Losses, parse_losses
 from inhand_recorder.scanning import (
     Bytes,
     Stretch,
     channels,
+    has_checksums,
     is_complete,
     opened,
     scan,
 )
+
+FEWEST_TIMED = 10
+"""Number of messages from which on their rate is judged."""
+MOST_PLAUSIBLE_HZ = 10_000.0
+
+
+@dataclass(frozen=True)
+class Examination:
+    """What is wrong with a recording, and what is only worth to know, a line each."""
+
+    problems: tuple[str, ...]
+    notes: tuple[str, ...]
 
 
 def verify_recording(path: Path) -> list[str]:
     """All that is wrong with ``path``, a line each; empty when nothing is.
 
     Checked are the file's structure, index and checksums, every message against its type, times
-    of reception, and the losses that the recorder wrote against the numbers in the file. Raises
-    RecordingError for a file that is no recording.
+    of reception, that frames come with their camera's info, and the losses that the recorder wrote
+    against the numbers in the file. Raises RecordingError for a file that is no recording.
     """
+    return list(examine_recording(path).problems)
+
+
+def examine_recording(path: Path) -> Examination:
+    """What ``verify_recording`` finds, and notes beside it; raises RecordingError."""
     with opened(path) as data:
-        return list(_problems(path, data))
+        messages = _Messages({number: one.topic for number, one in channels(data).items()})
+        apart = {
+            number
+            for number, channel in channels(data).items()
+            if channel.message_encoding == APART_ENCODING
+        }
+        problems = list(_problems(path, data, messages, apart))
+        notes = list(messages.notes())
+        if is_complete(data) and not has_checksums(data):
+            notes.append("the file has no checksums: a changed byte cannot be seen")
+    return Examination(tuple(problems), tuple(notes))
 
 
-def _problems(path: Path, data: Bytes) -> Iterator[str]:
+def _problems(path: Path, data: Bytes, messages: "_Messages", apart: set[int]) -> Iterator[str]:
     if not is_complete(data):
         yield (
             "the end or the index is missing or damaged: "
             f"`inhand recording recover {path}` saves what is left"
         )
-    messages = _Messages({number: channel.topic for number, channel in channels(data).items()})
     written: dict[str, str] = {}
     for stretch in scan(data):
         yield from _structural_problems(data, stretch)
         for record in stretch.records:
             if isinstance(record, Message):
-                messages.check(record)
+                messages.check(record, apart=record.channel_id in apart)
             elif isinstance(record, Metadata) and record.name == LOSSES_RECORD:
                 written = record.metadata
+            elif isinstance(record, Metadata) and record.name == CLOCK_RECORD:
+                messages.clock_steps = parse_clock_steps(record.metadata)
             elif isinstance(record, Statistics) and record.message_count != messages.number:
                 yield (
                     f"the index counts {record.message_count} messages, "
                     f"and {messages.number} can be read"
                 )
     yield from messages.problems()
+    yield from messages.missing_infos(path)
     if written:
         yield from _loss_problems(written, messages.counter.losses())
 
@@ -66,20 +103,31 @@ def _structural_problems(data: Bytes, stretch: Stretch) -> Iterator[str]:
 
 
 class _Messages:
-    """Checks messages one by one and tells a key's faults in one line each."""
+    """Checks messages one by one and names a key's faults in one line each."""
 
     def __init__(self, keys: Mapping[int, str]) -> None:
         self._keys = keys
         self._received_ns: dict[str, int] = {}
         self._backwards: dict[str, int] = {}
         self._malformed: dict[str, list[str]] = {}
+        self._apart: Counter[str] = Counter()
+        self._counts: Counter[str] = Counter()
+        self._first_ns: dict[str, int] = {}
+        self._last_ns: dict[str, int] = {}
+        self.clock_steps: dict[int, int] = {}
         self.counter = LossCounter()
         self.number = 0
 
-    def check(self, message: Message) -> None:
+    def check(self, message: Message, *, apart: bool) -> None:
         self.number += 1
         key = self._keys.get(message.channel_id, f"channel {message.channel_id}")
+        if apart:
+            self._apart[key] += 1
+            return
         self.counter.count(key, message.sequence)
+        self._counts[key] += 1
+        self._first_ns.setdefault(key, message.publish_time)
+        self._last_ns[key] = message.publish_time
         if message.log_time < self._received_ns.get(key, 0):
             self._backwards[key] = self._backwards.get(key, 0) + 1
         self._received_ns[key] = message.log_time
@@ -92,8 +140,36 @@ class _Messages:
     def problems(self) -> Iterator[str]:
         for key, errors in self._malformed.items():
             yield f"{key}: {len(errors)} messages cannot be decoded, the first: {errors[0]}"
+        steps_back = sum(step_ns < 0 for step_ns in self.clock_steps.values())
         for key, times in self._backwards.items():
-            yield f"{key}: the time of reception goes back {times} times"
+            if times > steps_back:
+                yield f"{key}: the time of reception goes back {times} times"
+        for key, count in self._counts.items():
+            seconds = (self._last_ns[key] - self._first_ns[key]) / 1e9
+            if count >= FEWEST_TIMED and not seconds < 0 and count > MOST_PLAUSIBLE_HZ * seconds:
+                yield (
+                    f"{key}: {count} messages captured in {seconds:g} s: the times are in another "
+                    "unit than nanoseconds, or all the same"
+                )
+
+    def missing_infos(self, path: Path) -> Iterator[str]:
+        by_stream: dict[str, set[str]] = {RGBD.stream: set(), INFO.stream: set()}
+        for key in self._counts:
+            with suppress(KeyFormatError):
+                parsed = parse_key(key)
+                by_stream.setdefault(parsed.stream, set()).add(parsed.name)
+        for name in sorted(by_stream[RGBD.stream] - by_stream[INFO.stream]):
+            yield (
+                f"the frames of {name} have no camera info: nothing can be seen in them; "
+                f"`inhand recording repair {path} --info FILE` takes it from another recording"
+            )
+
+    def notes(self) -> Iterator[str]:
+        for at_ns, step_ns in sorted(self.clock_steps.items()):
+            at = datetime.fromtimestamp(at_ns / 1e9, UTC).isoformat(timespec="seconds")
+            yield f"the clock was set by {step_ns / 1e9:+.3f} s at {at}"
+        for key, count in self._apart.items():
+            yield f"{key}: {count} messages that cannot be decoded are kept apart"
 
 
 def _loss_problems(written: Mapping[str, str], counted: Mapping[str, Losses]) -> Iterator[str]:

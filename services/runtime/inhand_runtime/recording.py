@@ -28,13 +28,20 @@ from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 from zstandard import ZstdError
 
+from inhand_runtime.checksums import CHECKSUMS_RECORD, digest, format_digests
 from inhand_runtime.errors import InhandError
 from inhand_runtime.part_file import PART_SUFFIX, PartFile
 
 PROFILE = "inhand"
 SCHEMA_ENCODING = "jsonschema"
 MESSAGE_ENCODING = "msgpack"
+APART_ENCODING = "x-undecodable"
+"""The message encoding of a channel that holds what could not be read on its key."""
 CHUNK_BYTES = 1024 * 1024
+UNBOUNDED_CHUNK = 1 << 40
+"""The writer's own bound on chunks, which are ended here, after their messages' checksums."""
+MOST_CHANNELS = 0xFFFF
+LATEST_NS = (1 << 64) - 1
 SEQUENCE_MASK = 0xFFFFFFFF
 REORDERED_NS = 1_000_000_000
 """Messages that were received this much apart, in nanoseconds, stand in order in a file of ours."""
@@ -87,12 +94,14 @@ class RecordingWriter:
     def __init__(self, path: Path, *, part_suffix: str = PART_SUFFIX) -> None:
         self.path = path
         self._failure: RecordingError | None = None
-        self._channels: dict[str, int] = {}
+        self._channels: dict[tuple[str, bool], int] = {}
         self._schemas: dict[str, int] = {}
+        self._digests: list[bytes] = []
+        self._chunk_bytes = 0
         self._file = _create(path, part_suffix)
         self._writer = Writer(
             cast(IO[bytes], self._file),
-            chunk_size=CHUNK_BYTES,
+            chunk_size=UNBOUNDED_CHUNK,
             compression=CompressionType.NONE,
             enable_data_crcs=True,
         )
@@ -112,11 +121,43 @@ class RecordingWriter:
         self, key: str, payload: bytes, *, received_ns: int, captured_ns: int, sequence: int
     ) -> None:
         """Add one encoded message; raises KeyFormatError when ``key`` is not Inhand's."""
+        self._add(key, payload, received_ns, captured_ns, sequence, apart=False)
+
+    def write_apart(self, key: str, payload: bytes, *, received_ns: int) -> None:
+        """Keep what cannot be read on a key, in a channel of its own that readers pass over.
+
+        Raises KeyFormatError when ``key`` is not Inhand's.
+        """
+        self._add(key, payload, received_ns, received_ns, 0, apart=True)
+
+    def _add(
+        self,
+        key: str,
+        payload: bytes,
+        received_ns: int,
+        captured_ns: int,
+        sequence: int,
+        apart: bool,
+    ) -> None:
+        # The library writes half a message where a number does not fit, and damages the next one.
+        if not (0 <= received_ns <= LATEST_NS and 0 <= captured_ns <= LATEST_NS):
+            raise RecordingError(f"{key}: a time before 1970, or after 2554, cannot be recorded")
         with self._reporting():
-            channel = self._channels.get(key) or self._register(key)
-            self._writer.add_message(
-                channel, received_ns, payload, captured_ns, sequence & SEQUENCE_MASK
-            )
+            channel = self._channels.get((key, apart)) or self._register(key, apart)
+            stamp = channel, sequence & SEQUENCE_MASK, received_ns, captured_ns
+            self._writer.add_message(channel, received_ns, payload, captured_ns, stamp[1])
+            self._digests.append(digest(*stamp, payload))
+            self._chunk_bytes += len(payload)
+            if self._chunk_bytes > CHUNK_BYTES:
+                self._end_chunk()
+
+    def _end_chunk(self) -> None:
+        """Write the messages' checksums, and then the chunk that waits in memory."""
+        if self._digests:
+            self._writer.add_metadata(CHECKSUMS_RECORD, format_digests(self._digests))
+        self._digests.clear()
+        self._chunk_bytes = 0
+        self._writer.flush()  # type: ignore[no-untyped-call]
 
     def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
         """Add one named record about the recording; a later one of that name replaces it."""
@@ -126,7 +167,7 @@ class RecordingWriter:
     def sync(self) -> None:
         """Bring everything so far to the disk, so that even a power cut leaves it."""
         with self._reporting():
-            self._writer.flush()  # type: ignore[no-untyped-call]
+            self._end_chunk()
             self._file.sync()
 
     def close(self) -> Path:
@@ -135,6 +176,7 @@ class RecordingWriter:
             return self.path
         try:
             with self._reporting():
+                self._end_chunk()
                 self._writer.finish()  # type: ignore[no-untyped-call]
                 self._file.publish()
         finally:
@@ -158,15 +200,22 @@ class RecordingWriter:
         finally:
             self._file.close()
 
-    def _register(self, key: str) -> int:
+    def _register(self, key: str, apart: bool) -> int:
         topic, _ = topic_of(key)
+        if len(self._channels) >= MOST_CHANNELS:
+            raise RecordingError(f"{self.path} holds {MOST_CHANNELS} keys: begin another recording")
+        if apart:
+            channel = self._writer.register_channel(key, APART_ENCODING, 0)
+            self._channels[key, apart] = channel
+            return channel
         name = f"{topic.message_type.__name__}.v1"
         if name not in self._schemas:
             schema = json.dumps(json_schema(topic.message_type)).encode()
             self._schemas[name] = self._writer.register_schema(name, SCHEMA_ENCODING, schema)
         schema_id = self._schemas[name]
-        self._channels[key] = self._writer.register_channel(key, MESSAGE_ENCODING, schema_id)
-        return self._channels[key]
+        channel = self._writer.register_channel(key, MESSAGE_ENCODING, schema_id)
+        self._channels[key, apart] = channel
+        return channel
 
     @contextmanager
     def _reporting(self) -> Iterator[None]:
@@ -225,7 +274,11 @@ def read_metadata(path: Path) -> dict[str, dict[str, str]]:
     with _open(path) as reader:
         _summary(path, reader)
         with _explaining_damage(path):
-            return {record.name: record.metadata for record in reader.iter_metadata()}
+            return {
+                record.name: record.metadata
+                for record in reader.iter_metadata()
+                if record.name != CHECKSUMS_RECORD
+            }
 
 
 def _choose(
@@ -254,6 +307,7 @@ def _records(
     records = (
         (channel.topic, message)
         for _, channel, message in reader.iter_messages(topics=keys, log_time_order=not ours)
+        if channel.message_encoding == MESSAGE_ENCODING
     )
     in_order = _in_order_of_reception(records) if ours else records
     while True:
