@@ -6,8 +6,10 @@ from typing import Any
 
 from inhand_recorder.inspection import RecordingInfo, inspect_recording
 from inhand_recorder.recovery import RecoveryReport, recover_recording
-from inhand_recorder.verification import verify_recording
+from inhand_recorder.repair import add_infos
+from inhand_recorder.verification import examine_recording
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.exit_codes import DONE, FAILED
 from inhand_runtime.part_file import PART_SUFFIX
 from rich.table import Table
 
@@ -15,6 +17,7 @@ from inhand.looking import output
 from inhand.results import write_json
 
 RECOVERED_SUFFIX = ".recovered.mcap"
+REPAIRED_SUFFIX = ".repaired.mcap"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,12 +27,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ("info", _info, "what is in recordings, whole or not"),
         ("verify", _verify, "whether they are whole and true; exit 1 when one is not"),
         ("recover", _recover, "save what is left of recordings that were cut off or damaged"),
+        ("repair", _repair, "add the camera info that a recording lacks, from another one"),
     ):
         action = actions.add_parser(name, help=text, description=text)
         action.add_argument("files", nargs="+", type=Path, metavar="FILE")
         action.add_argument("--json", type=Path, metavar="FILE", help="write the result there")
         action.set_defaults(run_action=run_action)
-        if name == "recover":
+        if name == "repair":
+            action.add_argument(
+                "--info", type=Path, required=True, metavar="FILE", help="a recording that has it"
+            )
+        if name in ("recover", "repair"):
             action.add_argument(
                 "-o", "--output", type=Path, metavar="OUT", help="the file to write (of one FILE)"
             )
@@ -49,13 +57,16 @@ def _info(arguments: argparse.Namespace) -> int:
 
 
 def _verify(arguments: argparse.Namespace) -> int:
-    problems = {str(path): verify_recording(path) for path in arguments.files}
-    for path, lines in problems.items():
-        print(f"{path}: whole and true" if not lines else f"{path}: {len(lines)} problems")
-        for line in lines:
+    examined = {str(path): examine_recording(path) for path in arguments.files}
+    for path, one in examined.items():
+        count = len(one.problems)
+        print(f"{path}: whole and true" if not count else f"{path}: {count} problems")
+        for line in one.problems:
             print(f"  {line}")
-    _result(arguments, "problems", problems)
-    return 1 if any(problems.values()) else 0
+        for line in one.notes:
+            print(f"  note: {line}")
+    _result(arguments, "problems", {path: one.problems for path, one in examined.items()})
+    return FAILED if any(one.problems for one in examined.values()) else DONE
 
 
 def _recover(arguments: argparse.Namespace) -> int:
@@ -75,6 +86,21 @@ def _recover(arguments: argparse.Namespace) -> int:
         reports.append(_report_values(path, report))
     _result(arguments, "recovered", reports)
     return 0
+
+
+def _repair(arguments: argparse.Namespace) -> int:
+    if arguments.output is not None and len(arguments.files) > 1:
+        raise SettingsError("-o names one output: give one FILE, or leave -o out")
+    repaired = []
+    for path in arguments.files:
+        output = arguments.output or path.with_name(
+            path.name.removesuffix(".mcap") + REPAIRED_SUFFIX
+        )
+        cameras = add_infos(path, arguments.info, output)
+        print(f"{output}: with the info of {', '.join(cameras)}")
+        repaired.append({"path": str(path), "output": str(output), "cameras": cameras})
+    _result(arguments, "repaired", repaired)
+    return DONE
 
 
 def _recovered(path: Path) -> Path:

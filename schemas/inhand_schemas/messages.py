@@ -33,11 +33,21 @@ Contact = Literal["resting", "right_hand", "left_hand", "both_hands", "worn"]
 ServiceState = Literal["starting", "running", "degraded", "stopping"]
 
 UNIT_TOLERANCE = 1e-3
+MOST_PIXELS = 1 << 24
+"""Pixels of the largest picture: sensors have 12 million, and decoding takes memory by this."""
+WIDEST_LENS, LONGEST_LENS = 0.05, 100.0
+"""Bounds of the focal length, in image widths: beyond them no lens is, and every loop over what
+it projects has no end."""
 
 
 def _require_finite(what: str, numbers: Iterable[float]) -> None:
     if not all(map(math.isfinite, numbers)):
         raise ValueError(f"{what} holds a number that is not finite")
+
+
+def _require_pixels(width: int, height: int) -> None:
+    if width * height > MOST_PIXELS:
+        raise ValueError(f"an image of {width} × {height} pixels is larger than any camera's")
 
 
 class Message(Struct, frozen=True, kw_only=True):
@@ -82,6 +92,18 @@ class CameraInfo(Message, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         numbers = (self.fx, self.fy, self.cx, self.cy, self.depth_scale, self.frame_rate)
         _require_finite("camera info", (*numbers, *self.distortion))
+        _require_pixels(self.width, self.height)
+        size = max(self.width, self.height)
+        if not all(
+            WIDEST_LENS * size <= focal <= LONGEST_LENS * size for focal in (self.fx, self.fy)
+        ):
+            raise ValueError("no lens has this focal length: it is in pixels")
+        if not all(abs(centre) <= LONGEST_LENS * size for centre in (self.cx, self.cy)):
+            raise ValueError("the principal point is far from the image: it is in pixels")
+        if not 1e-6 <= self.depth_scale <= 1.0:
+            raise ValueError("the depth scale is in metres a unit, 0.001 for millimetres")
+        if not 1e-3 <= self.frame_rate <= 1e4:
+            raise ValueError("no camera has this frame rate")
 
 
 class ColourImage(Struct, frozen=True):
@@ -93,6 +115,7 @@ class ColourImage(Struct, frozen=True):
     data: bytes
 
     def __post_init__(self) -> None:
+        _require_pixels(self.width, self.height)
         if self.codec == "rgb8" and len(self.data) != 3 * self.width * self.height:
             raise ValueError("colour bytes do not fill the image")
 
@@ -106,6 +129,7 @@ class DepthImage(Struct, frozen=True):
     data: bytes
 
     def __post_init__(self) -> None:
+        _require_pixels(self.width, self.height)
         if self.codec == "z16" and len(self.data) != 2 * self.width * self.height:
             raise ValueError("depth bytes do not fill the image")
 

@@ -143,7 +143,6 @@ def test_what_cannot_be_read_is_counted_told_once_a_kind_and_kept_apart(
     assert len(list(read_recording(path, streams=["rgbd"]))) == 1
     assert any("6 messages that cannot be decoded" in n for n in examine_recording(path).notes)
     assert flaws(path) == []
-    assert verify_recording(recordings(rig)[0]) == []
 
 
 def test_a_full_disk_is_told_and_costs_nothing_once_it_is_freed(rig: RunningRig) -> None:

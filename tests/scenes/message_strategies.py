@@ -4,6 +4,8 @@ import math
 
 from hypothesis import strategies as st
 from inhand_schemas.messages import (
+    LONGEST_LENS,
+    WIDEST_LENS,
     Box,
     CameraInfo,
     ColourImage,
@@ -21,7 +23,7 @@ from inhand_schemas.messages import (
 )
 
 counts = st.integers(0, 2**63 - 1)
-pixels = st.integers(1, 16384)
+pixels = st.integers(1, 4096)
 finite = st.floats(allow_nan=False, allow_infinity=False)
 positive = st.floats(0, exclude_min=True, allow_infinity=False)
 non_negative = st.floats(0, allow_infinity=False)
@@ -46,21 +48,32 @@ quaternions = (
 poses = st.builds(Pose, vectors, quaternions)
 boxes = st.builds(Box, finite, finite, non_negative, non_negative)
 
-camera_infos = st.builds(
-    CameraInfo,
-    **stamps,
-    width=pixels,
-    height=pixels,
-    fx=positive,
-    fy=positive,
-    cx=finite,
-    cy=finite,
-    distortion=st.lists(finite, max_size=14).map(tuple),
-    depth_scale=positive,
-    frame_rate=positive,
-    rig_from_camera=poses,
-    description=texts,
-)
+_in_widths = st.floats(WIDEST_LENS, LONGEST_LENS)
+
+
+@st.composite
+def _camera_infos(draw: st.DrawFn) -> CameraInfo:
+    width, height = draw(pixels), draw(pixels)
+    size = max(width, height)
+    far = LONGEST_LENS * size
+    return CameraInfo(
+        sequence=draw(counts),
+        time_ns=draw(counts),
+        width=width,
+        height=height,
+        fx=draw(_in_widths) * size,
+        fy=draw(_in_widths) * size,
+        cx=draw(st.floats(-far, far)),
+        cy=draw(st.floats(-far, far)),
+        distortion=tuple(draw(st.lists(finite, max_size=14))),
+        depth_scale=draw(st.floats(1e-6, 1.0)),
+        frame_rate=draw(st.floats(1e-3, 1e4)),
+        rig_from_camera=draw(poses),
+        description=draw(texts),
+    )
+
+
+camera_infos = _camera_infos()
 
 small = st.integers(1, 8)
 colour_images = st.one_of(

@@ -1,10 +1,11 @@
 """A recording's messages put together again as the moments at which they were captured."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
 from inhand_runtime.recording import RecordedMessage
 from inhand_runtime.source import Captured, Pixels
+from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import Message, ObjectPose, RgbdFrame, Skeletons
 
 LOOK_AHEAD_NS = 500_000_000
@@ -12,12 +13,16 @@ LOOK_AHEAD_NS = 500_000_000
 Moment = list[RecordedMessage]
 
 
-def moments(recorded: Iterable[RecordedMessage], camera: str) -> Iterator[Captured]:
+def moments(
+    recorded: Iterable[RecordedMessage],
+    camera: str,
+    on_unreadable: Callable[[MessageError], None],
+) -> Iterator[Captured]:
     """What a camera captured, in the order of capture.
 
     Messages of one sequence number and time belong together; they may lie as far apart in the
     recording as was received within half a second. Where the recorded clock was set back, what
-    comes after in the file comes after. Raises MessageError.
+    comes after in the file comes after. A message that cannot be decoded is passed over.
     """
     waiting: dict[tuple[int, int], Moment] = {}
     received_ns = captured_ns = 0
@@ -31,20 +36,27 @@ def moments(recorded: Iterable[RecordedMessage], camera: str) -> Iterator[Captur
         for key in sorted(waiting):
             if received_ns and waiting[key][0].received_ns > complete:
                 break
-            yield from _captured(waiting.pop(key), camera)
+            yield from _captured(waiting.pop(key), camera, on_unreadable)
         received_ns = max(received_ns, message.received_ns)
         captured_ns = max(captured_ns, message.captured_ns)
         waiting.setdefault((message.captured_ns, message.sequence), []).append(message)
     for key in sorted(waiting):
-        yield from _captured(waiting[key], camera)
+        yield from _captured(waiting[key], camera, on_unreadable)
 
 
-def _captured(moment: Moment, camera: str) -> Iterator[Captured]:
+def _captured(
+    moment: Moment, camera: str, on_unreadable: Callable[[MessageError], None]
+) -> Iterator[Captured]:
     """The moment of these messages; none where only another camera's labels belong to it."""
     frame: RgbdFrame | None = None
     skeletons: Skeletons | None = None
     labels: list[ObjectPose] = []
-    messages: list[Message] = [recorded.message() for recorded in moment]
+    messages: list[Message] = []
+    for recorded in moment:
+        try:
+            messages.append(recorded.message())
+        except MessageError as error:
+            on_unreadable(error)
     for message in messages:
         match message:
             case RgbdFrame():

@@ -53,6 +53,7 @@ class ReplaySource:
         except ValidationError as error:
             raise SourceError(explain(error, None, ("options",), ReplayOptions)) from None
         self._closed = threading.Event()
+        self._unreadable = 0
         self._camera, self._info = self._choose(self._cameras())
 
     @property
@@ -113,8 +114,22 @@ class ReplaySource:
     def _moments(self) -> Generator[Captured]:
         with self._explaining():
             yield from moments(
-                read_recording(self._options.file, streams=PLAYED_STREAMS), self._camera
+                read_recording(self._options.file, streams=PLAYED_STREAMS),
+                self._camera,
+                self._pass_over,
             )
+        if self._unreadable:
+            log.warning(
+                "%s: %d messages cannot be read and were passed over",
+                self._options.file,
+                self._unreadable,
+            )
+            self._unreadable = 0
+
+    def _pass_over(self, error: MessageError) -> None:
+        if not self._unreadable:
+            log.warning("%s: a message is passed over: %s", self._options.file, error)
+        self._unreadable += 1
 
     def _cameras(self) -> dict[str, CameraInfo]:
         cameras: dict[str, CameraInfo] = {}
