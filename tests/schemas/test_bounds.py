@@ -40,7 +40,7 @@ def test_a_usual_camera_is_taken() -> None:
     ],
 )
 def test_a_camera_that_cannot_be_is_refused(field: str, value: float) -> None:
-    with pytest.raises(ValueError, match="lens|principal|depth scale|frame rate"):
+    with pytest.raises(ValueError, match=r"lens|principal|depth scale|frame rate"):
         CameraInfo(**{**USUAL, field: value})
     plain: dict[str, Any] = msgspec.to_builtins(CameraInfo(**USUAL)) | {field: value}
     with pytest.raises(MessageError):
