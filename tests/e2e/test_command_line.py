@@ -85,14 +85,18 @@ def test_an_unknown_setting_is_one_line_with_its_place(
     )
 
 
+START_NS = 1_700_000_000_000_000_000
+
+
 def write_recording(path: Path, *, whole: bool = True) -> Path:
     """Ten poses; when not ``whole``, as ``kill -9`` leaves them. Returns the file."""
     counter = LossCounter()
     writer = RecordingWriter(path)
     for number in range(10):
+        time_ns = START_NS + number * 33_000_000
         pose = ObjectPose(
             sequence=number,
-            time_ns=number,
+            time_ns=time_ns,
             object="mug",
             camera="front",
             state="lost",
@@ -100,7 +104,7 @@ def write_recording(path: Path, *, whole: bool = True) -> Path:
         )
         counter.count(POSE_KEY, number)
         writer.write(
-            POSE_KEY, POSE.encode(pose), received_ns=number, captured_ns=number, sequence=number
+            POSE_KEY, POSE.encode(pose), received_ns=time_ns, captured_ns=time_ns, sequence=number
         )
     writer.sync()
     left = path.with_name(path.name + ".part").read_bytes()

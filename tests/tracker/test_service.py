@@ -60,7 +60,7 @@ class Rig:
         assert name == "camera"
         self.subscribed.append(topic)
 
-    def get(self, _timeout: float) -> Sample | None:
+    def receive(self, _timeout: float) -> Sample | None:
         if not self._samples:
             self.stop.set()
             return None
