@@ -2,33 +2,30 @@
 
 import json
 import signal
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, load_dataset
-from inhand_lab.datasets.observations import track_recording
+from inhand_lab.datasets.observations import Observation, observe
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.training.model_training import train
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import ObjectPose
 from inhand_schemas.topics import POSE, RGBD, SKELETONS
+from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS, new_tracker
 from inhand_tracker.model.model import Model
 from inhand_tracker.model.model_file import load_model, save_model
-from real_data import DATA
+from real_data import DATA, needs_real_data
 from running_rig import RunningRig, eventually
 
 from inhand.__main__ import main
 
 SEED = 5
 pytestmark = pytest.mark.xdist_group("rig")
-
-needs_data = pytest.mark.skipif(
-    not DATA.is_dir(), reason="the real recordings (../shared/data) are not on this machine"
-)
 
 
 def simulated(folder: Path, *interactions: str, images: bool = False, frames: int = 90) -> Dataset:
@@ -86,7 +83,7 @@ def assert_live_equals_offline(
     for name, model in models.items():
         tracker = new_tracker(model, DEFAULT_METHOD, left_handed=left_handed, seed=SEED)
         needs = METHODS[DEFAULT_METHOD].needs(METHODS[DEFAULT_METHOD].usual_terms)
-        offline = list(track_recording(tracker, dataset.path(tested), frames, needs))
+        offline = [seen.show(tracker) for seen in observe(dataset.path(tested), frames, needs)]
         poses = [pose for pose in live if pose.object == name]
         assert [pose.time_ns for pose in poses] == [frame.time_ns for frame in frames]
         for pose, estimate in zip(poses, offline, strict=True):
@@ -117,19 +114,10 @@ def test_images_that_come_live_weigh_as_they_do_offline(rig: RunningRig, tmp_pat
     live = recorded_poses(tracked_live(rig, dataset.path(tested), rig.folder / "mug.model"))
     frames = load_frames(dataset.path(tested), tested.object)
     seeing, blind = (
-        {
-            frame.time_ns: estimate.translation
-            for frame, estimate in zip(
-                frames,
-                track_recording(
-                    new_tracker(model, DEFAULT_METHOD, seed=SEED),
-                    dataset.path(tested),
-                    frames,
-                    METHODS[DEFAULT_METHOD].needs(terms),
-                ),
-                strict=True,
-            )
-        }
+        translations_by_time(
+            new_tracker(model, DEFAULT_METHOD, seed=SEED),
+            observe(dataset.path(tested), frames, METHODS[DEFAULT_METHOD].needs(terms)),
+        )
         for terms in (METHODS[DEFAULT_METHOD].usual_terms, ())
     )
     times = [pose.time_ns for pose in live]
@@ -148,7 +136,7 @@ def test_two_objects_are_tracked_live_as_each_is_offline(rig: RunningRig, tmp_pa
 
 
 @pytest.mark.long
-@needs_data
+@needs_real_data
 def test_a_real_golf_swing_tracked_live_equals_the_offline_evaluation(
     rig: RunningRig, tmp_path: Path
 ) -> None:
@@ -159,7 +147,7 @@ def test_a_real_golf_swing_tracked_live_equals_the_offline_evaluation(
 
 
 @pytest.mark.long
-@needs_data
+@needs_real_data
 def test_a_real_kinect_tennis_swing_with_depth_loses_no_frame(
     rig: RunningRig, tmp_path: Path
 ) -> None:
@@ -227,3 +215,9 @@ def test_a_mesh_without_marked_vertices_stops_training_with_one_line(
     (line,) = capsys.readouterr().err.splitlines()
     assert "marks 0 vertices" in line
     assert "marked_vertices = [[x, y, z]" in line
+
+
+def translations_by_time(
+    tracker: ObjectTracker, observations: Iterable[Observation]
+) -> dict[int, np.ndarray]:
+    return {seen.time_ns: seen.show(tracker).translation for seen in observations}

@@ -21,7 +21,7 @@ CAMERA = "camera"
 
 
 class DatasetError(InhandError):
-    """A dataset that cannot be used; the message says the mend."""
+    """A dataset cannot be used; the message says the mend."""
 
 
 class DatasetEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -44,21 +44,21 @@ class DatasetFile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fiel
 
 @dataclass(frozen=True)
 class Dataset:
-    """A dataset's folder and what its ``dataset.toml`` says."""
+    """A dataset's folder, and the recordings that its ``dataset.toml`` names."""
 
     folder: Path
     entries: tuple[DatasetEntry, ...]
 
     def interactions(self) -> tuple[str, ...]:
-        """Every interaction with an object, in the order of first mention."""
+        """Return every interaction with an object, in the order of first mention."""
         return tuple(dict.fromkeys(e.interaction for e in self.entries if e.object is not None))
 
     def shape(self, name: str) -> ObjectShape:
-        """An object's shape; raises InhandError."""
+        """Load an object's shape; raises InhandError."""
         return load_shape(self.folder / "objects" / name)
 
     def path(self, entry: DatasetEntry) -> Path:
-        """The recording's file."""
+        """Return the path of a recording's file."""
         return self.folder / entry.file
 
 

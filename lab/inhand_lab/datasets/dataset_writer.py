@@ -49,7 +49,7 @@ class DatasetWriter:
             self._shapes.add(shape.name)
 
     def add_recording(self, entry: DatasetEntry, messages: Iterable[Message]) -> None:
-        """Write one recording; ``messages`` come in the order of their times."""
+        """Write one recording from its messages, which come in the order of their times."""
         site = Site()
         with RecordingWriter(self.folder / entry.file) as writer:
             for message in messages:

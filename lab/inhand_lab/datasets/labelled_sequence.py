@@ -11,7 +11,7 @@ from inhand_lab.datasets.tracks import true_track
 
 
 def labelled_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
-    """A recording's bodies and labels; frames without body or label hold NaN."""
+    """Read a recording's bodies and labels; frames without body or label hold NaN."""
     frames = load_frames(dataset.path(entry), entry.object)
     joints = np.full((len(frames), 20, 3), np.nan)
     follower = Follower()

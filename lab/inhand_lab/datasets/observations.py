@@ -1,4 +1,4 @@
-"""What a tracker gets to see of a recording, as its daemon would: bodies and images, no labels."""
+"""What a tracker sees of a recording, as its daemon would: bodies and images, no labels."""
 
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
@@ -14,7 +14,12 @@ from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.people.following import Follower
 from inhand_tracker.wire.conversion import Need, image_of, joints_of
 
-from inhand_lab.datasets.recorded_frames import RecordedFrame, iterate_pixels, load_camera_info
+from inhand_lab.datasets.recorded_frames import (
+    RecordedFrame,
+    iterate_pixels,
+    labelled_camera,
+    load_camera_info,
+)
 from inhand_lab.datasets.tracks import Track, empty_track
 from inhand_lab.world.messages import camera_info, person_message, pixels_message
 from inhand_lab.world.simulation import Simulation
@@ -22,9 +27,11 @@ from inhand_lab.world.simulation import Simulation
 
 @dataclass(frozen=True)
 class Observation:
-    """One frame: the joints (20, 3) of the person followed, or None, and the image, or None.
+    """One frame as a tracker sees it.
 
-    ``somebody_else`` tells that another person is followed from here on.
+    ``joints`` (20, 3) are those of the person followed, None where nobody is seen; ``image`` is
+    None where there are no pixels, or none are needed. ``somebody_else`` is true where another
+    person is followed from this frame on.
     """
 
     time_ns: int
@@ -33,7 +40,7 @@ class Observation:
     somebody_else: bool
 
     def show(self, tracker: ObjectTracker) -> Estimate:
-        """Let a tracker see the frame."""
+        """Show the frame to a tracker, and return its estimate."""
         if self.somebody_else:
             tracker.restart()
         return tracker.step(self.joints, self.time_ns, self.image)
@@ -42,12 +49,12 @@ class Observation:
 def observe(
     path: Path, frames: Sequence[RecordedFrame], needs: Collection[Need] = ()
 ) -> Iterator[Observation]:
-    """The frames of a recording, one after the other.
+    """Yield the frames of a recording in order; raises RecordingError.
 
-    Pixels are read and decoded once, and only those that are needed. Damaged
-    ones are none. Raises RecordingError.
+    Pixels are read and decoded once, and only those that are needed. A damaged image counts as
+    none.
     """
-    name = next((frame.label.camera for frame in frames if frame.label is not None), None)
+    name = labelled_camera(frames)
     info = load_camera_info(path, name) if needs else None
     pixels = iterate_pixels(path, name) if info is not None else iter(())
     current = next(pixels, None)
@@ -68,7 +75,7 @@ def observe(
 def observe_simulation(
     simulation: Simulation, needs: Collection[Need] = ()
 ) -> Iterator[Observation]:
-    """The frames of a simulation as if they came from a camera."""
+    """Yield the frames of a simulation as if they came from a camera."""
     info = camera_info(simulation.intrinsics, simulation.frame_rate)
     for frame in range(simulation.frames):
         time_ns = round(frame * 1e9 / simulation.frame_rate)
@@ -79,24 +86,13 @@ def observe_simulation(
         yield Observation(time_ns, joints_of(person_message(simulation, frame)), image, False)
 
 
-def track_recording(
-    tracker: ObjectTracker,
-    path: Path,
-    frames: Sequence[RecordedFrame],
-    needs: Collection[Need] = (),
-) -> Iterator[Estimate]:
-    """A tracker's estimates for the frames of a recording, as the tracker daemon makes them."""
-    for observation in observe(path, frames, needs):
-        yield observation.show(tracker)
-
-
 def track_together(
     trackers: Sequence[ObjectTracker],
     path: Path,
     frames: Sequence[RecordedFrame],
     needs: Collection[Need],
 ) -> tuple[Array, list[Track]]:
-    """The joints (T, 20, 3) that several trackers saw of a recording, and their tracks.
+    """Return the joints (T, 20, 3) that several trackers saw of a recording, and their tracks.
 
     The trackers share their model and the person's handedness, so each body is read once for all.
     """

@@ -1,6 +1,6 @@
-"""Reads a recording frame by frame: bodies with labels, and apart from them pixels and camera."""
+"""Reads a recording: bodies with labels frame by frame, and apart from them pixels and camera."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from inhand_lab.datasets.dataset import CAMERA, Dataset, DatasetError
 
 @dataclass(frozen=True)
 class RecordedFrame:
-    """One moment of a recording; ``label`` is the true pose where it is known."""
+    """One moment of a recording: its people, and the true pose of its object where labelled."""
 
     sequence: int
     time_ns: int
@@ -23,10 +23,10 @@ class RecordedFrame:
 
 
 def load_frames(path: Path, object_name: str | None) -> list[RecordedFrame]:
-    """Skeletons and labels of a recording, in order, without pixels.
+    """Read the skeletons and labels of a recording, in order, without pixels.
 
-    Of several cameras' skeletons, those that the labels were made in; raises DatasetError where
-    the labels do not tell.
+    Of several cameras the skeletons come from the one in which the labels were made. Raises
+    DatasetError where that is not exactly one.
     """
     labels: dict[tuple[int, int], ObjectPose] = {}
     labelled: set[str] = set()
@@ -38,21 +38,28 @@ def load_frames(path: Path, object_name: str | None) -> list[RecordedFrame]:
         elif isinstance(message, ObjectPose) and message.object == object_name:
             labels[message.sequence, message.time_ns] = message
             labelled.add(message.camera)
-    camera = _labelled_camera(path, labelled, set(skeletons))
+    camera = _shared_camera(path, labelled, set(skeletons))
     return [
-        RecordedFrame(s.sequence, s.time_ns, s.people, labels.get((s.sequence, s.time_ns)))
-        for s in skeletons.get(camera, ())
+        RecordedFrame(
+            one.sequence, one.time_ns, one.people, labels.get((one.sequence, one.time_ns))
+        )
+        for one in skeletons.get(camera, ())
     ]
 
 
+def labelled_camera(frames: Iterable[RecordedFrame]) -> str | None:
+    """Return the name of the camera in which frames were labelled; None where none is labelled."""
+    return next((frame.label.camera for frame in frames if frame.label is not None), None)
+
+
 def load_camera(path: Path) -> Intrinsics | None:
-    """The first camera of a recording, where it says."""
+    """Read the intrinsics of a recording's first camera; None where none was recorded."""
     info = load_camera_info(path)
     return None if info is None else intrinsics_of(info)
 
 
 def load_camera_info(path: Path, camera: str | None = None) -> CameraInfo | None:
-    """What a recording says of the camera of that name, or of the first one."""
+    """Read the description of the camera of that name, or of the first one; None without any."""
     for recorded in read_recording(path, streams=(INFO.stream,)):
         message = recorded.message()
         if isinstance(message, CameraInfo) and camera in (None, recorded.name):
@@ -61,7 +68,7 @@ def load_camera_info(path: Path, camera: str | None = None) -> CameraInfo | None
 
 
 def iterate_pixels(path: Path, camera: str | None = None) -> Iterator[RgbdFrame]:
-    """The frames of a camera, or of all, of a recording, in order."""
+    """Yield the pixels that one camera of a recording took, or all of them did, in order."""
     for recorded in read_recording(path, streams=(RGBD.stream,)):
         if camera in (None, recorded.name):
             message = recorded.message()
@@ -70,14 +77,14 @@ def iterate_pixels(path: Path, camera: str | None = None) -> Iterator[RgbdFrame]
 
 
 def has_images(dataset: Dataset) -> bool:
-    """Whether any recording has pixels; raises RecordingError."""
+    """Return whether any recording has pixels; raises RecordingError."""
     return any(
         next(iterate_pixels(dataset.path(entry)), None) is not None for entry in dataset.entries
     )
 
 
-def _labelled_camera(path: Path, labelled: set[str], tracked: set[str]) -> str:
-    """The camera that a recording's labels and skeletons share."""
+def _shared_camera(path: Path, labelled: set[str], tracked: set[str]) -> str:
+    """Return the one camera that a recording's labels and skeletons share."""
     cameras = labelled or tracked
     if len(cameras) > 1:
         raise DatasetError(

@@ -1,4 +1,4 @@
-"""What is compared: a tracker's poses of an object, frame by frame, and the true ones."""
+"""Tracks: an object's poses frame by frame, as a tracker estimates them or as they truly are."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,8 +14,8 @@ from inhand_lab.datasets.recorded_frames import RecordedFrame
 class Track:
     """Poses camera_from_object of T frames: (T, 3) and (T, 4), NaN where there is none.
 
-    ``covariances`` (T, 6, 6) are what a tracker says of its errors, NaN where it says nothing; None
-    of what is no tracker's.
+    ``covariances`` (T, 6, 6) are those of a tracker's estimates, NaN where it gives none; None
+    where the poses are no tracker's.
     """
 
     translations: Array
@@ -23,7 +23,7 @@ class Track:
     covariances: Array | None = None
 
     def put(self, frame: int, estimate: Estimate) -> None:
-        """Take a tracker's estimate for one frame."""
+        """Write a tracker's estimate into one frame."""
         if estimate.translation is not None and estimate.rotation is not None:
             self.translations[frame] = estimate.translation
             self.rotations[frame] = estimate.rotation
@@ -32,21 +32,21 @@ class Track:
 
     @property
     def given(self) -> Flags:
-        """(T,): in which frames there is a pose."""
+        """Flags (T,) of the frames in which there is a pose."""
         return np.isfinite(self.translations[:, 0])
 
     def held(self) -> "Track":
-        """The same with each gap filled by the last pose before it."""
+        """Return the track with each gap filled by the last pose before it."""
         last = np.maximum.accumulate(np.where(self.given, np.arange(len(self.given)), 0))
         return Track(self.translations[last], self.rotations[last])
 
     def of(self, chosen: Flags) -> "Track":
-        """Some of the frames."""
+        """Return the track of the chosen frames (T,) alone."""
         return Track(self.translations[chosen], self.rotations[chosen])
 
 
 def empty_track(frames: int) -> Track:
-    """A track without any pose yet."""
+    """Return a track without any pose yet."""
     return Track(
         np.full((frames, 3), np.nan),
         np.full((frames, 4), np.nan),
@@ -55,7 +55,7 @@ def empty_track(frames: int) -> Track:
 
 
 def true_track(frames: Sequence[RecordedFrame]) -> Track:
-    """The labels of a recording."""
+    """Return the labels of a recording as a track."""
     track = empty_track(len(frames))
     for index, frame in enumerate(frames):
         if frame.label is not None and frame.label.camera_from_object is not None:
@@ -65,7 +65,7 @@ def true_track(frames: Sequence[RecordedFrame]) -> Track:
 
 
 def true_joints(frames: Sequence[RecordedFrame]) -> Array:
-    """The joints (T, 20, 3) where a simulated world's labels tell them; NaN elsewhere."""
+    """Return the true joints (T, 20, 3) that a simulated world's labels hold; NaN elsewhere."""
     joints = np.full((len(frames), 20, 3), np.nan)
     for index, frame in enumerate(frames):
         if frame.label is not None and frame.label.person_joints is not None:

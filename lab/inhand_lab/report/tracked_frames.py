@@ -14,7 +14,12 @@ from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.wire.poses import pose_message
 from matplotlib.figure import Figure
 
-from inhand_lab.datasets.recorded_frames import RecordedFrame, iterate_pixels, load_camera_info
+from inhand_lab.datasets.recorded_frames import (
+    RecordedFrame,
+    iterate_pixels,
+    labelled_camera,
+    load_camera_info,
+)
 from inhand_lab.datasets.tracks import Track, true_track
 from inhand_lab.evaluation.vertex_error import vertex_error
 from inhand_lab.report.picture import TRACKED, TRUE, Picture, picture_of
@@ -48,7 +53,7 @@ def draw_tracked_frames(seen: TrackedRecording, shape: ObjectShape, title: str, 
     frames = seen.frames
     true, tracked = true_track(frames), seen.track.held()
     drawable = np.flatnonzero(true.given & tracked.given)
-    name = next((frame.label.camera for frame in frames if frame.label is not None), None)
+    name = labelled_camera(frames)
     info = load_camera_info(seen.path, name)
     if info is None or len(drawable) == 0:
         return False

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import DatasetError
-from inhand_lab.datasets.observations import observe, track_recording, track_together
+from inhand_lab.datasets.observations import observe, track_together
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.training.model_training import train
 from inhand_runtime.pixels import encode_depth
@@ -139,7 +139,7 @@ def test_only_what_the_terms_need_is_decoded(tmp_path: Path) -> None:
     assert surfaces.image.grey is None
 
 
-def test_somebody_else_is_told(tmp_path: Path) -> None:
+def test_a_change_of_person_is_marked(tmp_path: Path) -> None:
     body = waving(1, 0)[0][0]
     first, second = person(body), person(body + np.array([0.1, 0.0, 0.0]))
     other = type(second)(
@@ -170,7 +170,9 @@ def test_trackers_together_give_what_each_gives_alone(
             ParticleTracker(model, VARIANTS["gd-random"], terms=(), seed=1),
         ]
 
-    alone = [list(track_recording(tracker, path, frames, ("edges",))) for tracker in trackers()]
+    alone = [
+        [seen.show(tracker) for seen in observe(path, frames, ("edges",))] for tracker in trackers()
+    ]
     decoded = []
     monkeypatch.setattr(
         "inhand_tracker.wire.conversion.decode_grey",
