@@ -24,8 +24,8 @@ from inhand_lab.recognition.tables import (
     recognition_grids,
     summarise_recognition,
 )
+from inhand_lab.report.grid import Grid
 from inhand_lab.report.report_folder import prepare_report_folder
-from inhand_lab.report.tables import Grid
 from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
 from inhand_tracker.methods.registry import METHODS

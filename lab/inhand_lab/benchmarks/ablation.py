@@ -20,9 +20,9 @@ from inhand_lab.benchmarks.variation import vary
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import track_together
 from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.evaluation.fold_model import learn_fold_model
 from inhand_lab.evaluation.folds import Fold, leave_one_out
 from inhand_lab.evaluation.pose_errors import ErrorGauge
-from inhand_lab.evaluation.protocol import fold_model
 from inhand_lab.evaluation.scoring import Judge
 from inhand_lab.workers import in_processes
 
@@ -147,7 +147,7 @@ def _variants(settings: Sequence[str]) -> tuple[Variant, ...]:
 def _try_fold(task: tuple[Dataset, Fold, Sequence[str]]) -> Array:
     """The vertex error of each variant, in metres."""
     dataset, fold, settings = task
-    model = fold_model(dataset, fold, images=True, fused=True)
+    model = learn_fold_model(dataset, fold, images=True, fused=True)
     variants = _variants(settings)
     errors = [list(_errors(dataset, entry, model, variants)) for entry in fold.tested]
     return np.mean(errors, axis=0)

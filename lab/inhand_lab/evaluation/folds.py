@@ -1,4 +1,4 @@
-"""What is learned from and what is tested: leave one participant out, or two datasets."""
+"""Folds: recordings to learn from, and others to test."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ class Fold:
 
 
 def leave_one_out(dataset: Dataset) -> list[Fold]:
-    """A fold a participant, or a recording where an interaction has one participant only.
+    """Leave out one participant a fold, or one recording where there is one participant only.
 
     Raises DatasetError where fewer than two recordings are left to learn from.
     """
@@ -36,7 +36,8 @@ def leave_one_out(dataset: Dataset) -> list[Fold]:
 
 
 def train_on_one_test_on_other(trained: Dataset, tested: Dataset) -> list[Fold]:
-    """A fold an interaction: all recordings of one set against all of the other.
+    """Make a fold of each interaction: all recordings of one set to learn from, all of the other to
+    test.
 
     Raises DatasetError where they share no interaction.
     """

@@ -12,9 +12,7 @@ from inhand_schemas.joints import JOINT_NAMES
 from inhand_tracker.body.skeleton import has_pelvis
 from inhand_tracker.geometry.arrays import Array, Flags, Indices
 
-LOST_M = 0.20
-FOUND_M = 0.10
-BODY_LOST_M = 0.20
+from inhand_lab.evaluation.parameters import DEFAULT_EVALUATION, EvaluationParameters
 
 _UPPER_JOINTS = np.array(
     [
@@ -27,7 +25,7 @@ _UPPER_JOINTS = np.array(
 
 @dataclass(frozen=True)
 class Recoveries:
-    """How many times something was lost, and the seconds until found, all together.
+    """Number of times that something was lost, and the sum of the seconds until it was found.
 
     What is not found again counts until the end of the recording.
     """
@@ -36,35 +34,45 @@ class Recoveries:
     seconds: float
 
 
-def lost_frames(vertex_errors: Array, given: Flags) -> Flags:
-    """(T,): in which frames the track is lost, of its errors in metres and where poses are given.
+def lost_frames(
+    vertex_errors: Array, given: Flags, parameters: EvaluationParameters = DEFAULT_EVALUATION
+) -> Flags:
+    """Flag (T,) the frames in which a track is lost.
 
-    An error that is NaN, before the first pose, is a loss.
+    ``vertex_errors`` (T,) are in metres, and NaN before the first pose, which is a loss; ``given``
+    (T,) flags the frames with a pose.
     """
     lost = np.empty(len(vertex_errors), bool)
-    now = False
-    for frame, (error, there) in enumerate(zip(vertex_errors, given, strict=True)):
-        limit = FOUND_M if now else LOST_M
-        now = not (there and error <= limit)
-        lost[frame] = now
+    before = False
+    for frame, (error, has_pose) in enumerate(zip(vertex_errors, given, strict=True)):
+        limit = parameters.found_m if before else parameters.lost_m
+        lost[frame] = before = not (has_pose and error <= limit)
     return lost
 
 
-def lost_bodies(joints: Array, true_joints: Array) -> Flags:
-    """(T,): in which frames the body is lost, of joints (T, 20, 3) seen and true, NaN unknown."""
+def lost_bodies(
+    joints: Array, true_joints: Array, parameters: EvaluationParameters = DEFAULT_EVALUATION
+) -> Flags:
+    """Flag (T,) the frames in which the body is lost.
+
+    Both ``joints``, as they were seen, and ``true_joints`` are (T, 20, 3), NaN where unknown.
+    """
     without_pelvis = np.array([not has_pelvis(frame) for frame in joints], bool)
     off = np.linalg.norm(joints - true_joints, axis=-1)[:, _UPPER_JOINTS]
-    return without_pelvis | (np.nan_to_num(off) > BODY_LOST_M).any(axis=1)
+    return without_pelvis | (np.nan_to_num(off) > parameters.body_lost_m).any(axis=1)
 
 
 def recoveries(lost: Flags, times_ns: Indices) -> Recoveries:
-    """Of the stretches in which a track is lost."""
+    """Sum up the stretches in which a track is lost."""
     starts, ends = _stretches(lost)
     return _sum(_ends_of_frames(times_ns)[ends] - times_ns[starts])
 
 
 def recoveries_after(body_lost: Flags, lost: Flags, times_ns: Indices) -> Recoveries:
-    """From the first frame in which the body is right again to the first with the track found."""
+    """Sum up the times from when the body is right again until the track is found.
+
+    Each begins with the first frame of a right body, and ends with the first of a found track.
+    """
     _, ends = _stretches(body_lost)
     ends = ends[ends < len(lost)]
     found = np.append(np.flatnonzero(~lost), len(lost))
@@ -74,14 +82,14 @@ def recoveries_after(body_lost: Flags, lost: Flags, times_ns: Indices) -> Recove
 
 
 def _stretches(flags: Flags) -> tuple[Indices, Indices]:
-    """First frames of the stretches, and the frames after their last."""
+    """Return the first frames of the stretches of flags, and the frames after their last."""
     padded = np.concatenate(([False], flags, [False])).astype(np.int8)
     changes = np.flatnonzero(np.diff(padded))
     return changes[::2], changes[1::2]
 
 
 def _ends_of_frames(times_ns: Indices) -> Indices:
-    """The times, and one more: when a frame after the last would come."""
+    """Return the frames' times, and one more: when a frame after the last would come."""
     step = int(np.median(np.diff(times_ns))) if len(times_ns) > 1 else 0
     return np.append(times_ns, times_ns[-1:] + step)
 

@@ -1,8 +1,8 @@
 """How well each part of the body predicts an object's pose, and all of them together.
 
 Each part's prediction is the mean over the cluster of the nearest training pose: what the particles
-of a method come to that redraws all of them in every frame and has no image. So the errors tell why
-the methods come out in the order that they do.
+of a method come to that redraws all of them in every frame and has no image. So the errors explain
+the order of the methods.
 
 ``python -m inhand_lab.evaluation.part_errors DATASET`` shows them by the joints that were measured
 and, in a simulated dataset, by the true ones.
@@ -29,20 +29,20 @@ from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.datasets.tracks import true_joints
 from inhand_lab.evaluation.folds import Fold, leave_one_out
+from inhand_lab.evaluation.parameters import DEFAULT_EVALUATION
 from inhand_lab.evaluation.vertex_error import vertex_error
 
-EVERY = 3
-"""Of so many frames one is looked at."""
-
 CHOICES = ("hand", "all parts", "stable", "stable, proximate")
-"""Parts that rotation and translation are predicted from, as gd-hand, gd-random, gd-stable and
-gd-stable-proximate do it."""
+"""The parts from which gd-hand, gd-random, gd-stable and gd-stable-proximate predict."""
 
 
 @dataclass(frozen=True)
 class PartErrors:
-    """Means over frames, in metres and radians: of the 19 parts' predictions and of the mean of
-    all, each (20,); the vertex errors of CHOICES (4,); and α and β (2,)."""
+    """Errors of predictions in metres and radians, means over frames.
+
+    ``translation_m`` and ``rotation_rad`` (20,) are those of the 19 parts and of the mean of all,
+    ``vertex_m`` (4,) those of CHOICES; ``fractions`` (2,) are α and β.
+    """
 
     translation_m: Array
     rotation_rad: Array
@@ -51,20 +51,24 @@ class PartErrors:
 
 
 def measure_part_errors(dataset: Dataset, *, by_true_joints: bool) -> PartErrors:
-    """The errors for unseen people, means over interactions; raises DatasetError.
+    """Measure the errors for unseen people, means over interactions; raises DatasetError.
 
-    True joints stand for the measured ones both of those who are learned from and of those tested.
+    With true joints, these replace the measured ones in learning and in testing.
     """
     sequences = {entry: _sequence(dataset, entry, by_true_joints) for entry in dataset.entries}
-    of_interaction: dict[str, list[PartErrors]] = {}
+    by_interaction: dict[str, list[PartErrors]] = {}
     for fold in leave_one_out(dataset):
-        of_interaction.setdefault(fold.interaction, []).extend(_of_fold(dataset, fold, sequences))
-    return _mean([_mean(errors) for errors in of_interaction.values()])
+        by_interaction.setdefault(fold.interaction, []).extend(
+            _fold_errors(dataset, fold, sequences)
+        )
+    return _mean([_mean(errors) for errors in by_interaction.values()])
 
 
 def predict_by_parts(mapping: Mapping, cluster: Indices, body: Body) -> tuple[Array, Array]:
-    """What the 19 parts predict, and the mean of all: (20, 3) and (20, 4), of right-handed people
-    in the camera frame."""
+    """Predict by each of the 19 parts, and by the mean of all, as if the person were right-handed.
+
+    Returns translations (20, 3) and rotations (20, 4) in the camera frame.
+    """
     upright = np.array([1.0, 0.0, 0.0, 0.0])
     places, _ = body.parts.to_camera(mapping.translations[cluster] * body.height, upright)
     _, turns = body.parts.to_camera(np.zeros(3), mapping.rotations[cluster])
@@ -74,7 +78,7 @@ def predict_by_parts(mapping: Mapping, cluster: Indices, body: Body) -> tuple[Ar
     return np.vstack((means, means.mean(axis=0))), rotations.principal(whole)
 
 
-def _of_fold(
+def _fold_errors(
     dataset: Dataset, fold: Fold, sequences: dict[DatasetEntry, LabelledSequence]
 ) -> Iterator[PartErrors]:
     shape = dataset.shape(str(fold.trained[0].object))
@@ -86,7 +90,11 @@ def _of_fold(
         for frame, joints in enumerate(tested.joints):
             body = reader.read(joints)
             truth = tested.translations[frame], tested.rotations[frame]
-            if frame % EVERY or body is None or not np.isfinite(truth[0]).all():
+            if (
+                frame % DEFAULT_EVALUATION.part_errors_step
+                or body is None
+                or not np.isfinite(truth[0]).all()
+            ):
                 continue
             nearest, _ = index.nearest(body.pose)
             predicted = predict_by_parts(mapping, index.cluster(nearest), body)
@@ -157,7 +165,7 @@ def _table(columns: dict[str, PartErrors]) -> Table:
 
 
 def _spaced(cells: Iterable[str]) -> Iterator[str]:
-    """Cells of centimetres, with nothing in the columns of degrees."""
+    """Yield cells of centimetres, with nothing in the columns of degrees."""
     for cell in cells:
         yield from (cell, "")
 

@@ -19,18 +19,8 @@ from inhand_tracker.shape.shape import ObjectShape, Symmetry
 from scipy.spatial import KDTree
 
 from inhand_lab.datasets.tracks import Track
+from inhand_lab.evaluation.parameters import DEFAULT_EVALUATION, EvaluationParameters
 from inhand_lab.evaluation.vertex_error import vertex_error
-
-SURFACE_POINTS = 2000
-"""That the nearest is searched among, about 3 mm apart on a mug."""
-COMPARED_POINTS = 200
-"""That are looked at, the first of these."""
-CHUNK = 1024
-ADD_LIMIT_M = 0.10
-CLOSE_M = 0.05
-REGULAR = 1e-9
-"""Share of the largest variance below which a covariance says nothing of some direction."""
-CLOSE_RAD = np.deg2rad(5.0)
 
 
 @dataclass(frozen=True)
@@ -42,28 +32,34 @@ class PoseErrors:
     rotation_rad: Array
     add_m: Array
 
-    def close(self) -> Flags:
-        """(T,): which are within 5 cm and 5°."""
-        return (self.translation_m < CLOSE_M) & (self.rotation_rad < CLOSE_RAD)
+    def close(self, parameters: EvaluationParameters = DEFAULT_EVALUATION) -> Flags:
+        """Flag (T,) the poses that are within 5 cm and 5°."""
+        return (self.translation_m < parameters.close_m) & (
+            self.rotation_rad < parameters.close_rad
+        )
 
-    def area_under_curve(self) -> float:
-        """The share of poses within a threshold, averaged over all thresholds up to 10 cm."""
-        return float(np.nan_to_num(1.0 - self.add_m / ADD_LIMIT_M).clip(0.0, 1.0).mean())
+    def area_under_curve(self, parameters: EvaluationParameters = DEFAULT_EVALUATION) -> float:
+        """Average the share of poses with an ADD(-S) below a threshold over all thresholds."""
+        below = np.nan_to_num(1.0 - self.add_m / parameters.add_limit_m)
+        return float(below.clip(0.0, 1.0).mean())
 
 
 class ErrorGauge:
-    """Compares poses of one object."""
+    """Measures the errors of poses of one object."""
 
-    def __init__(self, shape: ObjectShape) -> None:
+    def __init__(
+        self, shape: ObjectShape, parameters: EvaluationParameters = DEFAULT_EVALUATION
+    ) -> None:
         self._shape = shape
+        self._chunk = parameters.chunk
         mesh = trimesh.Trimesh(shape.vertices, shape.faces, process=False)
-        points, _ = trimesh.sample.sample_surface(mesh, SURFACE_POINTS, seed=0)
-        self._compared = np.asarray(points[:COMPARED_POINTS], float)
+        points, _ = trimesh.sample.sample_surface(mesh, parameters.surface_points, seed=0)
+        self._compared = np.asarray(points[: parameters.compared_points], float)
         self._nearest = KDTree(points) if shape.symmetries else None
         self._centre = np.array(shape.symmetries[0].centre if shape.symmetries else (0.0, 0.0, 0.0))
 
     def compare(self, estimated: Track, true: Track) -> PoseErrors:
-        """The errors of T poses against the true ones."""
+        """Measure the errors of T poses against the true ones."""
         vertex = vertex_error(
             (estimated.translations, estimated.rotations),
             (true.translations, true.rotations),
@@ -82,14 +78,14 @@ class ErrorGauge:
         )
 
     def _add(self, estimated: Track, true: Track, between: Array) -> Array:
-        """ADD(-S) (T,), in the true object's frame, where the surface stands still."""
+        """Return ADD(-S) (T,), in the true object's frame, where the surface stands still."""
         offsets = rotations.rotate(
             rotations.conjugate(true.rotations), estimated.translations - true.translations
         )
         distances = np.full(len(between), np.nan)
-        known = np.flatnonzero(np.isfinite(between[:, 0]))
-        for start in range(0, len(known), CHUNK):
-            some = known[start : start + CHUNK]
+        given = np.flatnonzero(np.isfinite(between[:, 0]))
+        for start in range(0, len(given), self._chunk):
+            some = given[start : start + self._chunk]
             placed = rotations.rotate(between[some, None, :], self._compared)
             placed = placed + offsets[some, None, :]
             if self._nearest is None:
@@ -100,8 +96,13 @@ class ErrorGauge:
         return distances
 
 
-def region_share(estimated: Track, true: Track, covariances: Array | None) -> float | None:
-    """The share of T poses whose 90 % region, by ``covariances`` (T, 6, 6), holds the true pose.
+def region_share(
+    estimated: Track,
+    true: Track,
+    covariances: Array | None,
+    parameters: EvaluationParameters = DEFAULT_EVALUATION,
+) -> float | None:
+    """Return the share of T poses whose 90 % region, by ``covariances`` (T, 6, 6), holds the truth.
 
     None where no pose has a covariance that can be inverted.
     """
@@ -111,20 +112,20 @@ def region_share(estimated: Track, true: Track, covariances: Array | None) -> fl
     off = np.concatenate(
         (estimated.translations - true.translations, rotations.to_vector(turns)), axis=1
     )
-    known = np.flatnonzero(np.isfinite(off).all(axis=1) & np.isfinite(covariances).all(axis=(1, 2)))
-    variances = np.linalg.eigvalsh(covariances[known])
-    known = known[variances[:, 0] > REGULAR * variances[:, -1]]
-    if len(known) == 0:
+    given = np.flatnonzero(np.isfinite(off).all(axis=1) & np.isfinite(covariances).all(axis=(1, 2)))
+    variances = np.linalg.eigvalsh(covariances[given])
+    regular = given[variances[:, 0] > parameters.least_variance_ratio * variances[:, -1]]
+    if len(regular) == 0:
         return None
-    solved = np.linalg.solve(covariances[known], off[known][..., None])[..., 0]
-    return float((np.einsum("ti,ti->t", off[known], solved) <= CHI_SQUARE_90).mean())
+    solved = np.linalg.solve(covariances[regular], off[regular][..., None])[..., 0]
+    return float((np.einsum("ti,ti->t", off[regular], solved) <= CHI_SQUARE_90).mean())
 
 
 def least_angle(between: Array, symmetries: tuple[Symmetry, ...]) -> Array:
-    """The least angle (...) in radians of rotations (..., 4) in the object's frame.
+    """Return the least angle (...) in radians of rotations (..., 4) in the object's frame.
 
-    Least over the turns that leave the object as it is: products of its discrete symmetries, then
-    any turn about an axis of a continuous one.
+    It is the least over the turns that leave the object as it is: products of its discrete
+    symmetries, then any turn about an axis of a continuous one.
     """
     equal = [between]
     for symmetry in symmetries:

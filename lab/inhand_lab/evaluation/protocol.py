@@ -6,34 +6,25 @@ trackers get bodies and images; the labels meet their poses only in ``scoring``.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from itertools import product
 from typing import Literal
 
-import numpy as np
-from inhand_tracker.mapping.learning import LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import METHODS, AnyTerm, MethodName, new_tracker
 from inhand_tracker.model.model import Model
-from inhand_tracker.prior.learning import learn_prior
-from inhand_tracker.shape.shape import ObjectShape
-from inhand_tracker.shape.viewpoints import Viewpoints, find_viewpoints
-from inhand_tracker.sight.appearance import learn_appearance
 from inhand_tracker.wire.conversion import Need
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import track_together
 from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.evaluation.fold_model import learn_fold_model
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.evaluation.scoring import Judge, Score
-from inhand_lab.training.appearance_samples import appearance_samples
-from inhand_lab.training.checks import check_hands
-from inhand_lab.training.model_training import checked_sequence
 from inhand_lab.workers import in_processes
 
 Terms = tuple[AnyTerm, ...] | Literal["own"]
-"""What of an image weighs; ``own``: what usually does in each method."""
+"""The terms of an image's likelihood; ``own`` are those that each method usually weighs."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +36,22 @@ class Candidate:
     seed: int = 0
 
     def chosen_terms(self) -> tuple[AnyTerm, ...]:
-        """What of an image weighs."""
+        """Return the terms that it weighs, those of its method where they are its own."""
         return METHODS[self.method].usual_terms if self.terms == "own" else self.terms
 
     def needs(self) -> tuple[Need, ...]:
-        """What of a frame must be decoded for it."""
+        """Return the parts of a frame that must be decoded for it."""
         return METHODS[self.method].needs(self.chosen_terms())
+
+    def new_tracker(self, model: Model, entry: DatasetEntry) -> ObjectTracker:
+        """Make its tracker for one recording."""
+        return new_tracker(
+            model,
+            self.method,
+            left_handed=entry.handedness == "left",
+            terms=self.chosen_terms(),
+            seed=self.seed,
+        )
 
 
 @dataclass(frozen=True)
@@ -76,15 +77,20 @@ class Protocol:
     seeds: int
 
     def candidates(self) -> list[Candidate]:
-        """All trackers that are compared."""
+        """Return all trackers that are compared."""
         return [
             Candidate(method, terms, seed)
             for terms, method, seed in product(self.terms, self.methods, range(self.seeds))
         ]
 
     def trials(self) -> int:
-        """How many recordings are tracked, each time that one is."""
+        """Return the number of recordings tracked, counted for every candidate."""
         return len(self.candidates()) * sum(len(fold.tested) for fold in self.folds)
+
+    def learn(self, fold: Fold, *, images: bool) -> Model:
+        """Learn what the methods need for a fold; raises DatasetError or RecordingError."""
+        fused = any(METHODS[name].learns_prior for name in self.methods)
+        return learn_fold_model(self.trained, fold, images=images, fused=fused)
 
 
 def evaluate(
@@ -104,38 +110,9 @@ def evaluate(
     return [trial for trials in done for trial in trials]
 
 
-def fold_model(trained: Dataset, fold: Fold, *, images: bool, fused: bool) -> Model:
-    """What is learned for a fold; without images no boundaries are looked for, and a prior and an
-    appearance for ``fusion`` alone.
-
-    Raises DatasetError or RecordingError.
-    """
-    shape = _shape(trained, fold)
-    sequences = [_sequence(trained, entry) for entry in fold.trained]
-    check_hands(fold.trained, sequences)
-    try:
-        mapping = learn(sequences, shape.mirror_normal)
-    except UnusableSequenceError as error:
-        raise DatasetError(f"{trained.folder}, {fold.interaction}: {error}") from None
-    viewpoints = Viewpoints(np.eye(3), np.zeros((3, 1, 3)))
-    appearance = prior = None
-    if images:
-        viewpoints = _viewpoints(trained, shape.name)
-    if fused:
-        prior = learn_prior(sequences, shape)
-    if fused and images:
-        appearance = learn_appearance(shape, appearance_samples(trained, fold.trained))
-    return Model(fold.interaction, shape, mapping, viewpoints, appearance, prior)
-
-
 def _evaluate_fold(protocol: Protocol) -> list[Trial]:
     (fold,) = protocol.folds
-    model = fold_model(
-        protocol.trained,
-        fold,
-        images=any(protocol.terms),
-        fused=any(METHODS[name].learns_prior for name in protocol.methods),
-    )
+    model = protocol.learn(fold, images=any(protocol.terms))
     gauge = ErrorGauge(model.shape)
     return [
         Trial(candidate, fold.interaction, entry.participant, entry.file, score)
@@ -150,7 +127,7 @@ def _evaluate_recording(
     path = protocol.tested.path(entry)
     frames = load_frames(path, entry.object)
     candidates = protocol.candidates()
-    trackers = [tracker_of(candidate, model, entry) for candidate in candidates]
+    trackers = [candidate.new_tracker(model, entry) for candidate in candidates]
     needs = {need for candidate in candidates for need in candidate.needs()}
     joints, tracks = track_together(trackers, path, frames, needs)
     judge = Judge(frames, joints, gauge)
@@ -164,40 +141,11 @@ def _evaluate_recording(
         yield candidate, score
 
 
-def tracker_of(candidate: Candidate, model: Model, entry: DatasetEntry) -> ObjectTracker:
-    """A candidate's tracker for one recording."""
-    return new_tracker(
-        model,
-        candidate.method,
-        left_handed=entry.handedness == "left",
-        terms=candidate.chosen_terms(),
-        seed=candidate.seed,
-    )
-
-
 def _parts(folds: Sequence[Fold], processes: int) -> list[Fold]:
-    """The folds, each in several where there are fewer than processes."""
+    """Deal the recordings of each fold into several where there are fewer folds than processes."""
     shares = -(-processes // len(folds))
     parts = []
     for fold in folds:
         dealt = [fold.tested[first::shares] for first in range(min(shares, len(fold.tested)))]
         parts += [replace(fold, tested=tested) for tested in dealt]
     return parts
-
-
-def _shape(dataset: Dataset, fold: Fold) -> ObjectShape:
-    name = fold.trained[0].object
-    if name is None:
-        raise DatasetError(f"{fold.trained[0].file} is not labelled")
-    return dataset.shape(name)
-
-
-# Folds share recordings, and the objects, whose boundaries take seconds to find.
-@lru_cache(maxsize=16)
-def _sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
-    return checked_sequence(dataset, entry)
-
-
-@lru_cache(maxsize=32)
-def _viewpoints(dataset: Dataset, name: str) -> Viewpoints:
-    return find_viewpoints(dataset.shape(name))

@@ -1,4 +1,4 @@
-"""What Darby, Li and Costen 2014 report, to stand beside our figures (section 6.2 and 7)."""
+"""The figures that Darby, Li and Costen 2014 report, to stand beside ours (sections 6.2 and 7)."""
 
 REFERENCE_METHOD = "gd-stable-proximate"
 
@@ -12,6 +12,6 @@ VERTEX_ERROR_CM = {
 """Table 1: means over 15 interactions by six unseen participants."""
 
 EDGE_WORTH_PERCENT = {"drinkFromMug": 7.8, "putOnGlasses": 5.2, "sweepFloor": -4.3}
-"""By how much the edge likelihood reduced errors: those that the text names."""
+"""Percentage by which the edge likelihood reduced errors, where the text names it."""
 
 MEAN_EDGE_WORTH_PERCENT = 2.1

@@ -1,4 +1,4 @@
-"""The score of one tracker on one recording: its poses against the labels."""
+"""Scores a tracker on a recording: its poses against the labels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ from inhand_lab.evaluation.pose_errors import ErrorGauge, region_share
 
 @dataclass(frozen=True)
 class Score:
-    """Of the labelled frames of one recording.
+    """How well a tracker did in the labelled frames of one recording.
 
     The errors are means over the frames in which a pose was given, or had been given before: it
     counts until the next. Shares are of all labelled frames; a frame before the first pose is
@@ -41,7 +41,7 @@ class Score:
 
 
 class Judge:
-    """Knows the truth of one recording, and scores tracks by it.
+    """Scores tracks by the truth of one recording.
 
     ``joints`` (T, 20, 3) is the body that the trackers saw, NaN where missing.
     """
@@ -56,7 +56,7 @@ class Judge:
         self._gauge = gauge
 
     def score(self, track: Track) -> Score | None:
-        """The score of a track; None where no labelled frame has a pose, then or before."""
+        """Score a track; None where no labelled frame has a pose, its own or an earlier one."""
         errors = self._gauge.compare(track.held().of(self._labelled), self._true)
         if not np.isfinite(errors.vertex_m).any():
             return None

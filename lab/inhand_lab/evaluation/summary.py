@@ -1,4 +1,4 @@
-"""From trials to the figures of a table.
+"""Summarises trials as the figures of a table.
 
 A participant's error is the mean over its recordings and seeds; a cell is the mean and the standard
 deviation over participants (over recordings, where there is one participant); a method's figure is
@@ -20,7 +20,7 @@ Figures = dict[str, float | None]
 
 
 def summarise(trials: Sequence[Trial]) -> dict[str, Any]:
-    """``{METHOD: {vertex_error_cm, sd, …, interactions: {I: {…}}}}`` of one choice of terms."""
+    """Give ``{METHOD: {vertex_error_cm, sd, …, interactions: {I: {…}}}}`` for one set of terms."""
     summary: dict[str, Any] = {}
     for method in _distinct(trial.candidate.method for trial in trials):
         of_method = [trial for trial in trials if trial.candidate.method == method]
@@ -28,7 +28,7 @@ def summarise(trials: Sequence[Trial]) -> dict[str, Any]:
             interaction: _cell([t for t in of_method if t.interaction == interaction])
             for interaction in _distinct(trial.interaction for trial in of_method)
         }
-        means = {key: _mean_known(cell[key] for cell in cells.values()) for key in _FIGURES}
+        means = {key: _mean_of_given(cell[key] for cell in cells.values()) for key in _FIGURES}
         summary[method] = {**means, "paper_cm": VERTEX_ERROR_CM.get(method), "interactions": cells}
     reference = summary.get(REFERENCE_METHOD)
     for figures in summary.values():
@@ -37,12 +37,12 @@ def summarise(trials: Sequence[Trial]) -> dict[str, Any]:
 
 
 def with_terms(trials: Iterable[Trial], terms: Terms) -> list[Trial]:
-    """The trials of one choice of terms."""
+    """Return the trials of one choice of terms."""
     return [trial for trial in trials if trial.candidate.terms == terms]
 
 
 def worth(trials: Sequence[Trial], terms: Terms, without: Terms) -> dict[str, Any]:
-    """By how many percent terms reduce the vertex error, over all participants and methods.
+    """Return the percentage by which terms reduce the vertex error, over participants and methods.
 
     ``{interactions: {I: percent}, mean: percent}``, as the paper reports it in section 7.
     """
@@ -58,7 +58,7 @@ def worth(trials: Sequence[Trial], terms: Terms, without: Terms) -> dict[str, An
 
 
 def terms_name(terms: Terms) -> str:
-    """As people write it: ``own``, ``edges``, ``edges+depth``, or ``none``."""
+    """Return terms as people write them: ``own``, ``edges``, ``edges+depth``, or ``none``."""
     return terms if terms == "own" else "+".join(terms) or "none"
 
 
@@ -67,7 +67,7 @@ def _cell(trials: Sequence[Trial]) -> Figures:
 
 
 def _errors_cm(trials: Sequence[Trial]) -> list[float]:
-    """The vertex error of each participant, or of each recording where there is one only."""
+    """Return each participant's vertex error, or each recording's of a single participant."""
     names = [trial.participant for trial in trials]
     if len(set(names)) == 1:
         names = [trial.recording for trial in trials]
@@ -85,9 +85,9 @@ def _mean_recovery(
     recoveries: Callable[[Score], Recoveries],
 ) -> Callable[[Sequence[Trial]], float | None]:
     def mean(trials: Sequence[Trial]) -> float | None:
-        all_of_them = [recoveries(trial.score) for trial in trials]
-        losses = sum(one.losses for one in all_of_them)
-        return sum(one.seconds for one in all_of_them) / losses if losses else None
+        counted = [recoveries(trial.score) for trial in trials]
+        losses = sum(one.losses for one in counted)
+        return sum(one.seconds for one in counted) / losses if losses else None
 
     return mean
 
@@ -109,13 +109,13 @@ _FIGURES: dict[str, Callable[[Sequence[Trial]], float | None]] = {
 
 
 def _mean_share(shares: Sequence[float | None]) -> float | None:
-    mean = _mean_known(shares)
+    mean = _mean_of_given(shares)
     return None if mean is None else 100.0 * mean
 
 
-def _mean_known(values: Iterable[float | None]) -> float | None:
-    known = [value for value in values if value is not None]
-    return _mean(known) if known else None
+def _mean_of_given(values: Iterable[float | None]) -> float | None:
+    given = [value for value in values if value is not None]
+    return _mean(given) if given else None
 
 
 def _mean(values: Sequence[float]) -> float:

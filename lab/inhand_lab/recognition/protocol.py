@@ -19,9 +19,9 @@ from inhand_tracker.wire.conversion import Need
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import Observation, observe
 from inhand_lab.datasets.recorded_frames import load_camera, load_frames
+from inhand_lab.evaluation.fold_model import learn_fold_model
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.pose_errors import ErrorGauge
-from inhand_lab.evaluation.protocol import fold_model
 from inhand_lab.recognition.adaptive_comparison import follow_adaptively
 from inhand_lab.recognition.scores import Answers, RecognitionScore, score_answers, score_boxes
 from inhand_lab.recognition.true_boxes import person_pixels, true_boxes
@@ -119,7 +119,7 @@ def learn_models(
         Fold(action, (), tuple(entry for entry in entries if entry.interaction == action))
         for action in actions
     ]
-    return [fold_model(dataset, fold, images=images, fused=True) for fold in folds]
+    return [learn_fold_model(dataset, fold, images=images, fused=True) for fold in folds]
 
 
 def _try_person(task: tuple[RecognitionProtocol, str]) -> list[RecognitionTrial]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from inhand_lab.recognition.false_objects import FalseObjects
 from inhand_lab.recognition.protocol import CASCADES, RecognitionTrial
-from inhand_lab.report.tables import NOTHING, Grid
+from inhand_lab.report.grid import NOTHING, Grid
 
 PUBLISHED = {
     "pourCream": (47, 83, 136),

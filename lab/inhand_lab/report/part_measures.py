@@ -18,12 +18,12 @@ LIMBS = {
     "other leg": ("HipLeft", "KneeLeft", "AnkleLeft", "FootLeft"),
     "dominant leg": ("HipRight", "KneeRight", "AnkleRight", "FootRight"),
 }
-"""Of mappings, in which everybody is right-handed."""
+"""Names of the parts of each limb, for mappings, in which everybody is right-handed."""
 
 
 @dataclass(frozen=True)
 class PartMeasures:
-    """Of N frames of one sequence, lengths in body heights and angles in radians.
+    """Measures of N frames of one sequence, lengths in body heights and angles in radians.
 
     ``translation_spread`` and ``rotation_spread`` (N,), roots of φᵉ and φᶿ: how much the object's
     pose varies among frames of like body pose. ``rotation_steps`` ψᶿ, ``translation_steps`` ψᵉ and
@@ -39,7 +39,7 @@ class PartMeasures:
 
 
 def part_measures(mapping: Mapping, sequence: int) -> PartMeasures:
-    """The measures over one sequence of a mapping."""
+    """Compute the measures over one sequence of a mapping."""
     start, end = mapping.starts[sequence : sequence + 2]
     translations, orientations = mapping.translations[start:end], mapping.rotations[start:end]
     moves = np.linalg.norm(np.diff(translations, axis=0), axis=-1)
@@ -60,7 +60,7 @@ def part_measures(mapping: Mapping, sequence: int) -> PartMeasures:
 
 
 def least_by_limb(by_part: Array) -> dict[str, Array]:
-    """The least of each limb's parts, (N, 19) → (N,), as the paper's figures show it."""
+    """Return the least value of each limb's parts, (N, 19) → (N,), as the paper's figures do."""
     return {
         limb: by_part[:, [PARTS.index(part) for part in parts]].min(axis=1)
         for limb, parts in LIMBS.items()

@@ -1,4 +1,4 @@
-"""A frame with the skeleton and objects drawn on it."""
+"""Draws the skeleton and objects on a camera's image."""
 
 from dataclasses import dataclass
 
@@ -11,31 +11,32 @@ from inhand_tracker.geometry.arrays import Array, Bytes
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.shape.shape import ObjectShape
 
+from inhand_lab.report.parameters import DEFAULT_REPORT
+
 Colour = tuple[int, int, int]
 
 BONE: Colour = (255, 210, 60)
 TRUE: Colour = (60, 220, 90)
 TRACKED: Colour = (250, 70, 60)
 WHITE: Colour = (255, 255, 255)
-ENLARGEMENT = 2
 
 
 @dataclass(frozen=True)
 class Picture:
-    """Draws on a copy of an RGB image (H, W, 3), twice as large, in a camera's view."""
+    """An RGB image (H, W, 3) to draw on, in a camera's view."""
 
     pixels: Bytes
     camera: Intrinsics
 
     def draw_skeleton(self, joints: Array) -> None:
-        """The 19 parts of joints (20, 3) in the camera frame; missing ones are left out."""
+        """Draw the 19 parts of joints (20, 3) in the camera frame, but for missing ones."""
         points = self.camera.project(joints)
         for parent, child in zip(points[PARENT_JOINTS], points[CHILD_JOINTS], strict=True):
             if np.isfinite(parent).all() and np.isfinite(child).all():
                 cv2.line(self.pixels, _pixel(parent), _pixel(child), BONE, 2, cv2.LINE_AA)
 
     def draw_object(self, shape: ObjectShape, pose: Pose, colour: Colour) -> None:
-        """The sharp edges and the outline of an object at camera_from_object."""
+        """Draw the sharp edges and the outline of an object at camera_from_object."""
         placed = rotations.rotate(np.array(pose.rotation), shape.vertices) + pose.translation
         points = self.camera.project(placed)
         for first, second in _sharp_edges(shape, placed):
@@ -50,7 +51,7 @@ class Picture:
                 )
 
     def write(self, text: str, line: int, colour: Colour) -> None:
-        """A line of text at the top left."""
+        """Write a line of text at the top left."""
         place = (12, 30 + 28 * line)
         for thickness, ink in ((4, (0, 0, 0)), (2, colour)):
             cv2.putText(
@@ -59,15 +60,15 @@ class Picture:
 
 
 def picture_of(colour: Bytes, camera: Intrinsics) -> Picture:
-    """An enlarged copy of an image to draw on."""
+    """Copy an image, enlarged, to draw on."""
     height, width = colour.shape[:2]
-    size = (ENLARGEMENT * width, ENLARGEMENT * height)
+    size = (DEFAULT_REPORT.enlargement * width, DEFAULT_REPORT.enlargement * height)
     enlarged = cv2.resize(colour, size, interpolation=cv2.INTER_CUBIC)
     return Picture(np.asarray(enlarged, np.uint8), camera.scaled_to(*size))
 
 
 def _sharp_edges(shape: ObjectShape, placed: Array) -> Array:
-    """Pairs of vertices (E, 2): the outline seen from the camera, and edges sharper than 30°."""
+    """Return pairs of vertices (E, 2): the outline seen from the camera, and sharp edges."""
     corners = placed[shape.faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     facing = np.einsum("fi,fi->f", normals, corners[:, 0]) < 0.0
@@ -78,7 +79,9 @@ def _sharp_edges(shape: ObjectShape, placed: Array) -> Array:
     edges, owner = edges[order], owner[order]
     shared = (edges[1:] == edges[:-1]).all(axis=1)
     first, second = owner[:-1][shared], owner[1:][shared]
-    sharp = np.einsum("ei,ei->e", unit[first], unit[second]) < np.cos(np.radians(30.0))
+    sharp = np.einsum("ei,ei->e", unit[first], unit[second]) < np.cos(
+        np.radians(DEFAULT_REPORT.sharp_edge_deg)
+    )
     shown = (facing[first] != facing[second]) | (sharp & (facing[first] | facing[second]))
     return np.asarray(edges[:-1][shared][shown])
 

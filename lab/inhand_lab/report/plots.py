@@ -1,4 +1,4 @@
-"""The paper's figures of a learned mapping (Darby et al. 2014, figures 4 to 6), as pictures."""
+"""Plots the paper's figures of a learned mapping (Darby et al. 2014, figures 4 to 6)."""
 
 from pathlib import Path
 
@@ -7,17 +7,17 @@ from inhand_tracker.geometry.arrays import Array
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from inhand_lab.report.parameters import DEFAULT_REPORT
 from inhand_lab.report.part_measures import PartMeasures, least_by_limb
 
 LIMB_COLOURS = ("#000000", "#56b4e9", "#d55e00", "#009e73", "#e69f00")
 TRANSLATION_COLOUR, ROTATION_COLOUR = "#0072b2", "#d55e00"
-"""Okabe and Ito's, which colour-blind people can tell apart."""
+"""Colours of Okabe and Ito, which colour-blind people can distinguish."""
 PERCENT = 100.0
-DOTS_PER_INCH = 120
 
 
 def plot_spread(measures: PartMeasures, frame_rate: float, title: str, path: Path) -> None:
-    """Figure 4: how much the object's pose varies among frames of like body pose."""
+    """Plot figure 4: how much the object's pose varies among frames of like body pose."""
     figure = Figure(figsize=(8.0, 3.4), layout="constrained")
     axes = figure.subplots()
     seconds = np.arange(len(measures.translation_spread)) / frame_rate
@@ -33,23 +33,23 @@ def plot_spread(measures: PartMeasures, frame_rate: float, title: str, path: Pat
     _label(right, "rotation, °", ROTATION_COLOUR)
     right.plot(seconds, np.degrees(measures.rotation_spread), "--", color=ROTATION_COLOUR)
     right.set_ylim(0.0, None)
-    figure.savefig(path, dpi=DOTS_PER_INCH)
+    figure.savefig(path, dpi=DEFAULT_REPORT.dots_per_inch)
 
 
 def plot_rotation_stability(
     measures: PartMeasures, frame_rate: float, title: str, path: Path
 ) -> None:
-    """Figure 5: how much the object turns until the next frame, relative to each limb."""
+    """Plot figure 5: how much the object turns until the next frame, relative to each limb."""
     figure = Figure(figsize=(8.0, 3.8), layout="constrained")
     axes = figure.subplots()
     _plot_limbs(axes, np.degrees(measures.rotation_steps), frame_rate)
     axes.set(title=f"{title}: relative to each limb", xlabel="time, s", ylabel="turn, ° a frame")
     _add_limbs(figure, axes)
-    figure.savefig(path, dpi=DOTS_PER_INCH)
+    figure.savefig(path, dpi=DEFAULT_REPORT.dots_per_inch)
 
 
 def plot_translation(measures: PartMeasures, frame_rate: float, title: str, path: Path) -> None:
-    """Figure 6: how much the object moves relative to each limb, over how far it is away."""
+    """Plot figure 6: how much the object moves relative to each limb, over how far it is away."""
     figure = Figure(figsize=(8.0, 5.8), layout="constrained")
     above, below = figure.subplots(2, sharex=True)
     _plot_limbs(above, PERCENT * measures.translation_steps, frame_rate)
@@ -57,7 +57,7 @@ def plot_translation(measures: PartMeasures, frame_rate: float, title: str, path
     above.set(title=f"{title}: relative to each limb", ylabel="move, % of body height a frame")
     below.set(xlabel="time, s", ylabel="distance, % of body height")
     _add_limbs(figure, above)
-    figure.savefig(path, dpi=DOTS_PER_INCH)
+    figure.savefig(path, dpi=DEFAULT_REPORT.dots_per_inch)
 
 
 def _plot_limbs(axes: Axes, by_part: Array, frame_rate: float) -> None:

@@ -1,4 +1,4 @@
-"""The folder of an evaluation's report: tables, sequences, and the paper's figures.
+"""Writes the folder of an evaluation's report: tables, sequences, and the paper's figures.
 
 ``report.md`` shows all of it; ``table.txt``, ``evaluation.json`` and ``sequences.tsv`` are for
 terminals, programs and spreadsheets.
@@ -13,18 +13,18 @@ from pathlib import Path
 from typing import Any
 
 from inhand_runtime.errors import InhandError
-from inhand_tracker.methods.registry import METHODS
 from inhand_tracker.model.model import Model
 from rich.console import Console
 
 from inhand_lab.datasets.observations import track_together
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.evaluation.folds import Fold
-from inhand_lab.evaluation.protocol import Candidate, Protocol, Trial, fold_model, tracker_of
+from inhand_lab.evaluation.protocol import Candidate, Protocol, Trial
 from inhand_lab.evaluation.published import REFERENCE_METHOD
+from inhand_lab.report.markdown_report import markdown, report_grids
 from inhand_lab.report.part_measures import part_measures
 from inhand_lab.report.plots import plot_rotation_stability, plot_spread, plot_translation
-from inhand_lab.report.text import markdown, report_grids, tab_separated
+from inhand_lab.report.sequences_file import tab_separated
 from inhand_lab.report.tracked_frames import TrackedRecording, draw_tracked_frames
 from inhand_lab.workers import in_processes
 
@@ -33,7 +33,7 @@ FIGURE_SUFFIXES = {"spread": ".png", "rotation": ".png", "translation": ".png", 
 
 @dataclass(frozen=True)
 class _Drawing:
-    """What is to be drawn of one fold, into a folder."""
+    """The task to draw one fold's figures into a folder."""
 
     folder: Path
     protocol: Protocol
@@ -41,7 +41,7 @@ class _Drawing:
 
 
 def prepare_report_folder(folder: Path) -> None:
-    """Make the folder, before hours of work; raises InhandError."""
+    """Make the folder before the hours of work whose report it will hold; raises InhandError."""
     with _reporting(folder):
         folder.mkdir(parents=True, exist_ok=True)
 
@@ -54,7 +54,7 @@ def write_report(
     processes: int,
     on_progress: Callable[[], None] = lambda: None,
 ) -> None:
-    """Fill a folder that is there; ``on_progress`` is called once an interaction.
+    """Fill a folder that exists; ``on_progress`` is called once an interaction.
 
     One fold of each interaction is drawn, going on to the next participant with each, as the paper
     does. Raises InhandError.
@@ -74,7 +74,7 @@ def write_report(
 
 
 def _shown(folds: Sequence[Fold]) -> list[Fold]:
-    """One fold an interaction."""
+    """Choose one fold of each interaction."""
     by_interaction: dict[str, list[Fold]] = {}
     for fold in folds:
         by_interaction.setdefault(fold.interaction, []).append(fold)
@@ -82,14 +82,9 @@ def _shown(folds: Sequence[Fold]) -> list[Fold]:
 
 
 def _draw(task: _Drawing) -> list[str]:
-    """Draw the figures of a fold, and give the names of the files."""
+    """Draw the figures of a fold, and return the names of their files."""
     protocol, fold = task.protocol, task.fold
-    model = fold_model(
-        protocol.trained,
-        fold,
-        images=bool(protocol.terms[0]),
-        fused=any(METHODS[name].learns_prior for name in protocol.methods),
-    )
+    model = protocol.learn(fold, images=bool(protocol.terms[0]))
     files = {
         name: task.folder / f"{name}_{_slug(fold.interaction)}{suffix}"
         for name, suffix in FIGURE_SUFFIXES.items()
@@ -109,7 +104,7 @@ def _draw_frames(task: _Drawing, model: Model, file: Path) -> bool:
     protocol, entry = task.protocol, task.fold.tested[0]
     method = REFERENCE_METHOD if REFERENCE_METHOD in protocol.methods else protocol.methods[-1]
     candidate = Candidate(method, protocol.terms[0])
-    tracker = tracker_of(candidate, model, entry)
+    tracker = candidate.new_tracker(model, entry)
     path = protocol.tested.path(entry)
     frames = load_frames(path, entry.object)
     joints, (track,) = track_together([tracker], path, frames, candidate.needs())
@@ -120,7 +115,7 @@ def _draw_frames(task: _Drawing, model: Model, file: Path) -> bool:
 
 
 def _slug(interaction: str) -> str:
-    """An interaction's name as part of a file's."""
+    """Return an interaction's name as it can stand in a file's."""
     return re.sub(r"\W+", "_", interaction)
 
 

@@ -1,11 +1,7 @@
-"""The tables of an evaluation, for terminals and for Markdown."""
+"""The tables of an evaluation: vertex errors, other measures, and what terms are worth."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
-
-from rich import box
-from rich.table import Table
 
 from inhand_lab.evaluation.published import (
     EDGE_WORTH_PERCENT,
@@ -13,6 +9,7 @@ from inhand_lab.evaluation.published import (
     REFERENCE_METHOD,
     VERTEX_ERROR_CM,
 )
+from inhand_lab.report.grid import NOTHING, Grid
 
 MEASURES = {
     "rotation_deg": "rotation, °",
@@ -24,41 +21,10 @@ MEASURES = {
     "recovery_s": "recovery, s",
     "body_recovery_s": "after body, s",
 }
-NOTHING = "–"
-
-
-@dataclass(frozen=True)
-class Grid:
-    """Rows of text under a header, some of them set apart as a summary."""
-
-    title: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    summary: tuple[tuple[str, ...], ...] = ()
-
-    def for_terminal(self) -> Table:
-        """At most 80 columns wide with six methods; headers break after hyphens."""
-        table = Table(title=self.title, box=box.SIMPLE_HEAD, padding=0, show_edge=False)
-        for index, name in enumerate(self.header):
-            table.add_column(_broken(name), justify="right" if index else "left", no_wrap=True)
-        for row in self.rows:
-            table.add_row(*map(_narrow, row))
-        if self.summary:
-            table.add_section()
-        for row in self.summary:
-            table.add_row(*map(_narrow, row))
-        return table
-
-    def for_markdown(self) -> str:
-        """A table with its title as a heading."""
-        alignment = (":--", *["--:"] * (len(self.header) - 1))
-        bold = [tuple(f"**{cell}**" for cell in row) for row in self.summary]
-        lines = [f"| {' | '.join(row)} |" for row in (self.header, alignment, *self.rows, *bold)]
-        return "\n".join([f"## {self.title}", "", *lines, ""])
 
 
 def error_grid(methods: Mapping[str, Any], remark: str = "") -> Grid:
-    """Vertex errors as the paper's Table 1, with its means below ours."""
+    """Return vertex errors as the paper's Table 1, with its means below ours."""
     interactions = next(iter(methods.values()))["interactions"]
     published = [VERTEX_ERROR_CM.get(name) for name in methods]
     rows = tuple(
@@ -79,7 +45,7 @@ def error_grid(methods: Mapping[str, Any], remark: str = "") -> Grid:
 
 
 def measures_grid(methods: Mapping[str, Any]) -> Grid:
-    """The other measures, means over interactions."""
+    """Return the other measures, means over interactions."""
     rows = tuple(
         (title, *(_number(method[key]) for method in methods.values()))
         for key, title in MEASURES.items()
@@ -88,7 +54,7 @@ def measures_grid(methods: Mapping[str, Any]) -> Grid:
 
 
 def interaction_grid(measure: str, methods: Mapping[str, Any]) -> Grid:
-    """One of the other measures for every interaction."""
+    """Return one of the other measures for every interaction."""
     interactions = next(iter(methods.values()))["interactions"]
     rows = tuple(
         (name, *(_number(method["interactions"][name][measure]) for method in methods.values()))
@@ -99,7 +65,7 @@ def interaction_grid(measure: str, methods: Mapping[str, Any]) -> Grid:
 
 
 def worth_grid(terms: str, worths: Mapping[str, Any]) -> Grid:
-    """By how much terms reduce the vertex error: ``worths`` by the name of what they replace."""
+    """Return by how much terms reduce the vertex error; ``worths`` by the names of other terms."""
     interactions = next(iter(worths.values()))["interactions"]
     against = tuple(f"against {name}" for name in worths)
     paper = "paper, edges"
@@ -121,7 +87,7 @@ def worth_grid(terms: str, worths: Mapping[str, Any]) -> Grid:
 
 
 def shown_grids(result: Mapping[str, Any]) -> Sequence[Grid]:
-    """What a terminal shows of a result."""
+    """Return the tables that a terminal shows of a result."""
     shown = [error_grid(result["methods"]), measures_grid(result["methods"])]
     if result["worth"]:
         shown.append(worth_grid(result["terms"], result["worth"]))
@@ -142,12 +108,3 @@ def _number(value: float | None, digits: int = 1) -> str:
 
 def _signed(value: float | None) -> str:
     return NOTHING if value is None else f"{value:+.1f}"
-
-
-def _narrow(cell: str) -> str:
-    return cell.replace(" ± ", "±")
-
-
-def _broken(name: str) -> str:
-    head, hyphen, tail = name.rpartition("-")
-    return f"{head}-\n{tail}" if hyphen and len(name) > 11 else name

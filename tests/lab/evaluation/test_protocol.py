@@ -11,7 +11,7 @@ from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.datasets.tracks import empty_track, true_track
 from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
 from inhand_lab.evaluation.pose_errors import ErrorGauge
-from inhand_lab.evaluation.protocol import Candidate, Protocol, evaluate, fold_model
+from inhand_lab.evaluation.protocol import Candidate, Protocol, evaluate
 from inhand_lab.evaluation.scoring import Judge
 from inhand_lab.evaluation.summary import summarise
 from inhand_schemas.messages import ObjectPose
@@ -167,34 +167,3 @@ def test_an_unlabelled_tested_recording_is_refused_with_the_mend(tmp_path: Path)
     plan = dataclasses.replace(protocol(trained), tested=tested, folds=folds)
     with pytest.raises(DatasetError, match=r"p5\.mcap: no frame has both a pose and a label"):
         evaluate(plan, 1)
-
-
-def test_without_images_no_boundary_is_looked_for(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("inhand_lab.evaluation.protocol.find_viewpoints", pytest.fail)
-    dataset = write_dataset(tmp_path, frames=10)
-    (fold, *_) = leave_one_out(dataset)
-    for fused in (False, True):
-        model = fold_model(dataset, fold, images=False, fused=fused)
-        assert model.interaction == "wave"
-        assert (model.prior is not None) == fused
-        assert model.appearance is None
-
-
-def test_the_folds_of_an_interaction_share_the_objects_boundaries(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    calls: list[str] = []
-
-    def found(shape: object) -> object:
-        calls.append("found")
-        return calls
-
-    monkeypatch.setattr("inhand_lab.evaluation.protocol.find_viewpoints", found)
-    dataset = write_dataset(tmp_path, frames=10)
-    models = [
-        fold_model(dataset, fold, images=True, fused=False) for fold in leave_one_out(dataset)
-    ]
-    assert len(models) == 3
-    assert calls == ["found"]

@@ -1,12 +1,10 @@
-"""What a report says in words and numbers."""
+"""The report of an evaluation as Markdown: tables, definitions of what is measured, pictures."""
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from inhand_lab.evaluation.protocol import Trial
-from inhand_lab.evaluation.summary import terms_name
-from inhand_lab.report.tables import MEASURES, Grid, error_grid, interaction_grid, shown_grids
+from inhand_lab.report.grid import Grid
+from inhand_lab.report.tables import MEASURES, error_grid, interaction_grid, shown_grids
 
 FIGURES = {
     "spread": "How much the object's pose varies among frames of like body pose; where that is "
@@ -44,7 +42,7 @@ DEFINITIONS = """\
 
 
 def report_grids(result: Mapping[str, Any]) -> list[Grid]:
-    """Everything: what terminals show, each measure by interaction, and other terms' errors."""
+    """Return all tables: a terminal's, each measure by interaction, and other terms' errors."""
     return [
         *shown_grids(result),
         *(interaction_grid(measure, result["methods"]) for measure in MEASURES),
@@ -53,7 +51,7 @@ def report_grids(result: Mapping[str, Any]) -> list[Grid]:
 
 
 def markdown(result: Mapping[str, Any], pictures: Mapping[str, Sequence[str]]) -> str:
-    """The report; ``pictures`` are the files of each interaction."""
+    """Return the report; ``pictures`` are the names of each interaction's files."""
     lines = [
         "# Evaluation",
         "",
@@ -69,40 +67,3 @@ def markdown(result: Mapping[str, Any], pictures: Mapping[str, Sequence[str]]) -
     for interaction, files in pictures.items():
         lines += ["", f"### {interaction}", "", *(f"![{file}]({file})" for file in files)]
     return "\n".join(lines) + "\n"
-
-
-def tab_separated(trials: Sequence[Trial]) -> str:
-    """A line a trial."""
-    rows = [_row(trial) for trial in trials]
-    lines = [list(rows[0]), *([_cell(value) for value in row.values()] for row in rows)]
-    return "".join("\t".join(line) + "\n" for line in lines)
-
-
-def _row(trial: Trial) -> dict[str, str | int | float]:
-    candidate, score = trial.candidate, trial.score
-    return {
-        "method": candidate.method,
-        "terms": terms_name(candidate.terms),
-        "seed": candidate.seed,
-        "interaction": trial.interaction,
-        "participant": trial.participant,
-        "recording": trial.recording,
-        "frames": score.frames,
-        "vertex_error_cm": 100.0 * score.vertex_error_m,
-        "translation_cm": 100.0 * score.translation_m,
-        "rotation_deg": math.degrees(score.rotation_rad),
-        "within_5cm_5deg_percent": 100.0 * score.close_share,
-        "within_90_percent_region_percent": math.nan
-        if score.region_share is None
-        else 100.0 * score.region_share,
-        "add_area_percent": 100.0 * score.area_under_curve,
-        "lost_percent": 100.0 * score.lost_share,
-        "losses": score.recoveries.losses,
-        "lost_s": score.recoveries.seconds,
-        "body_losses": score.body_recoveries.losses,
-        "after_body_s": score.body_recoveries.seconds,
-    }
-
-
-def _cell(value: str | float) -> str:
-    return f"{value:.3f}" if isinstance(value, float) else str(value)
