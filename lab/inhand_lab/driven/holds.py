@@ -12,10 +12,9 @@ from typing import Literal
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Array, Bytes
-from scipy.spatial.transform import Rotation
 
 from inhand_lab.driven.seen_frames import SeenFrames, seen_frames
-from inhand_lab.geometry.transforms import Transform, rotation_about
+from inhand_lab.geometry.transforms import Transform, mean_rotation, rotation_about
 from inhand_lab.motions.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT
 from inhand_lab.motions.performance import ContactKind
 from inhand_lab.motions.timeline import drift
@@ -138,8 +137,7 @@ def _unsteadiness(world_from_carrier: Transform, world_from_object: Transform) -
 
 
 def _mean(transforms: Transform) -> Transform:
-    rotation = Rotation.from_matrix(transforms.rotation).mean().as_matrix()
-    return Transform(transforms.translation.mean(axis=0), np.asarray(rotation))
+    return Transform(transforms.translation.mean(axis=0), mean_rotation(transforms.rotation))
 
 
 def _drifting(grip: Transform, times: Array, random: np.random.Generator) -> Transform:

@@ -13,7 +13,6 @@ from itertools import accumulate
 import numpy as np
 from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array
-from scipy.spatial.transform import Rotation
 
 from inhand_lab.driven.denoising import smooth_path
 from inhand_lab.geometry.transforms import (
@@ -22,6 +21,7 @@ from inhand_lab.geometry.transforms import (
     normalised,
     rotation_about,
     rotation_from_axes,
+    rotation_from_vector,
 )
 
 STRAIGHT = 0.15
@@ -96,7 +96,7 @@ def _carried(fingers: Array, thumb: Array) -> Array:
     ways = np.cross(fingers[:-1], fingers[1:])
     sines = np.linalg.norm(ways, axis=1, keepdims=True)
     angles = np.arctan2(sines[:, 0], np.sum(fingers[:-1] * fingers[1:], axis=1))
-    steps = Rotation.from_rotvec(ways / np.maximum(sines, 1e-9) * angles[:, None]).as_matrix()
+    steps = rotation_from_vector(ways / np.maximum(sines, 1e-9) * angles[:, None])
     first = rotation_from_axes(fingers[0], thumb)
     return np.stack(list(accumulate(steps, lambda here, step: step @ here, initial=first)))
 

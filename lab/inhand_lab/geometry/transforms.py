@@ -1,4 +1,8 @@
-"""Rigid transforms over time, mirrored and blended as arrays."""
+"""Rigid transforms over time, as translations and rotation matrices.
+
+All the lab's matrices of rotations are made here, by scipy. Whatever is computed on quaternions is
+in the tracker's geometry/rotations.py; here they are only what labels are written in.
+"""
 
 from __future__ import annotations
 
@@ -59,6 +63,23 @@ def rotation_about(axes: str, *angles: ArrayLike) -> Array:
     return np.asarray(matrices.reshape(*stacked.shape[:-1], 3, 3))
 
 
+def rotation_from_vector(vectors: ArrayLike) -> Array:
+    """Rotations (..., 3, 3) by rotation vectors (..., 3) in radians."""
+    array = np.asarray(vectors, float)
+    matrices = Rotation.from_rotvec(array.reshape(-1, 3)).as_matrix()
+    return np.asarray(matrices.reshape(*array.shape, 3))
+
+
+def turned(points: Array, vectors: Array) -> Array:
+    """Points (N, 3), each turned about the origin by a rotation vector (N, 3) in radians."""
+    return np.asarray(Rotation.from_rotvec(vectors).apply(points))
+
+
+def mean_rotation(rotations: Array) -> Array:
+    """The rotation (3, 3) in the middle of rotations (T, 3, 3)."""
+    return np.asarray(Rotation.from_matrix(rotations).mean().as_matrix())
+
+
 def normalised(vectors: ArrayLike) -> Array:
     """Vectors (..., 3) scaled to unit length."""
     array = np.asarray(vectors, float)
@@ -76,21 +97,25 @@ def rotation_from_axes(y: ArrayLike, towards_z: ArrayLike) -> Array:
 
 
 def interpolate(first: Transform, second: Transform, share: Array) -> Transform:
-    """From first (share 0) to second (share 1), along a line and the shortest rotation.
+    """Transforms from first (share 0) to second (share 1), along a line and the shortest rotation.
 
-    share (T,); first and second are series (T, ...).
+    ``share`` is (T,), ``first`` and ``second`` are series (T, ...).
     """
     between = np.swapaxes(first.rotation, -1, -2) @ second.rotation
     turn = Rotation.from_matrix(between).as_rotvec() * share[:, None]
     return Transform(
         first.translation + share[:, None] * (second.translation - first.translation),
-        first.rotation @ Rotation.from_rotvec(turn).as_matrix(),
+        first.rotation @ rotation_from_vector(turn),
     )
 
 
 def quaternions(rotation: Array) -> Array:
-    """Unit quaternions (T, 4), (w, x, y, z), of rotations (T, 3, 3), of continuous sign."""
-    rotated = Rotation.from_matrix(rotation).as_quat(scalar_first=True)
-    flips = np.sum(rotated[1:] * rotated[:-1], axis=1) < 0
-    signs = np.where(np.cumsum(np.concatenate([[rotated[0, 0] < 0], flips])) % 2 == 1, -1.0, 1.0)
-    return np.asarray(rotated * signs[:, None])
+    """Unit quaternions (T, 4), (w, x, y, z), of rotations (T, 3, 3), of continuous sign.
+
+    The tracker's ``rotations.from_matrix`` differs in the last bit: scipy's conversion stays, so
+    that the same version and seed make the same bytes.
+    """
+    unsigned = Rotation.from_matrix(rotation).as_quat(scalar_first=True)
+    flips = np.sum(unsigned[1:] * unsigned[:-1], axis=1) < 0
+    signs = np.where(np.cumsum(np.concatenate([[unsigned[0, 0] < 0], flips])) % 2 == 1, -1.0, 1.0)
+    return np.asarray(unsigned * signs[:, None])

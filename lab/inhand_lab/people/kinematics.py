@@ -12,9 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Array
-from scipy.spatial.transform import Rotation
 
-from inhand_lab.geometry.transforms import MIRROR, Transform, normalised, rotation_about
+from inhand_lab.geometry.transforms import (
+    MIRROR,
+    Transform,
+    normalised,
+    rotation_about,
+    rotation_from_vector,
+)
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.person import Proportions, SimulatedPerson
 from inhand_lab.people.solids import belly, rib_cage
@@ -226,7 +231,7 @@ def _relieve_wrist(forearm: Array, rotation: Array) -> Array:
     sine = np.linalg.norm(hinge, axis=1)
     bend = np.arctan2(sine, np.sum(fingers * forearm, axis=1))
     excess = np.clip(bend - WRIST_LIMIT, 0.0, None) / np.maximum(sine, 1e-9)
-    return np.asarray(Rotation.from_rotvec(hinge * excess[:, None]).as_matrix() @ rotation)
+    return np.asarray(rotation_from_vector(hinge * excess[:, None]) @ rotation)
 
 
 def _dots(vectors: Array, against: Array) -> Array:

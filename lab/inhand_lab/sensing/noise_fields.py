@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Array, Singles
@@ -18,12 +18,12 @@ Place = tuple[int, int]
 """Row and column of a field that an image begins at."""
 
 
-@dataclass(frozen=True)
-class NoiseFields:
-    """Fields (FIELD, FIELD) of noise.
+class NoiseFields(NamedTuple):
+    """Fields (FIELD, FIELD) of noise, which compiled code reads.
 
-    axial is of unit deviation and correlated, lateral (..., 2) are whole pixels, loss is uniform
-    in [0, 1), patches is so too but correlated over many pixels, colour is of unit deviation.
+    ``axial`` is of unit deviation and correlated, ``lateral`` (..., 2) are whole pixels, ``loss``
+    is uniform in [0, 1) and ``patches`` so too but correlated over many pixels, ``colour`` is of
+    unit deviation.
     """
 
     axial: Singles
@@ -35,8 +35,10 @@ class NoiseFields:
 
 @cache
 def noise_fields(grain: float, lateral_deviation: float, patch: float) -> NoiseFields:
-    """Fields, always the same for the same sizes in pixels: grain is over how many depth noise is
-    correlated, patch how large the patches are."""
+    """The fields for these sizes in pixels, always the same.
+
+    ``grain`` is the distance over which depth noise is correlated, ``patch`` the size of patches.
+    """
     random = np.random.default_rng(0x5E4502)
 
     def correlated(pixels: float) -> Array:
@@ -57,6 +59,6 @@ def noise_fields(grain: float, lateral_deviation: float, patch: float) -> NoiseF
 
 
 def any_place(random: np.random.Generator) -> Place:
-    """Somewhere in a field."""
+    """A random place in a field."""
     row, column = random.integers(FIELD, size=2).tolist()
     return row, column

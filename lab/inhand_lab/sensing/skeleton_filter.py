@@ -1,7 +1,7 @@
 """The filter that comes with Kinect's skeletons: double exponential, and blind to small trembling.
 
 Holt's method as Microsoft's Kinect SDK 1.x publishes it (Azimi, *Skeletal Joint Smoothing White
-Paper*, 2012), with its usual settings. Within JITTER_RADIUS it follows the more reluctantly the
+Paper*, 2012), with its usual settings. Within its jitter radius it follows the more reluctantly the
 smaller the deviation is, so that a person who rests hardly trembles while a leap passes at once.
 """
 
@@ -10,29 +10,26 @@ from __future__ import annotations
 import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
-SMOOTHING = 0.5
-CORRECTION = 0.5
-PREDICTION = 0.5
-JITTER_RADIUS = 0.05
-"""Metres; twice as much for a joint that is inferred, as is DEVIATION_RADIUS."""
-DEVIATION_RADIUS = 0.04
-"""How far, in metres, the filtered joint may be from the measured one."""
+from inhand_lab.sensing.skeleton_noise_parameters import SkeletonFilter
 
 
-def smooth(joints: Array, guessed: Array) -> Array:
-    """Filtered joints (T, J, 3) of measured ones, in metres; guessed (T, J), 0 to 1, tells where
-    they are inferred."""
+def smooth(joints: Array, guessed: Array, settings: SkeletonFilter) -> Array:
+    """Filtered joints (T, J, 3) of measured ones, in metres.
+
+    ``guessed`` (T, J), 0 to 1, is how far a joint is inferred.
+    """
+    smoothing, correction = settings.smoothing, settings.correction
     smoothed = joints.copy()
     level, trend = joints[0], np.zeros_like(joints[0])
     for frame, measured in enumerate(joints[1:], start=1):
         width = 1.0 + guessed[frame, :, None]
-        trust = _distance(measured, level) / (JITTER_RADIUS * width)
+        trust = _distance(measured, level) / (settings.jitter_radius * width)
         followed = level + (measured - level) * np.minimum(trust, 1.0)
         before = level
-        level = (1.0 - SMOOTHING) * followed + SMOOTHING * (before + trend)
-        trend = CORRECTION * (level - before) + (1.0 - CORRECTION) * trend
-        predicted = level + PREDICTION * trend
-        allowed = DEVIATION_RADIUS * width
+        level = (1.0 - smoothing) * followed + smoothing * (before + trend)
+        trend = correction * (level - before) + (1.0 - correction) * trend
+        predicted = level + settings.prediction * trend
+        allowed = settings.deviation_radius * width
         share = allowed / np.maximum(_distance(predicted, measured), allowed)
         smoothed[frame] = measured + share * (predicted - measured)
     return smoothed

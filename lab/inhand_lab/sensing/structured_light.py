@@ -14,97 +14,48 @@ from __future__ import annotations
 
 import numba
 import numpy as np
-from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
 
-from inhand_lab.geometry.rasteriser import Canvas
-from inhand_lab.sensing.noise_fields import FIELD, NoiseFields, Place, noise_fields
-
-BASELINE = 0.075
-STEPS_PER_PIXEL = 8.0
-NEAREST, FURTHEST = 0.5, 8.0
-LATERAL_DEVIATION = 0.8
-FRESH = 0.25
-"""Share of the deviation that is new in every frame."""
-SHADOW = 3.0
-"""Width in pixels of a shadow that the matching window still bridges."""
-EDGE_JUMP = 0.05
-"""A relative change of depth between neighbours that counts as an edge."""
-EDGE_LOSS = 0.11
-"""Share of the pixels at an edge that return nothing."""
+from inhand_lab.sensing.depth_scene import DepthScene, displaced, looked_up, mixed, steepest
+from inhand_lab.sensing.noise_fields import noise_fields
+from inhand_lab.sensing.noise_parameters import StructuredLightNoise
 
 
-def measure(
-    canvas: Canvas, intrinsics: Intrinsics, unseen: int, lasting: Place, fresh: Place
+def measure_structured_light_depth(
+    scene: DepthScene, noise: StructuredLightNoise
 ) -> NDArray[np.uint16]:
-    """Depth (H, W) in millimetres, 0 where nothing was measured.
-
-    unseen is the label of what returns no light, 0 if all does. Noise is looked up from two
-    places: one lasts as long as the camera stands still, the other is of this frame.
-    """
-    fields = _fields()
-    depth = _measure(
-        canvas.inverse_depth,
-        canvas.labels,
-        unseen,
-        intrinsics.fx,
-        fields.axial,
-        fields.lateral,
-        fields.patches,
-        *lasting,
-        *fresh,
-    )
-    return np.asarray(depth)
-
-
-def _fields() -> NoiseFields:
-    return noise_fields(1.2, LATERAL_DEVIATION, 1.5)
+    """Measure depth (H, W) in millimetres, 0 where nothing was measured."""
+    fields = noise_fields(noise.grain, noise.lateral_deviation, noise.patch)
+    return np.asarray(_measure(scene, fields, noise))
 
 
 @numba.njit(cache=True, nogil=True)
-def _measure(  # type: ignore[no-untyped-def]
-    inverse_depth,
-    labels,
-    unseen,
-    focal,
-    axial,
-    lateral,
-    patches,
-    row,
-    column,
-    fresh_row,
-    fresh_column,
-):
+def _measure(scene, fields, noise):  # type: ignore[no-untyped-def]
+    inverse_depth = scene.inverse_depth
     height, width = inverse_depth.shape
     depth = np.zeros((height, width), np.uint16)
-    steps = np.float32(580.0 * BASELINE * STEPS_PER_PIXEL)
-    parallax = np.float32(focal * BASELINE)
-    mask = FIELD - 1
-    fresh, lasting = np.float32(FRESH), np.float32(np.sqrt(1.0 - FRESH**2))
+    steps = np.float32(noise.focal_length * noise.baseline * noise.steps_per_pixel)
+    parallax = np.float32(scene.focal * noise.baseline)
     for v in range(height):
-        noise_v, fresh_v = (v + row) & mask, (v + fresh_row) & mask
         lit_from = np.float32(1e9)
         for u in range(width - 1, -1, -1):
-            own = inverse_depth[v, u]
-            from_projector = u - parallax * own
-            shadowed = from_projector > lit_from + np.float32(SHADOW)
+            from_projector = u - parallax * inverse_depth[v, u]
+            shadowed = from_projector > lit_from + np.float32(noise.shadow)
             lit_from = min(lit_from, from_projector)
-            noise_u, fresh_u = (u + column) & mask, (u + fresh_column) & mask
-            near_v = min(max(v + lateral[noise_v, noise_u, 0], 0), height - 1)
-            near_u = min(max(u + lateral[noise_v, noise_u, 1], 0), width - 1)
-            inverse = inverse_depth[near_v, near_u]
-            if shadowed or inverse < 1.0 / FURTHEST or inverse > 1.0 / NEAREST:
+            lasting, fresh = looked_up(scene.lasting, v, u), looked_up(scene.fresh, v, u)
+            near = displaced(fields.lateral, lasting, v, u, (height, width))
+            inverse = inverse_depth[near]
+            if shadowed or inverse < 1.0 / noise.furthest or inverse > 1.0 / noise.nearest:
                 continue
-            if unseen != 0 and labels[near_v, near_u] == unseen:
+            if scene.unseen != 0 and scene.labels[near] == scene.unseen:
                 continue
-            beside = inverse_depth[near_v, max(near_u - 1, 0)]
-            above = inverse_depth[max(near_v - 1, 0), near_u]
-            jump = max(abs(beside - inverse), abs(above - inverse))
-            if jump > EDGE_JUMP * inverse and patches[fresh_v, fresh_u] < EDGE_LOSS:
+            jump = steepest(inverse_depth, near[0], near[1])
+            if jump > noise.edge_jump * inverse and fields.patches[fresh] < noise.edge_loss:
                 continue
-            beyond = np.float32(1.0) / inverse - np.float32(0.4)
-            deviation = np.float32(0.0012) + np.float32(0.0019) * beyond * beyond
-            noise = lasting * axial[noise_v, noise_u] + fresh * axial[fresh_v, fresh_u]
-            disparity = steps * inverse * (1 + deviation * inverse * noise)
+            beyond = np.float32(1.0) / inverse - np.float32(noise.most_exact)
+            growth = np.float32(noise.deviation_growth) * beyond * beyond
+            deviation = np.float32(noise.least_deviation) + growth
+            error = mixed(fields.axial, lasting, fresh, noise.fresh)
+            disparity = steps * inverse * (1 + deviation * inverse * error)
             depth[v, u] = np.uint16(np.float32(1000.0) * steps / np.rint(disparity))
     return depth

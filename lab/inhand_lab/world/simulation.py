@@ -38,7 +38,7 @@ from inhand_lab.sensing.render import (
     object_surface,
     visible_fraction,
 )
-from inhand_lab.sensing.sensor import brightness, sense
+from inhand_lab.sensing.sensor import FrameConditions, brightness, sense
 from inhand_lab.sensing.skeleton_noise import read_skeleton
 from inhand_lab.world.interactions import INTERACTIONS as PERFORMED
 from inhand_lab.world.room import build_room
@@ -169,9 +169,11 @@ class Simulation:
             ),
             self.camera,
             random,
-            gains=self._gains[frame],
-            unseen=0 if self.object_model.returns_depth else OBJECT,
-            lasting=any_place(self._random("sensor")),
+            FrameConditions(
+                self._gains[frame],
+                0 if self.object_model.returns_depth else OBJECT,
+                any_place(self._random("sensor")),
+            ),
         )
         return SensedFrame(colour, depth, drawing.visible_fraction)
 

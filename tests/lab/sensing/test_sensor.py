@@ -11,7 +11,7 @@ from inhand_lab.objects.model import RETURN_NO_DEPTH
 from inhand_lab.sensing.cameras import CAMERAS, KINECT, OAK_D, Camera
 from inhand_lab.sensing.motion_blur import Moving, blurred
 from inhand_lab.sensing.render import OBJECT, ROOM
-from inhand_lab.sensing.sensor import brightness, sense
+from inhand_lab.sensing.sensor import FrameConditions, brightness, sense
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import simulate
 from inhand_tracker.geometry.arrays import Array, Bytes
@@ -30,7 +30,7 @@ def wall(distance: float, camera: Camera) -> Canvas:
 
 def depth_of(canvas: Canvas, camera: Camera, seed: int = 0, unseen: int = 0) -> Array:
     random = np.random.default_rng(seed)
-    return sense(canvas, camera, random, unseen=unseen)[1].astype(float)
+    return sense(canvas, camera, random, FrameConditions(unseen=unseen))[1].astype(float)
 
 
 @EVERY_CAMERA
@@ -126,7 +126,8 @@ def test_brightness_changes_slowly_and_by_little() -> None:
     assert np.abs(np.log(gains)).max() < 0.3
     assert 0.02 < np.log(gains).std() < 0.10
     assert np.abs(np.diff(gains, axis=0)).mean() < 0.02
-    bright, _ = sense(wall(2.0, KINECT), KINECT, np.random.default_rng(0), gains=np.full(3, 1.1))
+    conditions = FrameConditions(gains=np.full(3, 1.1))
+    bright, _ = sense(wall(2.0, KINECT), KINECT, np.random.default_rng(0), conditions)
     assert bright.mean() == pytest.approx(1.1 * 120.0, abs=0.5)
 
 

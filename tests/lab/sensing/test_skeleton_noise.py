@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from inhand_lab.realism.skeletons import hand_bends
-from inhand_lab.sensing.skeleton_errors import DEVIATIONS, wander
+from inhand_lab.sensing.skeleton_errors import wander
 from inhand_lab.sensing.skeleton_filter import smooth
 from inhand_lab.sensing.skeleton_noise import (
     INFERRED,
@@ -15,11 +15,14 @@ from inhand_lab.sensing.skeleton_noise import (
     SkeletonReading,
     read_skeleton,
 )
+from inhand_lab.sensing.skeleton_noise_parameters import SkeletonFilter, WanderingErrors
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array
 
 FRAME_RATE = 30.0
+NOISE = WanderingErrors()
+FILTER = SkeletonFilter()
 
 
 @cache
@@ -80,11 +83,11 @@ def test_errors_wander_with_the_way_and_not_with_the_time() -> None:
     random = np.random.default_rng(0)
     still, moving = np.zeros((900, 20)), np.ones((900, 20))
     within_a_second = [
-        float(np.std(np.diff(wander(random, speed, FRAME_RATE)[::30], axis=0)))
+        float(np.std(np.diff(wander(random, speed, FRAME_RATE, NOISE)[::30], axis=0)))
         for speed in (still, moving)
     ]
     assert within_a_second[1] > 3.0 * within_a_second[0]
-    assert within_a_second[1] > 0.5 * DEVIATIONS.min()
+    assert within_a_second[1] > 0.5e-3 * NOISE.deviations_mm.column.min()
 
 
 def test_the_faster_the_wrist_the_more_often_it_leaves_the_arm() -> None:
@@ -159,15 +162,15 @@ def test_the_filter_follows_a_leap_at_once_and_holds_a_tremble() -> None:
     leap = np.zeros((20, 1, 3))
     leap[10:] = 0.5
     sure = np.zeros((20, 1))
-    assert np.linalg.norm(smooth(leap, sure)[10, 0] - leap[10, 0]) < 0.05
+    assert np.linalg.norm(smooth(leap, sure, FILTER)[10, 0] - leap[10, 0]) < 0.05
     tremble = 0.003 * np.random.default_rng(0).normal(size=(600, 1, 3))
-    filtered = smooth(tremble, np.zeros((600, 1)))
+    filtered = smooth(tremble, np.zeros((600, 1)), FILTER)
     assert np.std(np.diff(filtered, axis=0)) < 0.1 * np.std(np.diff(tremble, axis=0))
 
 
 def test_the_filter_lags_behind_a_steady_movement_by_centimetres() -> None:
     steady = np.linspace(0.0, 1.0, 60)[:, None, None] * np.ones(3)
-    lag = np.linalg.norm(smooth(steady, np.zeros((60, 1))) - steady, axis=2)
+    lag = np.linalg.norm(smooth(steady, np.zeros((60, 1)), FILTER) - steady, axis=2)
     assert lag[30:].max() < 0.04
     assert lag[30:].min() < 0.03
 
