@@ -13,7 +13,7 @@ from inhand_lab.demonstration.parameters import DEFAULT_DEMONSTRATION
 from inhand_lab.demonstration.preparation import train_demonstration, write_rig_file
 from inhand_lab.demonstration.review import Review, review
 from inhand_lab.demonstration.typical_frame import draw_typical_frame
-from inhand_lab.world.simulation import INTERACTIONS
+from inhand_lab.world.interactions import INTERACTIONS
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_schemas.topics import POSE
 from rich.console import Console

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from inhand_lab.realism.comparison import CONFIDENCE, LEFT_OUT, STAGES, WITHIN, Comparison, compare
-from inhand_lab.world.simulation import VERSION
+from inhand_lab.world.random_streams import GENERATOR_VERSION
 from inhand_runtime.errors import SettingsError
 from rich.console import Console
 from rich.table import Table
@@ -35,7 +35,7 @@ def show_realism(data: Path, seed: int, json_file: Path | None) -> int:
     told = [one for one in compared if one.told]
     untold = [one for one in compared if not one.told]
     console = Console()
-    console.print(_table(f"world {VERSION}, seed {seed}", told))
+    console.print(_table(f"world {GENERATOR_VERSION}, seed {seed}", told))
     if untold:
         console.print(_table("too few people to tell: not judged", untold))
     console.print("Knowingly left out:")
@@ -74,7 +74,7 @@ def _table(title: str, compared: list[Comparison]) -> Table:
 
 def _result(compared: list[Comparison], seed: int) -> dict[str, Any]:
     return {
-        "version": VERSION,
+        "version": GENERATOR_VERSION,
         "seed": seed,
         "within": WITHIN,
         "properties": [

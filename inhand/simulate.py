@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from inhand_lab.datasets.dataset import Dataset, load_dataset
-from inhand_lab.datasets.generation import generate
-from inhand_lab.driven.dataset import generate_driven, pairs_for
+from inhand_lab.datasets.generation import GenerationSettings, generate
+from inhand_lab.driven.dataset import DrivenSettings, generate_driven, pairs_for
 from inhand_lab.sensing.cameras import CAMERAS, KINECT
+from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.sheet import write_sheet
-from inhand_lab.world.simulation import INTERACTIONS
 from inhand_runtime.errors import SettingsError
 from rich.console import Console
 
@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.out is None and arguments.sheet is None:
         raise SettingsError("name the new dataset's folder, or a picture with --sheet")
     if arguments.sheet is not None:
-        _write_sheet(arguments, chosen or INTERACTIONS)
+        _write_sheet(arguments, chosen or tuple(INTERACTIONS))
     if arguments.out is not None:
         dataset = _generate_driven(arguments) if arguments.bodies else _generate(arguments)
         Console().print(f"{len(dataset.entries)} recordings in {dataset.folder}")
@@ -91,17 +91,19 @@ def _write_sheet(arguments: argparse.Namespace, interactions: Sequence[str]) -> 
 
 
 def _generate(arguments: argparse.Namespace) -> Dataset:
-    interactions = arguments.interactions or INTERACTIONS
+    interactions = arguments.interactions or tuple(INTERACTIONS)
     with progress_bar("simulating", len(interactions) * arguments.participants) as advance:
         return generate(
             arguments.out,
-            interactions,
-            arguments.participants,
-            arguments.seed,
-            arguments.frames,
-            images=not arguments.no_images,
-            on_progress=advance,
-            camera=CAMERAS[arguments.camera],
+            GenerationSettings(
+                interactions,
+                arguments.participants,
+                arguments.seed,
+                arguments.frames,
+                images=not arguments.no_images,
+                camera=CAMERAS[arguments.camera],
+            ),
+            advance,
         )
 
 
@@ -112,9 +114,11 @@ def _generate_driven(arguments: argparse.Namespace) -> Dataset:
         return generate_driven(
             arguments.out,
             bodies,
-            arguments.interactions,
-            arguments.seed,
-            images=not arguments.no_images,
-            on_progress=advance,
-            camera=CAMERAS[arguments.camera],
+            DrivenSettings(
+                arguments.interactions,
+                arguments.seed,
+                images=not arguments.no_images,
+                camera=CAMERAS[arguments.camera],
+            ),
+            advance,
         )

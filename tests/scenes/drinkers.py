@@ -1,10 +1,11 @@
 """Simulated people who drink from a mug, a model learned from some, and a fused track of others."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 from inhand_lab.evaluation.vertex_error import vertex_error
+from inhand_lab.sensing.cameras import KINECT
 from inhand_lab.world.messages import camera_info, shape_of
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_tracker.geometry import rotations
@@ -20,6 +21,7 @@ from inhand_tracker.sight.appearance import Sample, learn_appearance
 
 SEED = 23
 FRAME_RATE = 15.0
+FILMED = replace(KINECT, frame_rate=FRAME_RATE)
 FRAME_NS = 66_666_667
 FRAMES = 150
 LEARNED_FROM = range(3)
@@ -29,7 +31,7 @@ CHI_SQUARE_90 = 10.645
 
 @cache
 def drinking(participant: int) -> Simulation:
-    return simulate("drinkFromMug", participant, SEED, FRAMES, FRAME_RATE)
+    return simulate("drinkFromMug", participant, SEED, FRAMES, FILMED)
 
 
 def skeletons(simulation: Simulation) -> np.ndarray:

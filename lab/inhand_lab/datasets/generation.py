@@ -1,7 +1,7 @@
 """Datasets of simulated people."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from inhand_schemas.messages import Message, Skeletons
@@ -16,10 +16,26 @@ from inhand_lab.world.messages import (
     pixels_message,
     shape_of,
 )
-from inhand_lab.world.simulation import VERSION, Simulation, simulate
+from inhand_lab.world.random_streams import GENERATOR_VERSION
+from inhand_lab.world.simulation import Simulation, simulate
 
 FRAME_RATE = 30
 START_NS = 1_000_000_000_000_000_000
+
+
+@dataclass(frozen=True)
+class GenerationSettings:
+    """Settings of a dataset in which every participant does every interaction.
+
+    ``images`` leaves nothing out but pictures if it is false.
+    """
+
+    interactions: Sequence[str]
+    participants: int
+    seed: int
+    frames: int
+    images: bool = True
+    camera: Camera = KINECT
 
 
 @dataclass(frozen=True)
@@ -32,40 +48,33 @@ class Take:
 
 
 def generate(
-    folder: Path,
-    interactions: Sequence[str],
-    participants: int,
-    seed: int,
-    frames: int,
-    *,
-    images: bool,
-    on_progress: Callable[[], None],
-    camera: Camera = KINECT,
+    folder: Path, settings: GenerationSettings, on_progress: Callable[[], None]
 ) -> Dataset:
-    """Write a dataset of every participant doing every interaction.
+    """Write a dataset of simulated people.
 
     ``on_progress`` is called once a recording. Raises DatasetError or RecordingError.
     """
+    camera = replace(settings.camera, frame_rate=FRAME_RATE)
     takes = (
         Take(
             f"{interaction}_p{participant:02}",
             f"p{participant:02}",
-            simulate(interaction, participant, seed, frames, FRAME_RATE, camera),
+            simulate(interaction, participant, settings.seed, settings.frames, camera),
         )
-        for interaction in interactions
-        for participant in range(participants)
+        for interaction in settings.interactions
+        for participant in range(settings.participants)
     )
     return write_takes(
         folder,
         takes,
         {
-            "seed": seed,
-            "participants": participants,
-            "frames": frames,
-            "camera": camera.name,
-            "images": images,
+            "seed": settings.seed,
+            "participants": settings.participants,
+            "frames": settings.frames,
+            "camera": settings.camera.name,
+            "images": settings.images,
         },
-        images=images,
+        images=settings.images,
         on_progress=on_progress,
     )
 
@@ -96,7 +105,7 @@ def write_takes(
         )
         writer.add_recording(entry, _messages(simulation, images=images))
         on_progress()
-    return writer.finish({"name": "inhand simulate", "version": VERSION, **settings})
+    return writer.finish({"name": "inhand simulate", "version": GENERATOR_VERSION, **settings})
 
 
 def _messages(simulation: Simulation, *, images: bool) -> Iterator[Message]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from inhand_tracker.model.model import Model
 from inhand_tracker.model.model_file import save_model
 
-from inhand_lab.datasets.generation import generate
+from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.demonstration.parameters import DEFAULT_DEMONSTRATION
 from inhand_lab.training.model_training import train
 
@@ -18,12 +18,14 @@ def train_demonstration(
     """Simulate participants, learn from them, and save the model."""
     dataset = generate(
         folder / "dataset",
-        [interaction],
-        DEFAULT_DEMONSTRATION.trained_participants,
-        DEFAULT_DEMONSTRATION.seed,
-        DEFAULT_DEMONSTRATION.trained_frames,
-        images=False,
-        on_progress=on_progress,
+        GenerationSettings(
+            [interaction],
+            DEFAULT_DEMONSTRATION.trained_participants,
+            DEFAULT_DEMONSTRATION.seed,
+            DEFAULT_DEMONSTRATION.trained_frames,
+            images=False,
+        ),
+        on_progress,
     )
     model = train(dataset, dataset.entries)
     path = folder / f"{interaction}.model"

@@ -1,6 +1,7 @@
 """Datasets whose people moved before a real sensor and whose objects are simulated."""
 
 from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +14,8 @@ from inhand_lab.datasets.generation import Take, write_takes
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.driven.recorded_body import RecordedBody, drive
 from inhand_lab.sensing.cameras import KINECT, Camera
+from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.messages import JOINT_STATES
-from inhand_lab.world.simulation import INTERACTIONS
 
 FITTING = {
     "drawX": "paintWall",
@@ -24,38 +25,44 @@ FITTING = {
     "armCurl": "liftWeights",
     "knock": "hammerNail",
 }
-"""Which object people may hold who mime an action; UTD-MHAD's names for these."""
+"""The interaction whose object people may hold who mime an action of UTD-MHAD, by its name."""
 
 LONGEST_GAP_S = 0.5
-"""Nothing is made up for a body that is out of sight for longer."""
+"""Time out of sight for which a body is made up, seconds; a longer gap ends the stretch."""
+
+
+@dataclass(frozen=True)
+class DrivenSettings:
+    """Settings of a dataset of recorded movements with simulated objects.
+
+    Without ``interactions`` each recording gets the objects that fit it. ``images`` leaves nothing
+    out but pictures if it is false.
+    """
+
+    interactions: Collection[str] | None
+    seed: int
+    images: bool = True
+    camera: Camera = KINECT
 
 
 def generate_driven(
-    folder: Path,
-    bodies: Dataset,
-    interactions: Collection[str] | None,
-    seed: int,
-    *,
-    images: bool,
-    on_progress: Callable[[], None],
-    camera: Camera = KINECT,
+    folder: Path, bodies: Dataset, settings: DrivenSettings, on_progress: Callable[[], None]
 ) -> Dataset:
     """Write a dataset of every recorded movement with the object of every chosen interaction.
 
-    Without a choice each recording gets what fits it. ``on_progress`` is called once a recording.
-    Raises DatasetError or RecordingError.
+    ``on_progress`` is called once a recording. Raises DatasetError or RecordingError.
     """
-    pairs = pairs_for(bodies, interactions)
+    pairs = pairs_for(bodies, settings.interactions)
     return write_takes(
         folder,
-        _takes(bodies, pairs, seed, camera),
+        _takes(bodies, pairs, settings.seed, settings.camera),
         {
             "bodies": str(bodies.folder),
-            "seed": seed,
-            "camera": camera.name,
-            "images": images,
+            "seed": settings.seed,
+            "camera": settings.camera.name,
+            "images": settings.images,
         },
-        images=images,
+        images=settings.images,
         on_progress=on_progress,
     )
 

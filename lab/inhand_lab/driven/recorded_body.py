@@ -30,8 +30,12 @@ from inhand_lab.motions.timeline import drift
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.person import Proportions, SimulatedPerson, sample_person, stature_of
 from inhand_lab.sensing.cameras import KINECT, Camera
+from inhand_lab.sensing.skeleton_noise import SkeletonReading
+from inhand_lab.world.enactment import Enactment
 from inhand_lab.world.interactions import INTERACTIONS
-from inhand_lab.world.simulation import MIRRORED_CONTACT, PEOPLE, Simulation
+from inhand_lab.world.random_streams import PEOPLE_VERSION
+from inhand_lab.world.simulation import Simulation
+from inhand_lab.world.viewpoint import facing_of
 
 UNSEEN_TWIST, TWIST_PERIOD = 0.25, 2.0
 """Deviation in radians and period in seconds of the forearm's twist that no joint shows."""
@@ -69,35 +73,35 @@ def drive(
     person = _person_of(joints, recorded, seed)
     times = np.arange(len(joints)) / recorded.frame_rate
     random = np.random.default_rng(
-        [PEOPLE, seed, recorded.participant, recorded.recording, zlib.crc32(interaction.encode())]
+        [
+            PEOPLE_VERSION,
+            seed,
+            recorded.participant,
+            recorded.recording,
+            zlib.crc32(interaction.encode()),
+        ]
     )
     hold = rehearse(interaction, sample_person(seed, recorded.participant), seed)
     seen = seen_frames(joints, recorded.frame_rate)
     body = _turn_unseen(joints, seen, hold.right_wrist, hold.left_wrist, times, random)
     world_from_object = attach(hold, body, seen, times, random)
-    contact = np.full(len(joints), hold.contact, np.uint8)
+    enacted = Enactment(body, world_from_object, np.full(len(joints), hold.contact, np.uint8))
     if left_handed:
-        body, world_from_object = body.mirrored(), world_from_object.mirrored()
-        contact = MIRRORED_CONTACT[contact]
-    viewpoint = camera_from_world.inverse().translation
+        enacted = enacted.mirrored()
     return Simulation(
-        interaction,
-        recorded.participant,
-        seed,
-        recorded.recording,
-        recorded.frame_rate,
-        person,
-        INTERACTIONS[interaction].object_model(),
-        camera,
-        recorded.joints,
-        recorded.states,
-        recorded.confidences,
-        body.seen_from(camera_from_world),
-        camera_from_world @ world_from_object,
-        contact,
-        camera_from_world,
-        float(np.arctan2(-viewpoint[0], viewpoint[1])),
-        (),
+        interaction=interaction,
+        participant=recorded.participant,
+        seed=seed,
+        performance=recorded.recording,
+        person=person,
+        object_model=INTERACTIONS[interaction].object_model(),
+        camera=replace(camera, frame_rate=recorded.frame_rate),
+        reading=SkeletonReading(recorded.joints, recorded.states, recorded.confidences),
+        body_in_camera=enacted.body.seen_from(camera_from_world),
+        camera_from_object=camera_from_world @ enacted.world_from_object,
+        contact=enacted.contact,
+        camera_from_world=camera_from_world,
+        facing=facing_of(camera_from_world),
     )
 
 

@@ -29,7 +29,8 @@ from inhand_lab.realism.skeletons import (
     measure_skeletons,
 )
 from inhand_lab.sensing.render import ROOM
-from inhand_lab.world.simulation import INTERACTIONS, Simulation, simulate
+from inhand_lab.world.interactions import INTERACTIONS
+from inhand_lab.world.simulation import Simulation, simulate
 
 WITHIN = 1.5
 """A simulated figure should not differ by more than this factor from the real one."""

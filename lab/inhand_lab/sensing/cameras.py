@@ -1,4 +1,4 @@
-"""The cameras that a simulated scene can be seen by."""
+"""The cameras by which a simulated scene can be seen."""
 
 from __future__ import annotations
 
@@ -10,12 +10,15 @@ from inhand_tracker.geometry.camera import Intrinsics
 
 @dataclass(frozen=True)
 class Camera:
-    """A camera of colour and depth; exposure is how long a colour frame takes, in seconds."""
+    """A camera of colour and depth."""
 
     name: str
     intrinsics: Intrinsics
     depth_from: Literal["structured light", "stereo"]
     exposure: float
+    """Time for which the shutter of a colour frame is open, seconds."""
+    frame_rate: float = 30.0
+    """Frames a second."""
 
 
 KINECT = Camera(
@@ -33,4 +36,4 @@ uses the middle 3840 of them, a third as many pixels, and so a focal length of a
 """
 
 CAMERAS = {camera.name: camera for camera in (KINECT, OAK_D)}
-"""By name."""
+"""The cameras by name."""

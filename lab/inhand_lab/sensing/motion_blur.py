@@ -16,50 +16,47 @@ from numpy.typing import NDArray
 
 from inhand_lab.geometry.rasteriser import Canvas, draw_triangles
 from inhand_lab.geometry.surfaces import Surface, lit
-from inhand_lab.geometry.transforms import Transform
 from inhand_lab.geometry.window import window_around
-from inhand_lab.people.body_motion import BodyMotion
-from inhand_lab.people.person_surface import PersonSurface
+from inhand_lab.sensing.moving_scene import MovingScene
 
 SHARPNESS = 1.0
-"""Movement in pixels during the exposure below which nothing is blurred."""
+"""Movement during the exposure below which nothing is blurred, pixels."""
 SPACING = 4.0
-"""Pixels between one picture and the next; MOST pictures at the most."""
-MOST = 8
+"""Distance between one averaged picture and the next, pixels."""
+MOST_PICTURES = 8
+"""Number of averaged pictures at the most; the faster movement, the farther they are apart."""
 
 
 @dataclass(frozen=True)
 class Moving:
-    """A surface in the camera's frame in the middle of the exposure, and by how much each of its
-    vertices (V, 3) moves in the course of it, in metres."""
+    """A surface in the camera's frame in the middle of the exposure.
+
+    ``travel`` (V, 3) is the way of each vertex in the course of it, metres.
+    """
 
     surface: Surface
     travel: Array
 
 
-def scene_in_motion(
-    figure: PersonSurface,
-    body_in_camera: BodyMotion,
-    object_surface: Surface,
-    camera_from_object: Transform,
-    frame: int,
-    exposure: float,
-) -> list[Moving]:
-    """Person and object in a frame of a recording, with an exposure of that share of a frame's
-    time; they move as from the frame before to the frame after."""
-    before, after = max(frame - 1, 0), min(frame + 1, len(body_in_camera.joints) - 1)
+def surfaces_in_motion(scene: MovingScene, frame: int, exposure: float) -> list[Moving]:
+    """Person and object in a frame, moving as from the frame before to the frame after.
+
+    ``exposure`` is a share of the time from frame to frame.
+    """
+    before, after = max(frame - 1, 0), min(frame + 1, scene.frames - 1)
     share = exposure / max(after - before, 1)
-    person = [figure.posed(body_in_camera, one) for one in (before, frame, after)]
-    thing = [object_surface.moved(camera_from_object[one]) for one in (before, frame, after)]
     return [
         Moving(middle, share * (end.vertices - start.vertices))
-        for start, middle, end in (person, thing)
+        for start, middle, end in (
+            [surface(one) for one in (before, frame, after)]
+            for surface in (scene.person, scene.object)
+        )
     ]
 
 
-def blurred(sharp: Canvas, room: Canvas, intrinsics: Intrinsics, scene: list[Moving]) -> Bytes:
-    """The colours (H, W, 3) of a scene that was drawn sharply before the room."""
-    parts = [_Part.of(moving, intrinsics) for moving in scene]
+def blurred(sharp: Canvas, room: Canvas, intrinsics: Intrinsics, moving: list[Moving]) -> Bytes:
+    """Colours (H, W, 3) of moving surfaces that were drawn sharply before the room."""
+    parts = [_Part.of(one, intrinsics) for one in moving]
     furthest = max(part.furthest for part in parts)
     if furthest < SHARPNESS:
         return sharp.colour
@@ -70,7 +67,7 @@ def blurred(sharp: Canvas, room: Canvas, intrinsics: Intrinsics, scene: list[Mov
     behind = window.cut(room).copy()
     for part in parts:
         part.draw(behind, window.intrinsics, ~part.moves, 0.0)
-    count = int(np.clip(np.ceil(furthest / SPACING), 2, MOST))
+    count = int(np.clip(np.ceil(furthest / SPACING), 2, MOST_PICTURES))
     total = np.zeros(behind.colour.shape, np.uint16)
     for share in (np.arange(count) + 0.5) / count - 0.5:
         picture = behind.copy()
@@ -84,7 +81,7 @@ def blurred(sharp: Canvas, room: Canvas, intrinsics: Intrinsics, scene: list[Mov
 
 @dataclass(frozen=True)
 class _Part:
-    """A surface ready to be drawn: vertices and travel (V, 3), and which faces (F,) move."""
+    """A surface ready to be drawn: vertices and travel (V, 3); ``moves`` (F,) marks faces."""
 
     vertices: Singles
     travel: Singles
@@ -109,7 +106,7 @@ class _Part:
         )
 
     def swept(self) -> Singles:
-        """Where (N, 3) the vertices of the moving faces begin and end."""
+        """Places (N, 3) at which the vertices of moving faces begin and end."""
         corners = np.unique(self.faces[self.moves])
         middle, half = self.vertices[corners], 0.5 * self.travel[corners]
         return np.concatenate([middle - half, middle + half])

@@ -1,4 +1,4 @@
-"""Frames of a simulated scene: the still room behind the person and the object."""
+"""Frames of a simulated scene as a perfect sensor would see them."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ from inhand_lab.geometry.surfaces import Surface, from_mesh, lit
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.geometry.window import Window, window_around
 from inhand_lab.objects.model import ObjectModel
-from inhand_lab.people.body_motion import BodyMotion
-from inhand_lab.people.person_surface import PersonSurface
+from inhand_lab.sensing.moving_scene import MovingScene
 
 ROOM, PERSON, OBJECT = 1, 2, 3
 """Labels of pixels; 0 is nothing."""
@@ -24,8 +23,8 @@ ROOM, PERSON, OBJECT = 1, 2, 3
 class Drawing:
     """A frame as a perfect sensor would see it.
 
-    visible_fraction is the share of the object's pixels that nothing hides, 0 where the object is
-    out of the image; the canvas's labels are ROOM, PERSON and OBJECT.
+    ``visible_fraction`` is the share of the object's pixels that nothing hides, 0 where the object
+    is out of the image; the canvas's labels are ROOM, PERSON and OBJECT.
     """
 
     canvas: Canvas
@@ -38,44 +37,28 @@ class Drawing:
 
 
 def draw_room(intrinsics: Intrinsics, camera_from_world: Transform, room: Surface) -> Canvas:
-    """The room alone, to be drawn once for all frames of a camera that stands still."""
+    """Draw the room alone, once for all frames of a camera that stands still."""
     canvas = Canvas.blank(intrinsics)
     _draw_surface(canvas, intrinsics, room.moved(camera_from_world), ROOM)
     return canvas
 
 
-def draw_frame(
-    room: Canvas,
-    intrinsics: Intrinsics,
-    figure: PersonSurface,
-    body_in_camera: BodyMotion,
-    frame: int,
-    object_surface: Surface,
-    camera_from_object: Transform,
-) -> Drawing:
-    """One frame: person and object, camera_from_object being one transform, before the room."""
-    canvas = room.copy()
-    _draw_surface(canvas, intrinsics, figure.posed(body_in_camera, frame), PERSON)
-    placed = object_surface.moved(camera_from_object)
-    _draw_surface(canvas, intrinsics, placed, OBJECT)
-    window = window_around(intrinsics, placed.vertices)
+def draw_frame(scene: MovingScene, frame: int) -> Drawing:
+    """Draw a frame of person and object before the room."""
+    canvas = scene.room.copy()
+    placed = scene.object(frame)
+    _draw_surface(canvas, scene.intrinsics, scene.person(frame), PERSON)
+    _draw_surface(canvas, scene.intrinsics, placed, OBJECT)
+    window = window_around(scene.intrinsics, placed.vertices)
     return Drawing(canvas, _share_seen(window.cut(canvas), window, placed))
 
 
-def visible_fraction(
-    room: Canvas,
-    intrinsics: Intrinsics,
-    figure: PersonSurface,
-    body_in_camera: BodyMotion,
-    frame: int,
-    object_surface: Surface,
-    camera_from_object: Transform,
-) -> float:
-    """What draw_frame would say, but only the part of the image that holds the object is drawn."""
-    placed = object_surface.moved(camera_from_object)
-    window = window_around(intrinsics, placed.vertices)
-    canvas = window.cut(room).copy()
-    _draw_silhouette(canvas, window.intrinsics, figure.posed(body_in_camera, frame), PERSON)
+def visible_fraction(scene: MovingScene, frame: int) -> float:
+    """The visible fraction of ``draw_frame``; only the object's surroundings are drawn for it."""
+    placed = scene.object(frame)
+    window = window_around(scene.intrinsics, placed.vertices)
+    canvas = window.cut(scene.room).copy()
+    _draw_silhouette(canvas, window.intrinsics, scene.person(frame), PERSON)
     _draw_silhouette(canvas, window.intrinsics, placed, OBJECT)
     return _share_seen(canvas, window, placed)
 
@@ -98,13 +81,13 @@ def _draw_surface(canvas: Canvas, intrinsics: Intrinsics, surface: Surface, labe
 
 
 def _draw_silhouette(canvas: Canvas, intrinsics: Intrinsics, surface: Surface, label: int) -> None:
-    """Draw a surface without light: what it hides, and not how it looks."""
+    """Draw a surface without light, for what it hides and not for how it looks."""
     vertices = surface.vertices.astype(np.float32)
     draw_triangles(canvas, intrinsics, vertices, surface.faces, surface.colours, label)
 
 
 def _share_seen(canvas: Canvas, window: Window, placed: Surface) -> float:
-    """The share of the object's pixels in a window that are its own on the canvas; 0 of none."""
+    """Share of the object's pixels in a window that are its own on the canvas; 0 of none."""
     alone = Canvas.blank(window.intrinsics)
     _draw_silhouette(alone, window.intrinsics, placed, OBJECT)
     whole = int(np.count_nonzero(alone.labels))

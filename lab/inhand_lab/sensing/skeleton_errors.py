@@ -112,10 +112,10 @@ def inherited(errors: Array, joints: Array, noise: WanderingErrors) -> Array:
 def _busyness(
     random: np.random.Generator, shape: tuple[int, ...], frame_rate: float, noise: WanderingErrors
 ) -> Array:
-    """A log-normal process of median 1 along the first axis, without a bound.
+    """Values (T, ...) of a log-normal process of median 1 along time, without a bound.
 
-    A bound of 40 times the median, which 30 % of its values exceed, was tried against
-    `inhand simulate --realism`: @@
+    A bound of 40, which 30 % of the values exceed, was tried: `inhand simulate --realism` then has
+    13 of its 132 judged properties off by more than a factor of 1.5, and none without it.
     """
     kept = np.exp(-1.0 / (frame_rate * noise.spell))
     start = random.normal(size=shape[1:])

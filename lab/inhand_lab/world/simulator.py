@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 from inhand_runtime.settings import Section
@@ -14,8 +15,9 @@ from inhand_schemas.messages import CameraInfo
 from pydantic import AfterValidator, Field, ValidationError
 
 from inhand_lab.sensing.cameras import CAMERAS
+from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.messages import camera_info, label_message, person_message
-from inhand_lab.world.simulation import INTERACTIONS, SensedFrame, Simulation, simulate
+from inhand_lab.world.simulation import SensedFrame, Simulation, simulate
 
 CAMERA = "simulator"
 """Until capture puts its own name in its place."""
@@ -104,8 +106,7 @@ class SimulatorSource:
             options.participant,
             options.seed,
             options.frames,
-            options.frame_rate,
-            CAMERAS[options.camera],
+            replace(CAMERAS[options.camera], frame_rate=options.frame_rate),
             performance,
         )
         simulation.prepare()

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import Dataset
-from inhand_lab.datasets.generation import generate
+from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.sensing.cameras import CAMERAS
@@ -20,7 +20,9 @@ FRAMES = 12
 
 
 def generated(folder: Path, *, images: bool = False, frames: int = FRAMES) -> Dataset:
-    return generate(folder, ["drinkFromMug"], 2, 5, frames, images=images, on_progress=lambda: None)
+    return generate(
+        folder, GenerationSettings(["drinkFromMug"], 2, 5, frames, images=images), lambda: None
+    )
 
 
 def test_the_same_seed_writes_the_same_bytes(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.recorded_frames import load_frames
-from inhand_lab.driven.dataset import generate_driven, pairs_for, recorded_body
+from inhand_lab.driven.dataset import DrivenSettings, generate_driven, pairs_for, recorded_body
 from inhand_lab.driven.denoising import bone_lengths, denoise
 from inhand_lab.driven.recorded_body import RecordedBody, drive
 from inhand_lab.geometry.transforms import MIRROR
@@ -227,7 +227,7 @@ def bodies(tmp_path: Path) -> Dataset:
 
 def test_every_fitting_recording_becomes_a_labelled_one(tmp_path: Path, bodies: Dataset) -> None:
     driven = generate_driven(
-        tmp_path / "driven", bodies, None, 4, images=False, on_progress=lambda: None
+        tmp_path / "driven", bodies, DrivenSettings(None, 4, images=False), lambda: None
     )
     assert [(e.interaction, e.participant, e.object) for e in driven.entries] == [
         ("sweepFloor", f"s{number}", "broom") for number in range(3)

@@ -5,12 +5,13 @@ first right skeleton on, against the same tracker on the same person without the
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 import pytest
 from inhand_lab.evaluation.vertex_error import vertex_error
+from inhand_lab.sensing.cameras import KINECT
 from inhand_lab.world.messages import shape_of
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_schemas.joints import JOINT_NAMES
@@ -26,6 +27,7 @@ from inhand_tracker.shape.viewpoints import Viewpoints
 
 SEED = 3
 FRAME_RATE = 15.0
+FILMED = replace(KINECT, frame_rate=FRAME_RATE)
 FRAME_NS = 66_666_667
 PEOPLE = range(4)
 STRANGER = 5
@@ -48,7 +50,7 @@ Failure = Callable[[Joints], Joints]
 
 @cache
 def drinking(participant: int, seed: int = SEED) -> Simulation:
-    return simulate("drinkFromMug", participant, seed, 180, FRAME_RATE)
+    return simulate("drinkFromMug", participant, seed, 180, FILMED)
 
 
 def skeletons(simulation: Simulation) -> Joints:

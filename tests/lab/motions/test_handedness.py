@@ -4,6 +4,7 @@ A dataset of left-handed people is made as the mirror image of one of right-hand
 everything must come out the same.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -13,6 +14,7 @@ from inhand_lab.datasets.dataset import Dataset, DatasetEntry
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
 from inhand_lab.evaluation.protocol import Protocol, evaluate
+from inhand_lab.sensing.cameras import KINECT
 from inhand_lab.training.model_training import entries_for, train
 from inhand_lab.world.messages import camera_info, shape_of
 from inhand_lab.world.simulation import Simulation, simulate
@@ -21,6 +23,7 @@ from inhand_tracker.body.skeleton import mirror_joints, mirror_pose
 from inhand_tracker.wire.poses import pose_message
 
 FRAMES, FRAME_RATE = 90, 15.0
+FILMED = replace(KINECT, frame_rate=FRAME_RATE)
 METHODS = ("g-hand", "gd-random", "gd-stable-proximate")
 
 
@@ -57,7 +60,7 @@ def dataset_of(folder: Path, *, left_handed: bool) -> Dataset:
     """Three people who drink with the hand that is asked for."""
     writer = DatasetWriter(folder)
     for participant in range(3):
-        simulation = simulate("drinkFromMug", participant, 1, FRAMES, FRAME_RATE)
+        simulation = simulate("drinkFromMug", participant, 1, FRAMES, FILMED)
         mirrored = (simulation.person.handedness == "left") != left_handed
         shape = shape_of(simulation.object_model)
         writer.add_shape(shape)

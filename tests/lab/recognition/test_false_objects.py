@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from inhand_lab.datasets.generation import generate
+from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.datasets.recorded_frames import has_images
 from inhand_lab.recognition import false_objects_by_movement, false_objects_with_images
 
@@ -29,7 +29,9 @@ def test_without_images_skeletons_alone_are_looked_at(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(false_objects_by_movement, "IDLE_PEOPLE", 1)
-    people = generate(tmp_path / "set", ACTIONS, 3, 5, 90, images=False, on_progress=lambda: None)
+    people = generate(
+        tmp_path / "set", GenerationSettings(ACTIONS, 3, 5, 90, images=False), lambda: None
+    )
     assert not has_images(people)
     told = count(people.folder, tmp_path / "result.json")
     assert told["images"] is False
@@ -45,9 +47,13 @@ def test_with_images_the_cascade_sees_idle_people_strangers_and_untaught_actions
 ) -> None:
     monkeypatch.setattr(false_objects_with_images, "IDLE_PEOPLE", 1)
     monkeypatch.setattr(false_objects_with_images, "IDLE_KINDS", ("stand",))
-    people = generate(tmp_path / "set", ACTIONS, 3, 5, 90, images=True, on_progress=lambda: None)
+    people = generate(
+        tmp_path / "set", GenerationSettings(ACTIONS, 3, 5, 90, images=True), lambda: None
+    )
     strangers = generate(
-        tmp_path / "others", ("sweepFloor",), 1, 6, 30, images=False, on_progress=lambda: None
+        tmp_path / "others",
+        GenerationSettings(("sweepFloor",), 1, 6, 30, images=False),
+        lambda: None,
     )
     assert has_images(people)
     told = count(people.folder, tmp_path / "result.json", "--others", str(strangers.folder))

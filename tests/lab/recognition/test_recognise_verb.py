@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import Dataset, DatasetError
-from inhand_lab.datasets.generation import generate
+from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.recognition.protocol import learn_from
 from inhand_runtime.errors import SettingsError
@@ -33,7 +33,7 @@ ACTIONS = ("hammerNail", "putOnShoe")
 @pytest.fixture(scope="module")
 def people(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
     folder = tmp_path_factory.mktemp("world") / "set"
-    return generate(folder, ACTIONS, 5, 5, 240, images=False, on_progress=lambda: None)
+    return generate(folder, GenerationSettings(ACTIONS, 5, 5, 240, images=False), lambda: None)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,8 @@ from inhand_lab.geometry.surfaces import Surface, ellipsoid, limb
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.sensing.render import OBJECT, PERSON, Drawing
-from inhand_lab.world.simulation import INTERACTIONS, simulate
+from inhand_lab.world.interactions import INTERACTIONS
+from inhand_lab.world.simulation import simulate
 from silhouettes import silhouette
 
 KINECT = CAMERAS["kinect"].intrinsics

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from inhand_lab.benchmarks.training_cost import benchmark_training, training_steps
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError, load_dataset
-from inhand_lab.datasets.generation import generate
+from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.training.checks import check_hands, check_sequence
 from inhand_lab.training.learned import learned_by
 from inhand_lab.training.model_training import entries_for, stages, train
@@ -32,7 +32,9 @@ TURNED = np.array([0.0, 1.0, 0.0, 0.0])
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
     folder = tmp_path_factory.mktemp("made") / "people"
-    return generate(folder, ["drinkFromMug"], 3, 5, FRAMES, images=False, on_progress=lambda: None)
+    return generate(
+        folder, GenerationSettings(["drinkFromMug"], 3, 5, FRAMES, images=False), lambda: None
+    )
 
 
 @pytest.fixture

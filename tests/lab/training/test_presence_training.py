@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.datasets.generation import generate
+from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.training.model_training import train
 from inhand_lab.training.presence_training import Look, learn_presence, look_around, presence_of
 from inhand_tracker.model.model_file import save_model
@@ -23,7 +23,9 @@ ACTIONS = ("sweepFloor", "drinkFromMug")
 def test_objects_are_seen_better_where_they_are(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    people = generate(tmp_path / "set", ACTIONS, 2, 3, 90, images=True, on_progress=lambda: None)
+    people = generate(
+        tmp_path / "set", GenerationSettings(ACTIONS, 2, 3, 90, images=True), lambda: None
+    )
     models = [
         train(people, [e for e in people.entries if e.interaction == action]) for action in ACTIONS
     ]

@@ -8,7 +8,8 @@ from inhand_lab.people.person import SimulatedPerson, sample_person
 from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.sensing.skeleton_noise import INFERRED, MISSING, TRACKED
 from inhand_lab.world import simulation as world
-from inhand_lab.world.simulation import INTERACTIONS, Simulation, simulate
+from inhand_lab.world.interactions import INTERACTIONS
+from inhand_lab.world.simulation import Simulation, simulate
 from inhand_schemas.joints import Joint
 from numpy.typing import NDArray
 
