@@ -17,10 +17,11 @@ from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS, AnyTopic
 from inhand_tracker.body import skeleton as body
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
+from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.model.model import ModelError
 from inhand_tracker.model.model_file import save_model
 from inhand_tracker.people.watching import GivenObjects
-from inhand_tracker.service import TrackerService, TrackerSettings, load_trackers
+from inhand_tracker.service import TrackerService, TrackerSettings, load_models, new_trackers
 from people import FRAME_NS, unseen_wave, wave_model
 from pydantic import ValidationError
 
@@ -216,6 +217,10 @@ def test_pixels_are_not_asked_for_when_none_weigh() -> None:
 # --- Settings
 
 
+def load_trackers(settings: TrackerSettings) -> dict[str, ObjectTracker]:
+    return new_trackers(load_models("mug", settings), settings)
+
+
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
     path = tmp_path / "wave.model"
@@ -225,7 +230,7 @@ def model(tmp_path: Path) -> Path:
 
 def test_one_model_or_a_list_of_them(model: Path) -> None:
     for settings in (TrackerSettings(model=model), TrackerSettings(models=(model,))):
-        assert list(load_trackers("mug", settings)) == ["wedge"]
+        assert list(load_trackers(settings)) == ["wedge"]
 
 
 @pytest.mark.parametrize(
@@ -241,7 +246,7 @@ def test_models_that_cannot_be_meant_are_refused(
 ) -> None:
     values = {k: model if k == "model" else (model,) * count for k, count in named.items()}
     with pytest.raises(SettingsError, match=line):
-        load_trackers("mug", TrackerSettings(**values))
+        load_trackers(TrackerSettings(**values))
 
 
 def test_only_terms_that_there_are_can_weigh() -> None:
@@ -252,23 +257,23 @@ def test_only_terms_that_there_are_can_weigh() -> None:
 def test_a_term_that_the_method_does_not_know_is_refused(model: Path) -> None:
     settings = TrackerSettings(model=model, method=PUBLISHED, likelihood=("depth", "region"))
     with pytest.raises(SettingsError, match="gd-fallback does not weigh 'region'; it knows: edges"):
-        load_trackers("mug", settings)
+        load_trackers(settings)
 
 
 def test_a_model_that_learned_no_prior_is_refused_for_the_default_method(tmp_path: Path) -> None:
     old = replace(wave_model(), prior=None)
     save_model(old, tmp_path / "old.model")
     with pytest.raises(ModelError, match=r"wedge is of an older release .* train it again"):
-        load_trackers("mug", TrackerSettings(model=tmp_path / "old.model"))
+        load_trackers(TrackerSettings(model=tmp_path / "old.model"))
     settings = TrackerSettings(model=tmp_path / "old.model", method=PUBLISHED)
-    assert list(load_trackers("mug", settings)) == ["wedge"]
+    assert list(load_trackers(settings)) == ["wedge"]
 
 
 def test_a_left_handed_person_is_a_setting(model: Path) -> None:
     """The mirror image of a right-handed person's skeleton gives the mirrored place."""
     places = []
     for left in (False, True):
-        (one,) = load_trackers("mug", TrackerSettings(model=model, left_handed=left)).values()
+        (one,) = load_trackers(TrackerSettings(model=model, left_handed=left)).values()
         joints = unseen_wave(1)[0]
         estimate = one.step(body.mirror_joints(joints) if left else joints, FRAME_NS)
         places.append(estimate.translation)

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
-from inhand_tracker.body.skeleton import body_pose, part_lengths, pelvis_basis, standing_height
+from inhand_tracker.body.skeleton import body_pose, part_lengths, pelvis_basis, stature
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.mapping.learning import LabelledSequence, learn
 from inhand_tracker.mapping.mapping import BodyPoseIndex
@@ -192,7 +192,7 @@ def _ask(folder: Path) -> Asking:
 def _body_poses(sequence: LabelledSequence) -> list[Array]:
     """The body poses (60,) of the frames in which the whole body was seen."""
     joints = sequence.joints[np.isfinite(sequence.joints).all(axis=(1, 2))]
-    return list(body_pose(joints, pelvis_basis(joints), standing_height(part_lengths(joints))))
+    return list(body_pose(joints, pelvis_basis(joints), stature(part_lengths(joints))))
 
 
 def _timed(

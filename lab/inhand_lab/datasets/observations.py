@@ -11,7 +11,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.estimate import Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.object_tracker import ObjectTracker
-from inhand_tracker.people.following import Follower
+from inhand_tracker.people.following import PersonFollower
 from inhand_tracker.wire.conversion import Need, image_of, joints_of
 
 from inhand_lab.datasets.recorded_frames import (
@@ -58,7 +58,7 @@ def observe(
     info = load_camera_info(path, name) if needs else None
     pixels = iterate_pixels(path, name) if info is not None else iter(())
     current = next(pixels, None)
-    follower = Follower()
+    follower = PersonFollower()
     for frame in frames:
         while current is not None and current.time_ns < frame.time_ns:
             current = next(pixels, None)

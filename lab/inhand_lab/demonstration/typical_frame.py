@@ -10,7 +10,7 @@ from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import RgbdFrame, Skeletons
 from inhand_schemas.topics import RGBD, SKELETONS
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.people.following import Follower
+from inhand_tracker.people.following import PersonFollower
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.wire.conversion import joints_of
 
@@ -30,7 +30,7 @@ def draw_typical_frame(recording: Path, review: Review, shape: ObjectShape, path
     if camera is None or frame.colour is None:
         raise InhandError(f"{recording} holds no picture to draw on")
     picture = picture_of(decode_colour(frame.colour), camera)
-    person = Follower().choose(skeletons.people, skeletons.time_ns)
+    person = PersonFollower().choose(skeletons.people, skeletons.time_ns)
     if person is not None:
         picture.draw_skeleton(joints_of(person))
     picture.write(f"vertex error {100 * errors[frame.sequence]:.1f} cm", 0, WHITE)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Flags
-from inhand_tracker.people.following import Follower
+from inhand_tracker.people.following import PersonFollower
 from inhand_tracker.wire.conversion import joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
@@ -112,7 +112,7 @@ def recorded_body(
     joints = np.full((len(frames), 20, 3), np.nan)
     states = np.zeros((len(frames), 20), np.uint8)
     confidences = np.zeros((len(frames), 20))
-    follower = Follower()
+    follower = PersonFollower()
     for index, frame in enumerate(frames):
         person = follower.choose(frame.people, frame.time_ns)
         if person is not None:

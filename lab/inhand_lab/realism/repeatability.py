@@ -16,7 +16,7 @@ from inhand_tracker.body.skeleton import (
     mirror_joints,
     part_lengths,
     pelvis_basis,
-    standing_height,
+    stature,
 )
 from inhand_tracker.geometry.arrays import Array
 from rich.console import Console
@@ -49,7 +49,7 @@ def poses_of(participant: str, frame_rate: float, handedness: str, joints: Array
     seen = joints[known]
     if handedness == "left":
         seen = mirror_joints(seen)
-    bodies = body_pose(seen, pelvis_basis(seen), standing_height(part_lengths(seen)))
+    bodies = body_pose(seen, pelvis_basis(seen), stature(part_lengths(seen)))
     return Poses(participant, np.flatnonzero(known) / frame_rate, bodies)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from inhand_tracker.recognition.answer import KNOWN
+from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
 
 from inhand_lab.datasets.dataset import Dataset, DatasetError
 from inhand_lab.people.joint_sequence import JointSequence
@@ -69,5 +69,6 @@ def _mean_share(learned: LearnedMovements, people: Sequence[JointSequence]) -> f
     shares = []
     for one in people:
         told, _ = probabilities_over_time(learned.movements, learned.temper, usual, one)
-        shares.append((told[:, :-1].max(axis=1) >= KNOWN).mean())
+        likeliest = told[:, :-1].max(axis=1)
+        shares.append((likeliest >= DEFAULT_RECOGNITION.recognised_probability).mean())
     return float(np.mean(shares))

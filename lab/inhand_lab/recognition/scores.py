@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.recognition.answer import Recognition
+from inhand_tracker.recognition.recognition import Recognition
 
 from inhand_lab.datasets.recorded_frames import RecordedFrame
 from inhand_lab.datasets.tracks import Track, empty_track, true_track

@@ -10,13 +10,8 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS, new_tracker
 from inhand_tracker.model.model import Model
-from inhand_tracker.recognition.presence import (
-    USUAL_PART_SPREADS,
-    USUAL_SPREAD,
-    USUALLY_ABSENT,
-    USUALLY_PRESENT,
-    Presence,
-)
+from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
+from inhand_tracker.recognition.presence import Presence
 from inhand_tracker.sight.support import PARTS, Support
 from numpy.typing import ArrayLike
 
@@ -79,8 +74,8 @@ def presence_of(looks: Sequence[Look], actions: Sequence[str]) -> Presence:
         found = {done: _supports(looks, action, done) for done in actions}
         told = {done: [one.log_likelihood for one in some] for done, some in found.items()}
         others = [support for done in actions if done != action for support in told[done]]
-        expected = dict.fromkeys(actions, _mean(others, USUALLY_ABSENT))
-        expected[action] = USUALLY_PRESENT
+        expected = dict.fromkeys(actions, _mean(others, DEFAULT_RECOGNITION.usual_support_absent))
+        expected[action] = DEFAULT_RECOGNITION.usual_support_present
         supports.append([_mean(told[done], expected[done]) for done in actions])
         spreads.append(_spread(told, action))
         means, deviations = _parts(found[action])
@@ -138,18 +133,20 @@ def _spread(found: Mapping[str, Sequence[float]], action: str) -> float:
     }
     own = squares.pop(action, np.empty(0))
     others = np.concatenate([np.empty(0), *squares.values()])
-    variances = [_variance(some, USUAL_SPREAD, PRIOR_COUNT) for some in (own, others) if len(some)]
-    variance = np.mean(variances) if variances else USUAL_SPREAD**2
+    usual = DEFAULT_RECOGNITION.usual_support_spread
+    variances = [_variance(some, usual, PRIOR_COUNT) for some in (own, others) if len(some)]
+    variance = np.mean(variances) if variances else usual**2
     return float(max(np.sqrt(variance), LEAST_SPREAD))
 
 
 def _parts(own: Sequence[Support]) -> tuple[Array, Array]:
     """The means and spreads (4,) of the parts of an object's own supports."""
     if not own:
-        return np.full(PARTS, -np.inf), np.array(USUAL_PART_SPREADS)
+        return np.full(PARTS, -np.inf), np.array(DEFAULT_RECOGNITION.usual_part_spreads)
     told = np.array([one.parts for one in own])
     means = told.mean(axis=0)
-    return means, np.sqrt(_variance(np.square(told - means), USUAL_PART_SPREADS, PARTS_PRIOR_COUNT))
+    usual = DEFAULT_RECOGNITION.usual_part_spreads
+    return means, np.sqrt(_variance(np.square(told - means), usual, PARTS_PRIOR_COUNT))
 
 
 def _variance(squares: Array, usual_spreads: ArrayLike, prior_count: float) -> Array:

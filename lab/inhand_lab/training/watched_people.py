@@ -10,11 +10,11 @@ from inhand_tracker.body.skeleton import (
     mirror_joints,
     part_lengths,
     pelvis_basis,
-    standing_height,
+    stature,
 )
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.people.following import Follower
-from inhand_tracker.recognition.movement import Movement
+from inhand_tracker.people.following import PersonFollower
+from inhand_tracker.recognition.movement_window import MovementWindow
 from inhand_tracker.wire.conversion import joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
@@ -35,7 +35,7 @@ def watch(dataset: Dataset, entry: DatasetEntry) -> JointSequence:
     """A recording as its person was seen; raises DatasetError or RecordingError."""
     frames = load_frames(dataset.path(entry), entry.object)
     joints = np.full((len(frames), 20, 3), np.nan)
-    follower = Follower()
+    follower = PersonFollower()
     for index, frame in enumerate(frames):
         person = follower.choose(frame.people, frame.time_ns)
         if person is not None:
@@ -53,7 +53,7 @@ def usual_poses(people: Sequence[JointSequence]) -> UsualPoses:
         joints = mirror_joints(one.joints) if one.left_handed else one.joints
         whole = joints[np.isfinite(joints).all(axis=(1, 2))]
         if len(whole):
-            height = standing_height(part_lengths(whole))
+            height = stature(part_lengths(whole))
             with np.errstate(invalid="ignore", divide="ignore"):
                 poses = body_pose(whole, pelvis_basis(whole), height)[::USUAL_STEP]
             found.append(poses[np.isfinite(poses).all(axis=1)])
@@ -72,7 +72,7 @@ def poses_and_movements(
     one: JointSequence, usual: UsualPoses, step: int = 1
 ) -> tuple[Array, Array, Indices]:
     """Body poses (N, 60), movement features (N, D) and frames (N,) of every so many-th body."""
-    movement = Movement()
+    movement = MovementWindow()
     poses, features, frames = [], [], []
     for index, body in enumerate(read_bodies(one, usual)):
         if body is None:

@@ -25,23 +25,29 @@ from inhand_tracker.methods.registry import (
     MethodName,
     new_tracker,
 )
+from inhand_tracker.model.model import Model
 from inhand_tracker.model.model_file import load_model
-from inhand_tracker.people.following import PeopleWatched, published
-from inhand_tracker.people.watching import GivenObjects, RecognisedObjects, Seen, Watcher
+from inhand_tracker.people.following import PeopleWatched, worth_publishing
+from inhand_tracker.people.watching import (
+    CameraFrame,
+    GivenObjects,
+    RecognisedObjects,
+    WatchedObject,
+    Watcher,
+)
 from inhand_tracker.recognition.cascade import Cascade
 from inhand_tracker.recognition.recogniser_file import load_recogniser
-from inhand_tracker.wire.conversion import (
-    box_around,
-    image_of,
-    object_pose_message,
-)
+from inhand_tracker.wire.conversion import image_of
 from inhand_tracker.wire.pairing import Pairing
+from inhand_tracker.wire.poses import SourceFrame, image_box, object_pose_message
 
 log = logging.getLogger(__name__)
 
 POLL_S = 0.01
+"""Seconds that a look for new messages lasts: skeletons that wait for pixels go on as often."""
 MOST_WAITING = 30
-"""A second at 30 Hz: who is later than that is better off with what comes next."""
+"""Number of skeletons that may wait to be tracked: a second at 30 Hz. Whoever is later than that is
+better off with what comes next."""
 
 
 class TrackerSettings(Section):
@@ -64,19 +70,16 @@ class TrackerSettings(Section):
 
 
 class TrackerService:
-    """One frame after the other, from messages to messages; each person has a watcher."""
+    """Tracks one frame after the other, from messages to messages; each person has a watcher."""
 
     def __init__(
         self, daemon: Daemon, settings: TrackerSettings, new_watcher: Callable[[], Watcher]
     ) -> None:
         self._daemon = daemon
         self._camera = settings.camera
-        terms = (
-            METHODS[settings.method].usual_terms
-            if settings.likelihood is None
-            else settings.likelihood
-        )
-        self._needs = METHODS[settings.method].needs(terms)
+        method = METHODS[settings.method]
+        terms = method.usual_terms if settings.likelihood is None else settings.likelihood
+        self._needs = method.needs(terms)
         self._people = PeopleWatched(new_watcher, settings.people)
         self._publishers: dict[str, Publisher[ObjectPose]] = {
             name: daemon.publisher(POSE, name) for name in self._people.names
@@ -101,6 +104,7 @@ class TrackerService:
                 self._track(*pair)
 
     def _take(self, sample: Received) -> None:
+        """Keep what a message brings until its frame is tracked."""
         now = time.monotonic()
         if sample.key == self._keys[INFO]:
             self._info = self._daemon.decode(INFO, sample) or self._info
@@ -110,38 +114,18 @@ class TrackerService:
         elif (skeletons := self._daemon.decode(SKELETONS, sample)) is not None:
             self._pairing.add_skeleton(skeletons.sequence, skeletons, now)
 
-    def _track(self, skeletons: Skeletons, frame: RgbdFrame | None) -> None:
-        camera = None if self._info is None else intrinsics_of(self._info)
-        seen = self._people.see(
-            skeletons.people, skeletons.time_ns, self._image(frame), camera, self._note_failure
-        )
-        for person, thing in published(seen):
-            self._publish(person, thing, skeletons, camera)
+    def _track(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> None:
+        """Track one frame: decode, watch each person, publish."""
+        frame = self._decoded(skeletons, pixels)
+        objects = self._people.see(skeletons.people, frame, self._note_failure)
+        source = self._source(skeletons)
+        for person, thing in worth_publishing(objects):
+            self._publish(person, thing, source, frame.camera)
         self._daemon.health.latency(skeletons.time_ns)
 
-    def _publish(
-        self, person: int | None, seen: Seen, skeletons: Skeletons, camera: Intrinsics | None
-    ) -> None:
-        self._publishers[seen.name].put(
-            object_pose_message(
-                seen.estimate,
-                sequence=skeletons.sequence,
-                time_ns=skeletons.time_ns,
-                name=seen.name,
-                camera=self._camera,
-                person=person,
-                rig_from_camera=None if self._info is None else self._info.rig_from_camera,
-                box=None if camera is None else box_around(seen.outline, camera),
-                class_probabilities=seen.class_probabilities,
-            )
-        )
-
-    def _note_failure(self, name: str, error: Exception) -> None:
-        text = f"cannot track {name}: {type(error).__name__}: {error}"
-        if self._failures.get(name) != text:
-            self._failures[name] = text
-            self._daemon.health.error(text)
-            log.debug("where it happened", exc_info=error)
+    def _decoded(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> CameraFrame:
+        camera = None if self._info is None else intrinsics_of(self._info)
+        return CameraFrame(skeletons.time_ns, self._image(pixels), camera)
 
     def _image(self, frame: RgbdFrame | None) -> Image | None:
         if frame is None or self._info is None:
@@ -152,6 +136,35 @@ class TrackerService:
             self._daemon.health.malformed(self._keys[RGBD], error)
             return None
 
+    def _source(self, skeletons: Skeletons) -> SourceFrame:
+        rig_from_camera = None if self._info is None else self._info.rig_from_camera
+        return SourceFrame(skeletons.sequence, skeletons.time_ns, self._camera, rig_from_camera)
+
+    def _publish(
+        self,
+        person: int | None,
+        thing: WatchedObject,
+        source: SourceFrame,
+        camera: Intrinsics | None,
+    ) -> None:
+        message = object_pose_message(
+            thing.estimate,
+            source,
+            name=thing.name,
+            person=person,
+            box=None if camera is None else image_box(thing.outline, camera),
+            class_probabilities=thing.class_probabilities,
+        )
+        self._publishers[thing.name].put(message)
+
+    def _note_failure(self, name: str, error: Exception) -> None:
+        """Report a failure, once until the same object fails in another way."""
+        text = f"cannot track {name}: {type(error).__name__}: {error}"
+        if self._failures.get(name) != text:
+            self._failures[name] = text
+            self._daemon.health.error(text)
+            log.debug("where it happened", exc_info=error)
+
 
 def run(settings: Settings[TrackerSettings]) -> None:
     """Run until a signal; raises SettingsError or ModelError before anything starts."""
@@ -159,21 +172,22 @@ def run(settings: Settings[TrackerSettings]) -> None:
     first = load_watcher(settings.instance, chosen)
     with running_daemon("tracker", settings) as daemon:
         log.info("tracking %s with %s", ", ".join(first.names), chosen.method)
-        waiting = [first]
+        loaded = [first]
 
         def new_watcher() -> Watcher:
-            return waiting.pop() if waiting else load_watcher(settings.instance, chosen)
+            return loaded.pop() if loaded else load_watcher(settings.instance, chosen)
 
         TrackerService(daemon, chosen, new_watcher).run()
 
 
 def load_watcher(instance: str, settings: TrackerSettings) -> Watcher:
-    """A watcher for one person; raises SettingsError or ModelError."""
-    trackers = load_trackers(instance, settings)
+    """Load all that it takes to watch one person; raises SettingsError or ModelError."""
+    models = load_models(instance, settings)
+    trackers = new_trackers(models, settings)
     if settings.recogniser is None:
         return GivenObjects(trackers)
     recogniser = load_recogniser(settings.recogniser)
-    by_action = {load_model(file).interaction: name for file, name in _files(settings, trackers)}
+    by_action = {model.interaction: name for name, model in models.items()}
     if missing := [action for action in recogniser.actions if action not in by_action]:
         raise SettingsError(
             f"[tracker.{instance}] recognises {missing[0]!r} and has no model of it: add it to "
@@ -186,15 +200,8 @@ def load_watcher(instance: str, settings: TrackerSettings) -> Watcher:
     return RecognisedObjects(cascade, objects)
 
 
-def _files(
-    settings: TrackerSettings, trackers: Mapping[str, ObjectTracker]
-) -> list[tuple[Path, str]]:
-    files = settings.models if settings.model is None else (settings.model,)
-    return list(zip(files, trackers, strict=True))
-
-
-def load_trackers(instance: str, settings: TrackerSettings) -> dict[str, ObjectTracker]:
-    """A tracker for each model, by object; raises SettingsError or ModelError."""
+def load_models(instance: str, settings: TrackerSettings) -> dict[str, Model]:
+    """Load the models that are named, by object; raises SettingsError or ModelError."""
     where = f"[tracker.{instance}]"
     if settings.model is not None and settings.models:
         raise SettingsError(f'{where} has model and models: put all in models = ["FILE", …]')
@@ -203,13 +210,22 @@ def load_trackers(instance: str, settings: TrackerSettings) -> dict[str, ObjectT
         raise SettingsError(
             f'{where} names no model: write model = "FILE"; `inhand train` makes one'
         )
-    trackers: dict[str, ObjectTracker] = {}
+    models: dict[str, Model] = {}
     for file in files:
         model = load_model(file)
         name = model.shape.name
-        if name in trackers:
+        if name in models:
             raise SettingsError(f"{where} has two models of {name!r}: an object has one pose key")
-        trackers[name] = new_tracker(
+        models[name] = model
+    return models
+
+
+def new_trackers(
+    models: Mapping[str, Model], settings: TrackerSettings
+) -> dict[str, ObjectTracker]:
+    """Make a tracker for each model, by object; raises SettingsError or ModelError."""
+    return {
+        name: new_tracker(
             model,
             settings.method,
             left_handed=settings.left_handed,
@@ -217,4 +233,5 @@ def load_trackers(instance: str, settings: TrackerSettings) -> dict[str, ObjectT
             particles=settings.particles,
             seed=settings.seed,
         )
-    return trackers
+        for name, model in models.items()
+    }

@@ -15,11 +15,12 @@ from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from inhand_tracker.model.model import Model, ModelError
 from inhand_tracker.model.model_file import save_model
-from inhand_tracker.recognition.answer import Recognition
+from inhand_tracker.people.watching import CameraFrame
 from inhand_tracker.recognition.cascade import Cascade
 from inhand_tracker.recognition.darby2012.cascade import Cascade2012
 from inhand_tracker.recognition.recogniser import Recogniser
 from inhand_tracker.recognition.recogniser_file import load_recogniser, save_recogniser
+from inhand_tracker.recognition.recognition import Recognition
 from inhand_tracker.service import TrackerSettings, load_watcher
 from inhand_tracker.wire.conversion import joints_of
 
@@ -134,7 +135,7 @@ def test_the_tracker_s_settings_name_a_recogniser_and_all_its_models(
     )
     watcher = load_watcher("x", settings)
     assert watcher.names == tuple(model.shape.name for model in models)
-    seen = watcher.see(None, 0, None, None, lambda *_: None)
+    seen = watcher.see(None, CameraFrame(0), lambda *_: None)
     assert {one.estimate.state for one in seen} == {"lost"}
     with pytest.raises(SettingsError, match=r"\[tracker.x\] recognises 'putOnShoe' and has no"):
         load_watcher("x", settings.model_copy(update={"models": tuple(files[:1])}))

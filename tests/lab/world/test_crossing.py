@@ -6,7 +6,7 @@ from crossing import cross
 from inhand_tracker.geometry.estimate import LOST
 from inhand_tracker.people.following import PeopleWatched
 from inhand_tracker.people.identities import Identities
-from inhand_tracker.people.watching import Seen
+from inhand_tracker.people.watching import CameraFrame, WatchedObject
 
 
 class Notes:
@@ -22,7 +22,7 @@ class Notes:
 
     def see(self, joints, *_):
         self.hips.append(None if joints is None else joints[0])
-        return [Seen("thing", LOST)]
+        return [WatchedObject("thing", LOST)]
 
 
 @pytest.mark.long
@@ -53,7 +53,7 @@ def test_each_of_two_people_is_watched_by_one_watcher_throughout() -> None:
 
     watched = PeopleWatched(new_watcher, 2)
     for frame in cross(1):
-        watched.see(frame.people, frame.time_ns, None, None, lambda *_: None)
+        watched.see(frame.people, CameraFrame(frame.time_ns), lambda *_: None)
     assert len(made) == 2
     for notes in made:
         places = np.array([place for place in notes.hips if place is not None])

@@ -1,13 +1,28 @@
+"""Bodies are whole, of one height, and right-handed, whatever joints are given."""
+
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-from inhand_tracker.body.reader import BodyReader
-from people import STANDING, STANDING_HEIGHT, wave_model
+from inhand_tracker.body.reader import Body, BodyReader
+from inhand_tracker.body.skeleton import body_pose, mirror_joints, pelvis_basis
+from people import STANDING, STANDING_HEIGHT, waving
 
 HEAD, ANKLE = 3, 14
 
 
-def reader() -> BodyReader:
-    return BodyReader(wave_model().mapping, left_handed=False)
+_PEOPLE = waving(30)
+LEARNED = SimpleNamespace(body_poses=body_pose(_PEOPLE, pelvis_basis(_PEOPLE), STANDING_HEIGHT))
+
+
+def reader(*, left_handed: bool = False) -> BodyReader:
+    return BodyReader(LEARNED, left_handed=left_handed)
+
+
+def without(*joints: int) -> np.ndarray:
+    missing = STANDING.copy()
+    missing[list(joints)] = np.nan
+    return missing
 
 
 @pytest.mark.parametrize("joint", [HEAD, ANKLE])
@@ -51,3 +66,27 @@ def test_what_is_given_is_not_changed() -> None:
     before = joints.copy()
     reader().read(joints)
     np.testing.assert_array_equal(joints, before)
+
+
+def test_a_missing_joint_keeps_its_last_place_on_the_body() -> None:
+    running, shift = reader(), np.array([0.5, 0.0, 1.0])
+    running.read(STANDING)
+    body = running.read(without(11) + shift)
+    assert body is not None
+    np.testing.assert_allclose(body.joints, STANDING + shift, atol=1e-9)
+
+
+def test_a_joint_that_was_never_seen_is_where_people_usually_have_it() -> None:
+    body = reader().read(without(11))
+    assert body is not None
+    usual = LEARNED.body_poses.mean(axis=0).reshape(20, 3)[11]
+    np.testing.assert_allclose(body.pose.reshape(20, 3)[11], usual)
+    np.testing.assert_allclose(np.delete(body.joints, 11, axis=0), np.delete(STANDING, 11, axis=0))
+
+
+def test_a_left_handed_person_is_read_as_the_mirror_shows_a_right_handed_one() -> None:
+    left, right = reader(left_handed=True).read(mirror_joints(STANDING)), reader().read(STANDING)
+    assert isinstance(left, Body)
+    assert isinstance(right, Body)
+    np.testing.assert_array_equal(left.joints, right.joints)
+    np.testing.assert_array_equal(left.pose, right.pose)

@@ -5,26 +5,26 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from inhand_schemas.joints import Joint
+from inhand_tracker.body.parameters import DEFAULT_BODY
 from inhand_tracker.body.window import (
-    GAP_NS,
-    LAGS_S,
-    MEMORIES_S,
     REMEMBERED,
     UPPER_BODY,
     VIEWS,
     BodyWindow,
-    Memory,
+    PlaceMemory,
+    continues,
     earlier_frames,
-    places,
-    remember,
+    remember_places,
+    trunk_places,
 )
 from people import FRAME_NS, STANDING, STANDING_HEIGHT, move, waving
 from scipy.spatial.transform import Rotation
 
 small = st.floats(-3.0, 3.0)
-LAGS = len(LAGS_S)
+LAGS = len(DEFAULT_BODY.lags_s)
 UPPER = len(UPPER_BODY)
 HAND_RIGHT = Joint.HAND_RIGHT
+GAP_NS = DEFAULT_BODY.gap_ns
 
 
 def described(joints: np.ndarray, step_ns: int = FRAME_NS) -> list[list[np.ndarray]]:
@@ -36,7 +36,7 @@ def parts(views: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Places (20, 3) and ways (L, 20, 3) of the whole body, and memories (M, 5, 3)."""
     whole = views[0].reshape(1 + LAGS, 20, 3)
     memories = views[2].reshape(-1)[(1 + LAGS) * UPPER * 3 :]
-    return whole[0], whole[1:], memories.reshape(len(MEMORIES_S), len(REMEMBERED), 3)
+    return whole[0], whole[1:], memories.reshape(len(DEFAULT_BODY.memories_s), len(REMEMBERED), 3)
 
 
 def moving_hand(times: np.ndarray, speed: np.ndarray) -> np.ndarray:
@@ -105,7 +105,7 @@ def test_frames_that_are_missing_are_stood_for_by_the_one_before() -> None:
 
 def test_at_first_a_memory_is_the_mean_of_all_that_was() -> None:
     """While less than its time constant has passed; the first frame counts as one step."""
-    memory, random = Memory(), np.random.default_rng(0)
+    memory, random = PlaceMemory(), np.random.default_rng(0)
     seen = random.normal(size=(25, 20, 3))
     for count, place in enumerate(seen, start=1):
         means = memory.add(place, 1.0 / 30.0)
@@ -117,7 +117,7 @@ def test_at_first_a_memory_is_the_mean_of_all_that_was() -> None:
 @pytest.mark.parametrize("rate", [15.0, 30.0])
 def test_memories_fade_by_their_time_constants(rate: float) -> None:
     """After long rest a hand moves away: of the old place exp(-t/τ) is left, whatever the rate."""
-    memory, step = Memory(), 1.0 / rate
+    memory, step = PlaceMemory(), 1.0 / rate
     there, away = np.zeros((20, 3)), np.ones((20, 3))
     for _ in range(round(30.0 * rate)):
         memory.add(there, step)
@@ -129,8 +129,8 @@ def test_memories_fade_by_their_time_constants(rate: float) -> None:
 
 def test_a_recording_s_memories_are_those_of_frames_as_they_come() -> None:
     joints = waving(50)
-    seen = places(joints, STANDING_HEIGHT)
-    together = remember(seen, np.arange(50) / 30.0, 1.0 / 30.0)
+    seen = trunk_places(joints, STANDING_HEIGHT)
+    together = remember_places(seen, np.arange(50) / 30.0, 1.0 / 30.0)
     for views, memories in zip(described(joints), together, strict=True):
         np.testing.assert_allclose(parts(views)[2], memories, atol=1e-5)
 
@@ -154,3 +154,13 @@ def test_half_a_second_is_no_gap() -> None:
     _, ways, memories = parts(window.add(later, FRAME_NS + GAP_NS, STANDING_HEIGHT))
     assert memories[0, 3, 1] < parts(described(later[None])[0])[2][0, 3, 1]
     assert np.isfinite(ways).all()
+
+
+@pytest.mark.parametrize(
+    ("later_ns", "expected"),
+    [(1, True), (GAP_NS, True), (GAP_NS + 1, False), (0, False), (-1, False)],
+)
+def test_a_frame_continues_the_one_before_when_the_clock_went_on_without_a_gap(
+    later_ns: int, expected: bool
+) -> None:
+    assert continues(10**9, 10**9 + later_ns) is expected

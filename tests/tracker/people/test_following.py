@@ -1,23 +1,26 @@
-from inhand_tracker.people.following import PATIENCE_NS, Follower
+from inhand_tracker.people.following import PersonFollower
+from inhand_tracker.people.parameters import DEFAULT_PEOPLE
 from people import person
+
+PATIENCE_NS = DEFAULT_PEOPLE.patience_ns
 
 
 def test_the_nearest_person_whose_hips_are_seen_is_chosen_first() -> None:
     people = [person(1, 3.0), person(2, 1.0, missing=(0,)), person(3, 2.0)]
-    follower = Follower()
+    follower = PersonFollower()
     assert follower.choose(people, 0) is people[2]
     assert follower.person_id == 3
 
 
 def test_the_person_that_is_followed_stays_chosen_when_another_comes_nearer() -> None:
-    follower = Follower()
+    follower = PersonFollower()
     follower.choose([person(2, 3.0)], 0)
     people = [person(1, 1.0), person(2, 3.0)]
     assert follower.choose(people, 1) is people[1]
 
 
 def test_nobody_is_chosen_while_the_followed_person_is_away_for_less_than_two_seconds() -> None:
-    follower = Follower()
+    follower = PersonFollower()
     follower.choose([person(2)], 0)
     assert follower.choose([person(1)], PATIENCE_NS - 1) is None
     assert follower.person_id == 2
@@ -26,7 +29,7 @@ def test_nobody_is_chosen_while_the_followed_person_is_away_for_less_than_two_se
 
 
 def test_another_person_is_followed_after_two_seconds_without_the_first() -> None:
-    follower = Follower()
+    follower = PersonFollower()
     follower.choose([person(2)], 0)
     other = person(1)
     assert follower.choose([other], PATIENCE_NS) is other
@@ -34,13 +37,13 @@ def test_another_person_is_followed_after_two_seconds_without_the_first() -> Non
 
 
 def test_a_clock_that_jumps_back_does_not_hold_the_choice_for_ever() -> None:
-    follower = Follower()
+    follower = PersonFollower()
     follower.choose([person(2)], 10 * PATIENCE_NS)
     other = person(1)
     assert follower.choose([other], 0) is other
 
 
 def test_nobody_is_chosen_from_nobody() -> None:
-    follower = Follower()
+    follower = PersonFollower()
     assert follower.choose([], 0) is None
     assert follower.choose([person(2, missing=(0,))], 1) is None

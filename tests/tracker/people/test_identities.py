@@ -2,8 +2,11 @@
 
 import numpy as np
 from inhand_schemas.messages import Person
-from inhand_tracker.people.identities import PATIENCE_NS, Identities
+from inhand_tracker.people.identities import Identities
+from inhand_tracker.people.parameters import DEFAULT_PEOPLE
 from people import FRAME_NS, STANDING
+
+PATIENCE_NS = DEFAULT_PEOPLE.patience_ns
 
 
 def at(x: float, camera_id: int, size: float = 1.0) -> Person:

@@ -3,9 +3,14 @@
 import numpy as np
 from inhand_schemas.messages import Person
 from inhand_tracker.geometry.estimate import LOST, Estimate
-from inhand_tracker.people.following import PeopleWatched, published
-from inhand_tracker.people.watching import GivenObjects, RecognisedObjects, Seen
-from inhand_tracker.recognition.answer import Recognition
+from inhand_tracker.people.following import PeopleWatched, worth_publishing
+from inhand_tracker.people.watching import (
+    CameraFrame,
+    GivenObjects,
+    RecognisedObjects,
+    WatchedObject,
+)
+from inhand_tracker.recognition.recognition import Recognition
 from people import FRAME_NS, STANDING
 
 HERE = Estimate("tracked", 1.0, np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), np.eye(6))
@@ -33,7 +38,7 @@ class Scripted:
 
 def see(watcher, failures=None):
     on_failure = (lambda *_: None) if failures is None else lambda *told: failures.append(told)
-    return watcher.see(STANDING, FRAME_NS, None, None, on_failure)
+    return watcher.see(STANDING, CameraFrame(FRAME_NS), on_failure)
 
 
 def test_the_known_object_has_a_pose_and_all_tell_the_probabilities() -> None:
@@ -59,10 +64,14 @@ def test_a_cascade_that_fails_is_told_restarted_and_loses_a_frame() -> None:
 
 def test_every_pose_is_published_and_an_unused_object_is_lost_once() -> None:
     found = {
-        0: [Seen("mug", HERE), Seen("phone", LOST), Seen("pan", LOST)],
-        1: [Seen("mug", HERE), Seen("phone", HERE), Seen("pan", LOST, None, {"pan": 0.4})],
+        0: [WatchedObject("mug", HERE), WatchedObject("phone"), WatchedObject("pan")],
+        1: [
+            WatchedObject("mug", HERE),
+            WatchedObject("phone", HERE),
+            WatchedObject("pan", LOST, None, {"pan": 0.4}),
+        ],
     }
-    told = [(person, seen.name, seen.estimate.state) for person, seen in published(found)]
+    told = [(person, seen.name, seen.estimate.state) for person, seen in worth_publishing(found)]
     assert told == [
         (0, "mug", "tracked"),
         (1, "mug", "tracked"),
@@ -97,8 +106,8 @@ def test_no_more_people_are_watched_than_asked_for_and_who_leaves_makes_room() -
     watched = PeopleWatched(lambda: GivenObjects({"mug": Still()}), 2)
 
     def numbers(people: list[Person], second: float) -> set[int | None]:
-        time_ns = round(second * 1e9)
-        return set(watched.see(people, time_ns, None, None, lambda *_: None))
+        frame = CameraFrame(round(second * 1e9))
+        return set(watched.see(people, frame, lambda *_: None))
 
     assert numbers([], 0.0) == {None}
     three = [person(1, -1.0), person(2, 0.0), person(3, 1.0)]

@@ -4,17 +4,21 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from inhand_tracker.body.skeleton import body_pose, pelvis_basis
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.recognition import cascade as cascade_module
-from inhand_tracker.recognition.cascade import TURN, Cascade
+from inhand_tracker.recognition.cascade import Cascade, worth_following
+from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
 from inhand_tracker.recognition.presence import usual_presence
 from inhand_tracker.sight.support import Support
-from people import FRAME_NS, STANDING, wave_model
+from people import FRAME_NS, STANDING, STANDING_HEIGHT
 
 CAMERA = Intrinsics(500.0, 500.0, 320.0, 240.0, 640, 480)
 ACTIONS = 4
+TURN = DEFAULT_RECOGNITION.turn_frames
+STANDING_POSE = body_pose(STANDING, pelvis_basis(STANDING), STANDING_HEIGHT)[None]
 
 
 class AtPixel:
@@ -74,7 +78,7 @@ def new_cascade() -> tuple[Cascade, list[AtPixel]]:
     learned = SimpleNamespace(
         movements=None,
         temper=1.0,
-        body_poses=wave_model().mapping.body_poses,
+        body_poses=STANDING_POSE,
         presence=usual_presence(ACTIONS),
     )
     return Cascade(learned, trackers), trackers
@@ -90,6 +94,21 @@ def run(cascade: Cascade, frames: int, *, image: Image | None = None, first: int
 def look(cascade: Cascade, frames: int, *, first: int = 0) -> list:
     """The same with images."""
     return run(cascade, frames, image=Image(None, CAMERA), first=first)
+
+
+@pytest.mark.parametrize(
+    ("probabilities", "expected"),
+    [
+        ((0.1, 0.6, 0.2, 0.1), [1, 2]),
+        ((0.1, 0.8, 0.1, 0.0), [1]),
+        ((0.0, 0.1, 0.0, 0.0), [1]),
+        ((0.3, 0.0, 0.3, 0.31), [3, 0]),
+    ],
+)
+def test_the_likeliest_is_worth_following_and_others_that_are_likely_enough(
+    probabilities: tuple[float, ...], expected: list[int]
+) -> None:
+    assert worth_following(np.array(probabilities)) == expected
 
 
 def test_before_anything_was_known_the_box_is_that_of_the_likeliest(script) -> None:

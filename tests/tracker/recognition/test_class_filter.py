@@ -1,7 +1,8 @@
 """Evidence adds up, fades, and is worth nothing where it speaks for nobody."""
 
 import numpy as np
-from inhand_tracker.recognition.class_filter import NONE_AT_FIRST, ClassFilter
+from inhand_tracker.recognition.class_filter import ClassFilter
+from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
 
 FRAME_NS = 33_333_333
 
@@ -15,7 +16,7 @@ def test_nothing_is_in_use_until_something_speaks_for_it() -> None:
     steps = run(np.zeros(4), 1000)
     assert all(abs(step.sum() - 1.0) < 1e-9 for step in steps)
     assert max(step[:-1].max() for step in steps) < 0.3
-    assert abs(steps[0][-1] - NONE_AT_FIRST) < 0.01
+    assert abs(steps[0][-1] - DEFAULT_RECOGNITION.none_at_first) < 0.01
 
 
 def test_evidence_that_lasts_makes_an_action_known_and_keeps_it_through_a_pause() -> None:

@@ -4,16 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from inhand_tracker.recognition.presence import (
-    CERTAIN,
-    RECOLOURED,
-    TOGETHER,
-    TRUSTED,
-    Looks,
-    Presence,
-    usual_presence,
-)
+from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
+from inhand_tracker.recognition.presence import Looks, Presence, usual_presence
 from inhand_tracker.sight.support import Support
+
+TRUST = DEFAULT_RECOGNITION.trust
+MOST_AGAINST = DEFAULT_RECOGNITION.most_against
+PART_TEMPER = DEFAULT_RECOGNITION.part_temper
+RECOLOURED_SPREAD = DEFAULT_RECOGNITION.recoloured_spread
 
 PRESENCE = Presence(
     np.array([[20.0, 0.0], [0.0, 10.0]]),
@@ -22,7 +20,7 @@ PRESENCE = Presence(
     np.array([[2.0, 4.0, 0.5, 1.0]] * 2),
 )
 FRAME_NS = 33_333_333
-TOLD = TRUSTED + np.log(2.0 / (1.0 + np.exp(-0.8)))
+TOLD = TRUST + np.log(2.0 / (1.0 + np.exp(-0.8)))
 """At 7, N(10, 5²) is exp(0.8) times N(0, 5²): (7² - 3²) / (2 · 25) = 0.8."""
 
 
@@ -33,23 +31,21 @@ def so_likely(log_likelihood: float) -> Support:
 
 def test_a_look_says_how_much_likelier_the_object_is_than_things_in_general() -> None:
     assert PRESENCE.evidence(1, so_likely(7.0)) == pytest.approx(TOLD)
-    assert PRESENCE.evidence(1, so_likely(5.0)) == pytest.approx(TRUSTED)
+    assert PRESENCE.evidence(1, so_likely(5.0)) == pytest.approx(TRUST)
 
 
 def test_a_look_says_the_more_for_an_object_the_fewer_of_the_things_taught_resemble_it() -> None:
-    assert PRESENCE.evidence(0, so_likely(100.0)) == pytest.approx(TRUSTED + np.log(2.0))
+    assert PRESENCE.evidence(0, so_likely(100.0)) == pytest.approx(TRUST + np.log(2.0))
     many = usual_presence(15)
-    assert many.evidence(3, so_likely(60.0)) == pytest.approx(TRUSTED + np.log(15.0), rel=0.01)
+    assert many.evidence(3, so_likely(60.0)) == pytest.approx(TRUST + np.log(15.0), rel=0.01)
     supports = many.supports.copy()
     supports[3, 4:9] = supports[3, 3]
     alike = replace(many, supports=supports)
-    assert alike.evidence(3, so_likely(60.0)) == pytest.approx(
-        TRUSTED + np.log(15.0 / 6.0), rel=0.01
-    )
+    assert alike.evidence(3, so_likely(60.0)) == pytest.approx(TRUST + np.log(15.0 / 6.0), rel=0.01)
 
 
 def test_a_look_can_say_more_against_an_object_than_for_it() -> None:
-    assert PRESENCE.evidence(0, so_likely(-100.0)) == -CERTAIN
+    assert PRESENCE.evidence(0, so_likely(-100.0)) == -MOST_AGAINST
 
 
 def test_parts_that_fall_short_speak_against_an_object_more_than_their_sum_does() -> None:
@@ -57,12 +53,12 @@ def test_parts_that_fall_short_speak_against_an_object_more_than_their_sum_does(
     short = own._replace(edges=9.0, depth=0.0)
     assert short.log_likelihood == own.log_likelihood == 20.0
     told = PRESENCE.evidence(0, own) - PRESENCE.evidence(0, short)
-    assert told == pytest.approx(0.5 * TOGETHER * 4.0**2)
+    assert told == pytest.approx(0.5 * PART_TEMPER * 4.0**2)
     assert PRESENCE.evidence(1, short) == PRESENCE.evidence(1, own)
 
 
 def test_colours_that_had_to_be_learned_anew_speak_against_an_object() -> None:
-    own, one_spread = Support(5.0, 10.0, 1.0, 4.0), 0.5 * RECOLOURED
+    own, one_spread = Support(5.0, 10.0, 1.0, 4.0), 0.5 * RECOLOURED_SPREAD
     best = PRESENCE.evidence(0, own)
     anew = own._replace(recoloured=one_spread)
     assert PRESENCE.evidence(0, anew) == pytest.approx(best - 0.5)
@@ -92,7 +88,7 @@ def test_one_look_that_errs_is_outvoted() -> None:
     for frame in range(20):
         looks.add(frame * FRAME_NS, {1: so_likely(8.0)})
     looks.add(20 * FRAME_NS, {1: so_likely(-18.0)})
-    assert looks.evidence(20 * FRAME_NS)[1] > TRUSTED
+    assert looks.evidence(20 * FRAME_NS)[1] > TRUST
 
 
 def test_what_was_seen_long_ago_fades() -> None:

@@ -1,6 +1,12 @@
-from inhand_tracker.wire.pairing import FLOWING_S, FRAMES_KEPT, LONGEST_WAIT_S, Pairing
+"""Skeletons and pixels of one frame find each other, and nobody waits in vain."""
+
+from inhand_tracker.wire.pairing import Pairing
+from inhand_tracker.wire.parameters import DEFAULT_PAIRING
 
 START = 100.0
+FLOWING_S = DEFAULT_PAIRING.flowing_s
+LONGEST_WAIT_S = DEFAULT_PAIRING.longest_wait_s
+FRAMES_KEPT = DEFAULT_PAIRING.frames_kept
 
 
 def flowing(*sequences: int) -> Pairing[str, str]:

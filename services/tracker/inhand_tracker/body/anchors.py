@@ -1,9 +1,9 @@
-"""Coordinate systems on the body that an object's pose is predicted in.
+"""Anchors: coordinate systems on the body that an object's pose is predicted in.
 
-Darby et al. 2014 take one part of the body at a time, and each part's basis from two joints: where
-two joints are near to each other, a hand's and its wrist's, their noise turns the basis. These
-anchors rest on joints that are far apart. Some turn with a limb, others keep the trunk's directions
-at a limb's place, and one lies between the hands.
+Darby et al. 2014 take each part's basis from the part's two joints: where these are near to each
+other, as a hand and its wrist, their noise turns the basis. Anchors rest on joints that are far
+apart. Some turn with a limb, others keep the trunk's directions at a limb's place, and one lies
+between the hands.
 """
 
 from dataclasses import dataclass
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from inhand_schemas.joints import JOINT_NAMES
 
+from inhand_tracker.body.parameters import DEFAULT_BODY
 from inhand_tracker.geometry.arrays import Array
 
 ANCHORS = (
@@ -24,20 +25,22 @@ ANCHORS = (
     "right shank",
     "left shank",
 )
-STRAIGHT = 0.15
-"""Of a straight arm, whose upper arm shows no plane, the trunk's upwards takes the place."""
+"""Names of the anchors, in their order."""
 
 
 @dataclass(frozen=True)
 class Anchors:
-    """In the joints' frame: ``origins`` (..., A, 3), and ``axes`` (..., A, 3, 3) as columns."""
+    """Coordinate systems in the joints' frame: ``origins`` (..., A, 3), ``axes`` (..., A, 3, 3).
+
+    Axes are columns.
+    """
 
     origins: Array
     axes: Array
 
 
 def trunk_axes(joints: Array) -> Array:
-    """Columns (..., 3, 3): left, up the trunk, and forwards, of joints (..., 20, 3)."""
+    """Find the trunk's left, up and forwards, columns (..., 3, 3), of joints (..., 20, 3)."""
     up = _unit(_joint(joints, "ShoulderCenter") - _joint(joints, "HipCenter"))
     left = _unit(_joint(joints, "ShoulderLeft") - _joint(joints, "ShoulderRight"))
     left = left + _unit(_joint(joints, "HipLeft") - _joint(joints, "HipRight"))
@@ -46,7 +49,7 @@ def trunk_axes(joints: Array) -> Array:
 
 
 def find_anchors(joints: Array) -> Anchors:
-    """The anchors of joints (..., 20, 3)."""
+    """Find the anchors of joints (..., 20, 3)."""
     trunk = trunk_axes(joints)
     up, forwards = trunk[..., 1], trunk[..., 2]
     hips, chest = _joint(joints, "HipCenter"), _joint(joints, "ShoulderCenter")
@@ -72,13 +75,15 @@ def find_anchors(joints: Array) -> Anchors:
 
 
 def _forearm(joints: Array, side: str, up: Array) -> tuple[Array, Array]:
+    """The palm (..., 3), and axes whose z is the forearm and whose y is turned to its front."""
     elbow, wrist, hand = (_joint(joints, part + side) for part in ("Elbow", "Wrist", "Hand"))
     upper_arm = elbow - _joint(joints, "Shoulder" + side)
     along = wrist - elbow + 0.5 * (hand - wrist)
-    return 0.5 * (wrist + hand), _axes(along, STRAIGHT * up - upper_arm)
+    return 0.5 * (wrist + hand), _axes(along, DEFAULT_BODY.straight_arm * up - upper_arm)
 
 
 def _shank(joints: Array, side: str, forwards: Array) -> tuple[Array, Array]:
+    """The ankle (..., 3), and axes whose z is the shank and whose y is turned forwards."""
     ankle = _joint(joints, "Ankle" + side)
     return ankle, _axes(_joint(joints, "Knee" + side) - ankle, forwards)
 

@@ -1,10 +1,11 @@
-"""From a person's joints, of which some may be missing or wild, to what a tracker predicts from."""
+"""Reads bodies: from joints, some missing or wild, to a whole body that trackers predict from."""
 
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
+from inhand_tracker.body.parameters import DEFAULT_BODY, BodyParameters
 from inhand_tracker.body.skeleton import (
     Bases,
     RunningHeight,
@@ -19,13 +20,14 @@ from inhand_tracker.body.skeleton import (
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 
-LEARNED_FRAMES = 1000
-
 
 @dataclass(frozen=True)
 class Body:
-    """One frame's body, right-handed: all joints (20, 3) in the camera frame, b (60,), the 19 part
-    predictors, and the height."""
+    """One frame's whole body, right-handed.
+
+    ``joints`` (20, 3) in the camera frame, ``pose`` b (60,), ``parts`` the 19 part predictors, and
+    the person's ``height`` in metres.
+    """
 
     joints: Array
     pose: Array
@@ -33,34 +35,41 @@ class Body:
     height: float
 
 
-class Learned(Protocol):
-    """Anything that was learned from people, of whom it keeps body poses b (N, 60)."""
+class HasBodyPoses(Protocol):
+    """Anything that keeps body poses of the people it was learned from."""
 
     @property
     def body_poses(self) -> Array:
-        """(N, 60)."""
+        """Body poses b (N, 60)."""
 
 
 class BodyReader:
     """Reads the bodies of one person, frame by frame.
 
-    A missing joint keeps its last place in the pelvis basis, and at first that of the people that
-    was learned from. Left-handed people are mirrored.
+    A missing joint keeps its last place in the pelvis basis; before it was ever seen it has that
+    of the people who were learned from. Left-handed people are mirrored.
     """
 
-    def __init__(self, learned: Learned, *, left_handed: bool) -> None:
-        step = max(1, len(learned.body_poses) // LEARNED_FRAMES)
+    def __init__(
+        self,
+        learned: HasBodyPoses,
+        *,
+        left_handed: bool,
+        parameters: BodyParameters = DEFAULT_BODY,
+    ) -> None:
+        step = max(1, len(learned.body_poses) // parameters.learned_poses)
         poses = np.asarray(learned.body_poses[::step], float).reshape(-1, 20, 3)
-        self._known_pose = poses.mean(axis=0)
-        self._height = RunningHeight(np.median(part_lengths(poses), axis=0))
+        self._last_pose = poses.mean(axis=0)
+        self._height = RunningHeight(np.median(part_lengths(poses), axis=0), parameters)
         self._left_handed = left_handed
+        self._farthest_joint_m = parameters.farthest_joint_m
 
     def read(self, joints: Array) -> Body | None:
-        """The body of joints (20, 3) in the camera frame, missing ones NaN.
+        """Read joints (20, 3) in the camera frame, missing ones NaN.
 
-        None while the pelvis is not seen or the person's height is not known.
+        None while the pelvis is not seen or the person's height is unknown.
         """
-        joints = without_impossible(joints)
+        joints = without_impossible(joints, self._farthest_joint_m)
         if not has_pelvis(joints):
             return None
         if self._left_handed:
@@ -69,8 +78,12 @@ class BodyReader:
         if not np.isfinite(height):
             return None
         pelvis = pelvis_basis(joints)
+        complete = self._complete(joints, pelvis, height)
+        return Body(complete, self._last_pose.reshape(60), part_bases(complete, pelvis), height)
+
+    def _complete(self, joints: Array, pelvis: Bases, height: float) -> Array:
+        """Put missing joints (20, 3) where they were last."""
         seen = body_pose(joints, pelvis, height).reshape(20, 3)
-        self._known_pose = np.where(np.isfinite(seen), seen, self._known_pose)
-        filled = pelvis.origins + height * rotations.rotate(pelvis.rotations, self._known_pose)
-        complete = np.where(np.isfinite(joints), joints, filled)
-        return Body(complete, self._known_pose.reshape(60), part_bases(complete, pelvis), height)
+        self._last_pose = np.where(np.isfinite(seen), seen, self._last_pose)
+        filled = pelvis.origins + height * rotations.rotate(pelvis.rotations, self._last_pose)
+        return np.where(np.isfinite(joints), joints, filled)

@@ -1,4 +1,4 @@
-"""The body: pelvis basis, body pose, part predictors, height (Darby et al. 2014, section 4).
+"""The skeleton: pelvis basis, body pose, part predictors, height (Darby et al. 2014, section 4).
 
 Joints are (..., 20, 3) in metres in the camera frame, in Kinect order
 (``inhand_schemas.joints.JOINT_NAMES``). A part is a joint with its parent: 19 of them, in the
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from inhand_schemas.joints import JOINT_NAMES, MIRRORED_JOINTS, PARENTS, SIDES, Joint
 
+from inhand_tracker.body.parameters import DEFAULT_BODY, BodyParameters
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 
@@ -25,10 +26,6 @@ PELVIS_JOINTS = np.array([Joint.HIP_CENTER, Joint.SPINE, Joint.HIP_LEFT, Joint.H
 LEG_SHARE = 0.491
 TRUNK_SHARE = 0.405
 
-HEIGHT_WINDOW = 300
-WILD = 2.0
-FARTHEST_M = 1000.0
-
 _MIRRORED = np.array(MIRRORED_JOINTS)
 _TRUNK_PARTS = [PARTS.index(name) for name in ("Spine", "ShoulderCenter", "Head")]
 _LEG_PARTS = [[PARTS.index(f"{name}{side}") for name in ("Knee", "Ankle")] for side in SIDES]
@@ -42,14 +39,14 @@ class Bases:
     rotations: Array
 
     def to_camera(self, translations: Array, orientations: Array) -> tuple[Array, Array]:
-        """Poses given in these bases, (..., 3) and (..., 4), taken to the camera frame."""
+        """Take poses given in these bases, (..., 3) and (..., 4), to the camera frame."""
         return (
             self.origins + rotations.rotate(self.rotations, translations),
             rotations.multiply(self.rotations, orientations),
         )
 
     def from_camera(self, translations: Array, orientations: Array) -> tuple[Array, Array]:
-        """Poses of the camera frame, (..., 3) and (..., 4), seen from these bases."""
+        """Take poses of the camera frame, (..., 3) and (..., 4), to these bases."""
         inverse = rotations.conjugate(self.rotations)
         return (
             rotations.rotate(inverse, translations - self.origins),
@@ -58,7 +55,7 @@ class Bases:
 
 
 def pelvis_basis(joints: Array) -> Bases:
-    """H*: x from the right hip to the left, y up the spine, z forwards, origin at HipCenter."""
+    """H*: find the basis at HipCenter: x from the right hip to the left, y up, z forwards."""
     x = joints[..., Joint.HIP_LEFT, :] - joints[..., Joint.HIP_RIGHT, :]
     upwards = joints[..., Joint.SPINE, :] - joints[..., Joint.HIP_CENTER, :]
     z = np.cross(x, upwards)
@@ -77,7 +74,7 @@ def has_pelvis(joints: Array) -> bool:
 
 
 def part_bases(joints: Array, pelvis: Bases) -> Bases:
-    """The part predictors H_l, (..., 19): H* at the parent joint, z turned along the part.
+    """H_l: find the part predictors (..., 19), H* at the parent joint, z turned along the part.
 
     A part of no length keeps the pelvis' directions; one that points exactly backwards is turned
     about the pelvis' x axis.
@@ -101,7 +98,7 @@ def _turn_z_to(direction: Array) -> Array:
 
 
 def body_pose(joints: Array, pelvis: Bases, height: Array | float) -> Array:
-    """b: the joints in the pelvis basis in units of the person's height, (..., 60)."""
+    """b: give the joints in the pelvis basis in units of the person's height, (..., 60)."""
     local = rotations.rotate(
         rotations.conjugate(pelvis.rotations)[..., None, :],
         joints - pelvis.origins[..., None, :],
@@ -111,22 +108,22 @@ def body_pose(joints: Array, pelvis: Bases, height: Array | float) -> Array:
 
 
 def part_lengths(joints: Array) -> Array:
-    """The lengths of the 19 parts, (..., 19); NaN where an end is missing."""
+    """Lengths of the 19 parts, (..., 19); NaN where an end is missing."""
     return np.linalg.norm(joints[..., CHILD_JOINTS, :] - joints[..., PARENT_JOINTS, :], axis=-1)
 
 
-def standing_height(lengths: Array) -> float:
-    """Stature from part lengths (T, 19) of one person, each part's median over time.
+def stature(lengths: Array) -> float:
+    """Estimate stature in metres from part lengths (T, 19) of one person, each part's median.
 
-    Lengths do not change when a person bends. A leg seen on one side only counts for both, and
-    the trunk alone must do where no leg was seen; NaN when a part of the trunk was not.
+    Lengths do not change when a person bends. A leg seen on one side only counts for both; where
+    no leg was seen the trunk alone decides. NaN when a part of the trunk was not seen.
     """
     typical = np.full(len(PARTS), np.nan)
     seen = np.isfinite(lengths).any(axis=0)
-    known = lengths[:, seen]
-    # The same where nothing is missing, and np.nanmedian takes ten times as long.
-    median = np.median if np.isfinite(known).all() else np.nanmedian
-    typical[seen] = median(known, axis=0)
+    measured = lengths[:, seen]
+    # np.nanmedian gives the same where nothing is missing, and takes ten times as long.
+    median = np.median if np.isfinite(measured).all() else np.nanmedian
+    typical[seen] = median(measured, axis=0)
     trunk = typical[_TRUNK_PARTS].sum()
     legs = typical[_LEG_PARTS].sum(axis=1)
     if not np.isfinite(legs).any():
@@ -135,53 +132,57 @@ def standing_height(lengths: Array) -> float:
 
 
 class RunningHeight:
-    """h_t: the stature from the last frames' part lengths.
+    """h_t: keeps the stature by the last frames' part lengths.
 
-    ``proportions`` (19,) are usual part lengths in any unit. A part of more than twice or less
-    than half of the length that the person's other parts make one expect has a wild joint, and
-    the expected length stands for it: so even the first frame may be wild.
+    ``proportions`` (19,) are usual part lengths in any unit. The person's other parts make one
+    expect a length of each part; one of more than twice or less than half of that has a wild
+    joint, and the expected length stands for it: so even the first frame may be wild.
     """
 
-    def __init__(self, proportions: Array | None = None) -> None:
+    def __init__(
+        self, proportions: Array | None = None, parameters: BodyParameters = DEFAULT_BODY
+    ) -> None:
         self._proportions = proportions
-        self._lengths = np.full((HEIGHT_WINDOW, len(PARTS)), np.nan)
+        self._wild_ratio = parameters.wild_ratio
+        self._lengths = np.full((parameters.height_frames, len(PARTS)), np.nan)
         self._frames = 0
 
     def update(self, joints: Array) -> float:
         """Take one frame's (20, 3) joints and give the height in metres; NaN while unknown."""
         lengths = part_lengths(joints)
         if self._proportions is not None:
-            lengths = _in_proportion(lengths, self._proportions)
-        self._lengths[self._frames % HEIGHT_WINDOW] = lengths
+            lengths = _in_proportion(lengths, self._proportions, self._wild_ratio)
+        self._lengths[self._frames % len(self._lengths)] = lengths
         self._frames += 1
-        return standing_height(self._lengths[: self._frames])
+        return stature(self._lengths[: self._frames])
 
 
-def _in_proportion(lengths: Array, proportions: Array) -> Array:
+def _in_proportion(lengths: Array, proportions: Array, wild_ratio: float) -> Array:
+    """Give wild lengths (19,) the value that the others make one expect."""
     shares = lengths / np.maximum(proportions, 1e-9)
-    known = np.isfinite(shares)
-    if not known.any():
+    seen = np.isfinite(shares)
+    if not seen.any():
         return lengths
-    typical = np.median(shares[known])
-    wild = (shares > WILD * typical) | (shares < typical / WILD)
+    typical = np.median(shares[seen])
+    wild = (shares > wild_ratio * typical) | (shares < typical / wild_ratio)
     return np.where(wild, typical * proportions, lengths)
 
 
-def without_impossible(joints: Array) -> Array:
-    """Joints (..., 3), those beyond any room (1 km) as missing."""
-    possible = (np.abs(joints) <= FARTHEST_M).all(axis=-1, keepdims=True)
+def without_impossible(joints: Array, farthest_m: float = DEFAULT_BODY.farthest_joint_m) -> Array:
+    """Take joints (..., 3) that are farther away than any room as missing, NaN."""
+    possible = (np.abs(joints) <= farthest_m).all(axis=-1, keepdims=True)
     return np.where(possible, joints, np.nan)
 
 
 def mirror_joints(joints: Array) -> Array:
-    """The person as a mirror shows it: x negated, left and right exchanged, (..., 20, 3)."""
+    """Mirror people (..., 20, 3): x negated, left and right exchanged."""
     return joints[..., _MIRRORED, :] * np.array([-1.0, 1.0, 1.0])
 
 
 def mirror_pose(
     translations: Array, orientations: Array, mirror_normal: Array
 ) -> tuple[Array, Array]:
-    """Object poses (..., 3) and (..., 4) as a mirror (x negated) shows them.
+    """Mirror object poses (..., 3) and (..., 4), x negated.
 
     ``mirror_normal`` (3,) is the unit normal, in the object's frame, of the object's own plane of
     symmetry, which makes the mirrored object the same object again.

@@ -1,25 +1,28 @@
-"""What stands of an estimate while the person is not seen."""
+"""How an estimate ages while the person is out of view, and when its object is declared lost."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from inhand_tracker.geometry.estimate import LOST, Estimate
-
-COASTING_NS = 1_000_000_000
-COASTING_SPEED = 0.5
-COASTING_TURN_RATE = 2.0
+from inhand_tracker.geometry.parameters import DEFAULT_AGEING, AgeingParameters
 
 
-def coasted(estimate: Estimate, unseen_ns: int) -> Estimate:
-    """An estimate that is so old: predicted for a second, with growing covariance; then lost."""
+def aged(
+    estimate: Estimate, unseen_ns: int, parameters: AgeingParameters = DEFAULT_AGEING
+) -> Estimate:
+    """Age an estimate whose person has been out of view for ``unseen_ns``.
+
+    At first the pose stands as predicted, with less confidence and a wider covariance every
+    moment; after a second the object is lost, and so it is when the clock went back.
+    """
     covariance = estimate.covariance
-    if covariance is None or not 0 <= unseen_ns <= COASTING_NS:
+    if covariance is None or not 0 <= unseen_ns <= parameters.lost_after_ns:
         return LOST
-    spread = np.repeat(np.square([COASTING_SPEED, COASTING_TURN_RATE]), 3)
+    rates = np.repeat([parameters.speed_m_s, parameters.turn_rate_rad_s], 3)
     return replace(
         estimate,
         state="predicted",
-        confidence=estimate.confidence * (1.0 - unseen_ns / COASTING_NS),
-        covariance=covariance + np.diag(spread) * (unseen_ns / 1e9) ** 2,
+        confidence=estimate.confidence * (1.0 - unseen_ns / parameters.lost_after_ns),
+        covariance=covariance + np.diag(np.square(rates)) * (unseen_ns / 1e9) ** 2,
     )

@@ -1,4 +1,4 @@
-"""The sphere about an object's marked points: where its centre is, and how far it reaches."""
+"""The sphere about an object: where its centre is, and how far it reaches."""
 
 from dataclasses import dataclass
 
@@ -11,20 +11,20 @@ from inhand_tracker.geometry.pose_gaussian import PoseGaussian
 
 @dataclass(frozen=True)
 class BoundingSphere:
-    """``centre`` (3,) in the object's frame, and the ``radius`` about it that holds the object."""
+    """A sphere that holds an object: ``centre`` (3,) in its frame, ``radius`` in metres."""
 
     centre: Array
     radius: float
 
     def origins(self, centres: Array, orientations: Array) -> Array:
-        """The translations (P, 3) of poses whose centres are known."""
+        """Give the translations (P, 3) of poses by their spheres' centres (P, 3)."""
         return centres - rotations.rotate(orientations, self.centre)
 
     def ends(self, pose: PoseGaussian) -> Array:
-        """Six points (6, 3) of the sphere, opposite in pairs."""
+        """Give six points (6, 3) of the sphere at a pose, opposite in pairs."""
         axes = self.radius * np.concatenate((np.eye(3), -np.eye(3)))
         return pose.centre + rotations.rotate(pose.rotation, axes)
 
     def arm(self, rotation: Array) -> Array:
-        """From the object's origin to its centre, (3,), turned as a pose (4,) turns it."""
+        """Give the way (3,) from the object's origin to the centre, as a rotation (4,) turns it."""
         return rotations.rotate(rotation, self.centre)

@@ -1,4 +1,4 @@
-"""Pinhole projection."""
+"""The pinhole camera: projection of points to pixels and back."""
 
 from dataclasses import dataclass
 
@@ -8,11 +8,12 @@ from inhand_schemas.messages import CameraInfo
 from inhand_tracker.geometry.arrays import Array
 
 NEAREST_M = 0.05
+"""Metres before the camera within which a point is taken to have no pixel."""
 
 
 @dataclass(frozen=True)
 class Intrinsics:
-    """Focal lengths and principal point in pixels of a ``width`` × ``height`` image."""
+    """How a camera projects: focal lengths and principal point, in pixels of an image of a size."""
 
     fx: float
     fy: float
@@ -22,7 +23,7 @@ class Intrinsics:
     height: int
 
     def scaled_to(self, width: int, height: int) -> "Intrinsics":
-        """The same view in an image of another size."""
+        """Give the intrinsics of the same view in an image of another size."""
         x, y = width / self.width, height / self.height
         return Intrinsics(
             self.fx * x,
@@ -34,18 +35,18 @@ class Intrinsics:
         )
 
     def project(self, points: Array) -> Array:
-        """Pixels (..., 2) of points (..., 3) in the camera frame; NaN behind the camera."""
+        """Project points (..., 3) in the camera frame to pixels (..., 2); NaN behind the camera."""
         depth = points[..., 2:]
         with np.errstate(invalid="ignore", divide="ignore"):
             plane = np.where(depth > NEAREST_M, points[..., :2] / depth, np.nan)
         return plane * [self.fx, self.fy] + [self.cx, self.cy]
 
     def unproject(self, pixels: Array, depths: Array) -> Array:
-        """Points (N, 3) in the camera frame at pixels (N, 2) with depths (N,) in metres."""
+        """Find the points (N, 3) in the camera frame at pixels (N, 2) and depths (N,) in metres."""
         across = (pixels - [self.cx, self.cy]) / [self.fx, self.fy]
         return np.column_stack((across * depths[:, None], depths))
 
 
 def intrinsics_of(info: CameraInfo) -> Intrinsics:
-    """The pinhole part of a camera's description."""
+    """Take the pinhole part of a camera's description."""
     return Intrinsics(info.fx, info.fy, info.cx, info.cy, info.width, info.height)

@@ -1,4 +1,4 @@
-"""From weighted particles to one pose, with its covariance and confidence."""
+"""A tracker's estimate of a pose, and the estimate that weighted particles give."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -8,17 +8,20 @@ import numpy as np
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 
+# What confidence is, is part of the message (ObjectPose.confidence): it cannot be tuned.
 AGREEMENT_M = 0.10
+"""Metres from an estimate within which a pose agrees with it."""
 AGREEMENT_RAD = np.deg2rad(30.0)
+"""Radians from an estimate within which a pose agrees with it."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """The object's pose in the camera frame.
+    """An object's pose in the camera frame in one frame; a lost object has none.
 
-    ``translation`` (3,), ``rotation`` (4,), ``covariance`` (6, 6) of (translation, rotation vector
-    on the left), ``confidence`` the weight of the particles within 10 cm and 30° of the pose. A
-    lost object has no pose.
+    ``translation`` (3,) in metres, ``rotation`` (4,), ``covariance`` (6, 6) of (translation,
+    rotation vector on the left); ``confidence`` is the probability that the true pose is within
+    10 cm and 30° of this one. ``ageing`` says how "tracked" becomes "predicted" and then "lost".
     """
 
     state: Literal["tracked", "predicted", "lost"]
@@ -29,10 +32,14 @@ class Estimate:
 
 
 LOST = Estimate("lost", 0.0)
+"""The estimate of an object that nobody knows the place of."""
 
 
 def weighted_estimate(translations: Array, orientations: Array, weights: Array) -> Estimate:
-    """The expected pose (equations 18 and 19; the rotation after Markley) of (P, 3), (P, 4)."""
+    """Estimate the expected pose of weighted particles (P, 3) and (P, 4).
+
+    Darby et al. 2014, equations 18 and 19; the mean rotation is that of Markley et al. 2007.
+    """
     translation = weights @ translations
     rotation = rotations.mean(orientations, weights)
     offsets = translations - translation

@@ -1,4 +1,4 @@
-"""What the camera sees of one frame, prepared once for however many objects are tracked in it."""
+"""An image of one frame, prepared once for all the objects that are tracked in it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,10 +12,10 @@ Prepared = TypeVar("Prepared")
 
 @dataclass(frozen=True)
 class Image:
-    """A luminance image (H, W), or None, and the camera that took it.
+    """What of a frame was decoded, and the camera that took it.
 
-    ``depth`` (h, w) is what was measured in the same view, in metres, 0 where nothing was;
-    ``colour`` (H, W, 3) is RGB.
+    ``grey`` (H, W) is the luminance, ``colour`` (H, W, 3) RGB, ``depth`` (h, w) the depth of the
+    same view in metres, 0 where nothing was measured.
     """
 
     grey: Bytes | None
@@ -27,7 +27,7 @@ class Image:
     )
 
     def once(self, prepare: Callable[["Image"], Prepared]) -> Prepared:
-        """What a function makes of this image; it is called once, whoever asks."""
+        """Give what a function makes of this image; it is called once, however often asked."""
         if prepare not in self._prepared:
             self._prepared[prepare] = prepare(self)
         prepared: Prepared = self._prepared[prepare]

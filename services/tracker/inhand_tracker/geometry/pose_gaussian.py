@@ -16,34 +16,34 @@ from inhand_tracker.geometry.weights import normalised_weights
 
 @dataclass(frozen=True)
 class PoseGaussian:
-    """A mean pose and the ``covariance`` (6, 6) of deviations from it."""
+    """A normal distribution over poses: a mean pose, and the ``covariance`` (6, 6) about it."""
 
     centre: Array
     rotation: Array
     covariance: Array
 
     def deviations(self, centres: Array, orientations: Array) -> Array:
-        """(P, 6): how poses (P, 3) and (P, 4) deviate from the mean."""
+        """Deviations (P, 6) of poses (P, 3) and (P, 4) from the mean."""
         turns = rotations.multiply(orientations, rotations.conjugate(self.rotation))
         return np.concatenate((centres - self.centre, rotations.to_vector(turns)), axis=1)
 
     def deviated(self, deviations: Array) -> tuple[Array, Array]:
-        """The poses (P, 3) and (P, 4) that deviate so, (P, 6), from the mean."""
+        """Give the poses (P, 3) and (P, 4) with deviations (P, 6) from the mean."""
         turns = rotations.from_vector(deviations[:, 3:])
         return self.centre + deviations[:, :3], rotations.multiply(turns, self.rotation)
 
     def square_distance(self, other: "PoseGaussian") -> float:
-        """Of another one's mean from this mean, in units of this covariance."""
+        """Squared Mahalanobis distance of another one's mean, by this covariance."""
         off = self.deviations(other.centre[None], other.rotation[None])[0]
         return float(off @ np.linalg.solve(self.covariance, off))
 
     def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
-        """Poses (P, 3) and (P, 4)."""
+        """Draw ``count`` poses (P, 3) and (P, 4)."""
         root = np.linalg.cholesky(self.covariance)
         return self.deviated(random.normal(size=(count, 6)) @ root.T)
 
     def log_density(self, centres: Array, orientations: Array) -> Array:
-        """(P,) of poses (P, 3) and (P, 4)."""
+        """Log density (P,) of poses (P, 3) and (P, 4)."""
         root = np.linalg.cholesky(self.covariance)
         whitened = np.linalg.solve(root, self.deviations(centres, orientations).T)
         scale = np.log(np.diag(root)).sum() + 3.0 * np.log(2.0 * np.pi)
@@ -52,13 +52,13 @@ class PoseGaussian:
 
 @dataclass(frozen=True)
 class PoseMixture:
-    """Normal distributions and their ``weights`` (K,), which sum to 1."""
+    """A mixture of normal distributions over poses; its ``weights`` (K,) sum to 1."""
 
     parts: tuple[PoseGaussian, ...]
     weights: Array
 
     def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
-        """Poses (P, 3) and (P, 4), from each part as many as its weight asks for."""
+        """Draw ``count`` poses (P, 3) and (P, 4), of each part in proportion to its weight."""
         ends = np.rint(np.cumsum(self.weights) * count).astype(int)
         counts = np.diff(ends, prepend=0)
         drawn = [p.sample(n, random) for p, n in zip(self.parts, counts, strict=True) if n]
@@ -66,13 +66,13 @@ class PoseMixture:
         return np.concatenate(centres), np.concatenate(orientations)
 
     def log_densities(self, centres: Array, orientations: Array) -> Array:
-        """(K, P): each part's, with its weight."""
+        """Log densities (K, P) of poses, of each part times its weight."""
         logs = [part.log_density(centres, orientations) for part in self.parts]
         with np.errstate(divide="ignore"):
             return np.array(logs) + np.log(self.weights)[:, None]
 
     def moments(self) -> PoseGaussian:
-        """The normal distribution of the same mean and covariance."""
+        """Give the normal distribution of the same mean and covariance."""
         centres = np.array([part.centre for part in self.parts])
         turns = np.array([part.rotation for part in self.parts])
         mean = PoseGaussian(
@@ -86,12 +86,15 @@ class PoseMixture:
 
 
 def mixture(parts: Sequence[PoseGaussian], log_weights: Array) -> PoseMixture:
-    """A mixture by unnormalised log-weights (K,)."""
+    """Make a mixture by log-weights (K,) that are known up to a constant."""
     return PoseMixture(tuple(parts), normalised_weights(log_weights))
 
 
 def lever(arm: Array) -> Array:
-    """(6, 6): takes deviations of a pose to those of a point ``arm`` (3,) away that moves along."""
+    """Give the matrix (6, 6) that takes deviations of a pose to those of a point that moves along.
+
+    ``arm`` (3,) is the way from the pose's centre to the point.
+    """
     x, y, z = arm
     moved = np.eye(6)
     moved[:3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]

@@ -6,12 +6,12 @@ from inhand_tracker.geometry.arrays import Array
 
 
 def components(array: Array) -> tuple[Array, ...]:
-    """The last axis of an array taken apart."""
+    """Take the last axis of an array apart."""
     return tuple(array[..., index] for index in range(array.shape[-1]))
 
 
 def multiply(first: Array, second: Array) -> Array:
-    """The rotation ``second`` followed by ``first``, (..., 4)."""
+    """Chain rotations: ``second`` followed by ``first``, (..., 4)."""
     w, x, y, z = components(first)
     a, b, c, d = components(second)
     return np.stack(
@@ -31,7 +31,7 @@ def conjugate(quaternion: Array) -> Array:
 
 
 def rotate(quaternion: Array, vector: Array) -> Array:
-    """Vectors (..., 3) turned by quaternions (..., 4)."""
+    """Turn vectors (..., 3) by quaternions (..., 4)."""
     w, x, y, z = components(quaternion)
     a, b, c = components(vector)
     # Twice the cross product of axis and vector; np.cross is many times slower on small arrays.

@@ -19,7 +19,7 @@ from inhand_tracker.body.skeleton import (
     part_bases,
     part_lengths,
     pelvis_basis,
-    standing_height,
+    stature,
 )
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Indices
@@ -134,7 +134,7 @@ def _pieces(sequence: LabelledSequence, mirror_normal: Array) -> Iterator[Relati
     """TR1 of the usable frames of a sequence, in pieces that need little memory."""
     sequence = sequence.right_handed(mirror_normal)
     joints, translations = sequence.joints, sequence.translations
-    height = standing_height(part_lengths(joints))
+    height = stature(part_lengths(joints))
     with np.errstate(invalid="ignore", divide="ignore"):
         pelvis = pelvis_basis(joints)
     poses = body_pose(joints, pelvis, height)

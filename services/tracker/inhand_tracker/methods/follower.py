@@ -6,7 +6,7 @@ A method gives its part as a ``Follower``: the estimate of one frame.
 from abc import ABC, abstractmethod
 
 from inhand_tracker.body.reader import Body, BodyReader
-from inhand_tracker.geometry.ageing import coasted
+from inhand_tracker.geometry.ageing import aged
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.estimate import LOST, Estimate
@@ -46,7 +46,7 @@ class Follower(ABC):
         return self._estimate
 
     def _coast(self, time_ns: int) -> Estimate:
-        predicted = coasted(self._estimate, time_ns - self._time_ns)
+        predicted = aged(self._estimate, time_ns - self._time_ns)
         if predicted.state == "lost":
             self._estimate = LOST
         return predicted

@@ -14,103 +14,126 @@ from scipy.optimize import linear_sum_assignment
 
 from inhand_tracker.body.skeleton import part_lengths
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.people.parameters import DEFAULT_PEOPLE, PeopleParameters
 from inhand_tracker.wire.conversion import joints_of
 
-PATIENCE_NS = 2_000_000_000
-"""Who is not seen for so long is forgotten."""
-FARTHEST_M = 0.6
-"""Nobody is farther than this from where they were expected, and half a metre a second more."""
-DRIFT_M_S = 0.5
-POSITION_SIGMA_M = 0.08
-LENGTH_SIGMA = 0.06
-"""Of the mean difference of the logarithms of bone lengths."""
-OTHER_ID_COST = 2.0
 IMPOSSIBLE = 1e6
-SMOOTHING_S = 0.15
-LENGTH_FRAMES = 60
-"""Bone lengths are means over about so many frames."""
+"""Cost of taking somebody for a person who cannot be there."""
 
-_CENTRE = np.array([Joint.HIP_CENTER, Joint.SPINE, Joint.SHOULDER_CENTER])
-# Hands and feet are the least sure.
+_TRUNK = np.array([Joint.HIP_CENTER, Joint.SPINE, Joint.SHOULDER_CENTER])
+# Numbers of the parts whose lengths count: hands and feet are the least sure.
 _BONES = np.array([0, 1, 2, 3, 4, 5, 7, 8, 9, 11, 12, 13, 15, 16, 17])
 
 
+@dataclass(frozen=True)
+class _Sighting:
+    """A person of one frame: where the trunk is (3,), and the logarithms of bone lengths."""
+
+    person: Person
+    place: Array
+    log_lengths: Array
+
+
 @dataclass
-class _Known:
-    """One person: where the trunk is and how it moves, and the logarithms of bone lengths."""
+class _Track:
+    """A person over time: where the trunk is, how it moves, the logarithms of bone lengths."""
 
     identity: int
     camera_id: int
     place: Array
     time_ns: int
     velocity: Array = field(default_factory=lambda: np.zeros(3))
-    lengths: Array = field(default_factory=lambda: np.full(len(_BONES), np.nan))
+    log_lengths: Array = field(default_factory=lambda: np.full(len(_BONES), np.nan))
     frames: int = 0
 
-    def expected(self, time_ns: int) -> Array:
+    def expected_place(self, time_ns: int) -> Array:
         return self.place + self.velocity * ((time_ns - self.time_ns) / 1e9)
 
 
 class Identities:
     """Gives each person a number that stays, whatever the camera calls them."""
 
-    def __init__(self) -> None:
-        self._known: list[_Known] = []
+    def __init__(self, parameters: PeopleParameters = DEFAULT_PEOPLE) -> None:
+        self._parameters = parameters
+        self._tracks: list[_Track] = []
         self._next = 0
 
     def assign(self, people: Sequence[Person], time_ns: int) -> dict[int, Person]:
-        """The people of a frame by their lasting numbers; those without a trunk are left out."""
-        if any(time_ns < known.time_ns for known in self._known):
-            self._known = []
-        self._known = [k for k in self._known if time_ns - k.time_ns <= PATIENCE_NS]
-        seen = [(person, joints_of(person)) for person in people]
-        seen = [(person, joints) for person, joints in seen if np.isfinite(joints[_CENTRE]).all()]
-        found: dict[int, Person] = {}
-        new = set(range(len(seen)))
-        if self._known and seen:
-            costs = np.array([[self._cost(k, *one, time_ns) for one in seen] for k in self._known])
-            for row, column in zip(*linear_sum_assignment(costs), strict=True):
-                if costs[row, column] < IMPOSSIBLE:
-                    known = self._known[row]
-                    person, joints = seen[column]
-                    _take(known, person, joints, time_ns)
-                    found[known.identity] = person
-                    new.discard(int(column))
-        for stranger in sorted(new):
-            person, joints = seen[stranger]
-            known = _Known(self._next, person.id, joints[_CENTRE].mean(axis=0), time_ns)
-            _take(known, person, joints, time_ns)
-            self._known.append(known)
-            found[known.identity] = person
-            self._next += 1
-        return found
+        """Number the people of a frame, by who they were before.
 
-    def _cost(self, known: _Known, person: Person, joints: Array, time_ns: int) -> float:
-        away = float(np.linalg.norm(joints[_CENTRE].mean(axis=0) - known.expected(time_ns)))
-        unseen = (time_ns - known.time_ns) / 1e9
-        if away > FARTHEST_M + DRIFT_M_S * unseen:
+        Those whose trunk is not seen are left out. A clock that went back starts anew.
+        """
+        self._forget(time_ns)
+        sightings = _sightings(people)
+        matches = self._match(sightings, time_ns)
+        numbered: dict[int, Person] = {}
+        for index, sighting in enumerate(sightings):
+            track = matches.get(index) or self._new_track(sighting, time_ns)
+            self._update(track, sighting, time_ns)
+            numbered[track.identity] = sighting.person
+        return numbered
+
+    def _forget(self, time_ns: int) -> None:
+        if any(time_ns < track.time_ns for track in self._tracks):
+            self._tracks = []
+        patience_ns = self._parameters.patience_ns
+        self._tracks = [one for one in self._tracks if time_ns - one.time_ns <= patience_ns]
+
+    def _match(self, sightings: Sequence[_Sighting], time_ns: int) -> dict[int, _Track]:
+        """The tracks of sightings, by their numbers; strangers have none."""
+        if not self._tracks or not sightings:
+            return {}
+        costs = np.array(
+            [[self._cost(track, one, time_ns) for one in sightings] for track in self._tracks]
+        )
+        pairs = zip(*linear_sum_assignment(costs), strict=True)
+        return {
+            int(column): self._tracks[row]
+            for row, column in pairs
+            if costs[row, column] < IMPOSSIBLE
+        }
+
+    def _cost(self, track: _Track, sighting: _Sighting, time_ns: int) -> float:
+        """The negative log-likelihood of a sighting of a track's person."""
+        parameters = self._parameters
+        away = float(np.linalg.norm(sighting.place - track.expected_place(time_ns)))
+        drift = parameters.drift_m_s * ((time_ns - track.time_ns) / 1e9)
+        if away > parameters.farthest_m + drift:
             return IMPOSSIBLE
-        cost = 0.5 * (away / (POSITION_SIGMA_M + DRIFT_M_S * unseen)) ** 2
-        apart = _log_lengths(joints) - known.lengths
+        cost = 0.5 * (away / (parameters.position_sigma_m + drift)) ** 2
+        apart = np.abs(sighting.log_lengths - track.log_lengths)
         if np.isfinite(apart).any():
-            cost += 0.5 * (float(np.nanmean(np.abs(apart))) / LENGTH_SIGMA) ** 2
-        return cost + (OTHER_ID_COST if person.id != known.camera_id else 0.0)
+            cost += 0.5 * (float(np.nanmean(apart)) / parameters.length_sigma) ** 2
+        return cost + (parameters.other_id_cost if sighting.person.id != track.camera_id else 0.0)
+
+    def _new_track(self, sighting: _Sighting, time_ns: int) -> _Track:
+        track = _Track(self._next, sighting.person.id, sighting.place, time_ns)
+        self._tracks.append(track)
+        self._next += 1
+        return track
+
+    def _update(self, track: _Track, sighting: _Sighting, time_ns: int) -> None:
+        """Take a sighting of a track's person."""
+        elapsed = (time_ns - track.time_ns) / 1e9
+        if elapsed > 0.0:
+            share = 1.0 - np.exp(-elapsed / self._parameters.velocity_time_s)
+            velocity = (sighting.place - track.place) / elapsed
+            track.velocity = track.velocity + share * (velocity - track.velocity)
+        track.place, track.time_ns = sighting.place, time_ns
+        track.camera_id = sighting.person.id
+        track.frames += 1
+        weight = 1.0 / min(track.frames, self._parameters.length_frames)
+        mean = np.where(np.isfinite(track.log_lengths), track.log_lengths, sighting.log_lengths)
+        change = np.where(np.isfinite(sighting.log_lengths), sighting.log_lengths - mean, 0.0)
+        track.log_lengths = mean + weight * change
 
 
-def _take(known: _Known, person: Person, joints: Array, time_ns: int) -> None:
-    place = joints[_CENTRE].mean(axis=0)
-    since = (time_ns - known.time_ns) / 1e9
-    if since > 0.0:
-        share = 1.0 - np.exp(-since / SMOOTHING_S)
-        known.velocity = known.velocity + share * ((place - known.place) / since - known.velocity)
-    known.place, known.time_ns, known.camera_id = place, time_ns, person.id
-    known.frames += 1
-    weight = 1.0 / min(known.frames, LENGTH_FRAMES)
-    lengths = _log_lengths(joints)
-    better = np.where(np.isfinite(known.lengths), known.lengths, lengths)
-    moved = np.where(np.isfinite(lengths), lengths - better, 0.0)
-    known.lengths = better + weight * moved
-
-
-def _log_lengths(joints: Array) -> Array:
-    return np.log(np.maximum(part_lengths(joints)[_BONES], 1e-3))
+def _sightings(people: Sequence[Person]) -> list[_Sighting]:
+    """The people whose trunk is seen."""
+    sightings = []
+    for person in people:
+        joints = joints_of(person)
+        if np.isfinite(joints[_TRUNK]).all():
+            lengths = np.log(np.maximum(part_lengths(joints)[_BONES], 1e-3))
+            sightings.append(_Sighting(person, joints[_TRUNK].mean(axis=0), lengths))
+    return sightings

@@ -1,8 +1,8 @@
 """What one person uses, frame by frame: objects that are given, or whichever is recognised."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
@@ -10,118 +10,120 @@ from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.recognition.cascade import Cascade
+from inhand_tracker.recognition.recognition import Recognition
 
 OnFailure = Callable[[str, Exception], None]
+"""Takes the name of what failed, and the error."""
 
 
 @dataclass(frozen=True)
-class Seen:
+class CameraFrame:
+    """A frame of a camera without the people in it: when, the image and the camera, if known."""
+
+    time_ns: int
+    image: Image | None = None
+    camera: Intrinsics | None = None
+
+
+@dataclass(frozen=True)
+class WatchedObject:
     """One object of one person in one frame; ``outline`` (B, 2) is its boundary in the image."""
 
     name: str
-    estimate: Estimate
+    estimate: Estimate = LOST
     outline: Array | None = None
     class_probabilities: dict[str, float] = field(default_factory=dict)
 
 
-class Watcher(Protocol):
-    """Watches one person."""
+class Watcher(ABC):
+    """Watches which objects one person uses, of those that ``names`` lists."""
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The objects that may be seen."""
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = tuple(names)
 
+    @abstractmethod
     def restart(self) -> None:
-        """Somebody else is watched from here on."""
+        """Forget the person and the objects: somebody else is watched from here on."""
 
+    @abstractmethod
     def see(
-        self,
-        joints: Array | None,
-        time_ns: int,
-        image: Image | None,
-        camera: Intrinsics | None,
-        on_failure: OnFailure,
-    ) -> list[Seen]:
-        """One frame: each object of ``names`` once; what fails is lost and told."""
+        self, joints: Array | None, frame: CameraFrame, on_failure: OnFailure
+    ) -> list[WatchedObject]:
+        """Watch a frame with the person's joints (20, 3), None while the person is out of view.
+
+        The result has each object of ``names`` once. What fails is lost in this frame, starts
+        afresh, and is reported to ``on_failure``; it stops nothing else.
+        """
 
 
-class GivenObjects:
-    """Every object is in use, and is tracked by itself; ``trackers`` go by object."""
+class GivenObjects(Watcher):
+    """Watches objects that are all in use; each has its own tracker, by its name."""
 
     def __init__(self, trackers: Mapping[str, ObjectTracker]) -> None:
+        super().__init__(tuple(trackers))
         self._trackers = trackers
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The objects."""
-        return tuple(self._trackers)
-
     def restart(self) -> None:
-        """Somebody else is watched from here on."""
         for tracker in self._trackers.values():
             tracker.restart()
 
     def see(
-        self,
-        joints: Array | None,
-        time_ns: int,
-        image: Image | None,
-        camera: Intrinsics | None,
-        on_failure: OnFailure,
-    ) -> list[Seen]:
-        """One frame; an object that fails stops no other."""
-        found = []
+        self, joints: Array | None, frame: CameraFrame, on_failure: OnFailure
+    ) -> list[WatchedObject]:
+        objects = []
         for name, tracker in self._trackers.items():
             try:
-                estimate = tracker.step(joints, time_ns, image)
-                outline = None if camera is None else tracker.outline(estimate, camera)
-                found.append(Seen(name, estimate, outline))
+                objects.append(_track(name, tracker, joints, frame))
             except Exception as error:  # noqa: BLE001 - one object must not stop the others
                 on_failure(name, error)
                 tracker.restart()
-                found.append(Seen(name, LOST))
-        return found
+                objects.append(WatchedObject(name))
+        return objects
 
 
-class RecognisedObjects:
-    """At most one object is in use; ``objects`` are those of the cascade's actions, in order."""
+def _track(
+    name: str, tracker: ObjectTracker, joints: Array | None, frame: CameraFrame
+) -> WatchedObject:
+    estimate = tracker.step(joints, frame.time_ns, frame.image)
+    outline = None if frame.camera is None else tracker.outline(estimate, frame.camera)
+    return WatchedObject(name, estimate, outline)
+
+
+class RecognisedObjects(Watcher):
+    """Watches objects of which at most one is in use; ``objects`` are those of the cascade's
+    actions, in their order. One object may serve several actions."""
 
     def __init__(self, cascade: Cascade, objects: Sequence[str]) -> None:
+        super().__init__(tuple(dict.fromkeys(objects)))
         self._cascade = cascade
         self._objects = tuple(objects)
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The objects, each once."""
-        return tuple(dict.fromkeys(self._objects))
-
     def restart(self) -> None:
-        """Somebody else is watched from here on."""
         self._cascade.restart()
 
     def see(
-        self,
-        joints: Array | None,
-        time_ns: int,
-        image: Image | None,
-        camera: Intrinsics | None,
-        on_failure: OnFailure,
-    ) -> list[Seen]:
-        """One frame: the object that is known has a pose, and all tell the probabilities."""
+        self, joints: Array | None, frame: CameraFrame, on_failure: OnFailure
+    ) -> list[WatchedObject]:
         try:
-            recognition = self._cascade.step(joints, time_ns, image, camera)
-            outline = None if camera is None else self._cascade.outline(recognition, camera)
+            recognition = self._cascade.step(joints, frame.time_ns, frame.image, frame.camera)
+            outline = None
+            if frame.camera is not None:
+                outline = self._cascade.outline(recognition, frame.camera)
         except Exception as error:  # noqa: BLE001 - one person must not stop the others
             on_failure(", ".join(self.names), error)
             self._cascade.restart()
-            return [Seen(name, LOST) for name in self.names]
+            return [WatchedObject(name) for name in self.names]
+        return self._objects_of(recognition, outline)
+
+    def _objects_of(self, recognition: Recognition, outline: Array | None) -> list[WatchedObject]:
+        """All objects with their probabilities; the recognised one has a pose."""
         probabilities = dict.fromkeys(self.names, 0.0)
         for name, probability in zip(self._objects, recognition.probabilities, strict=True):
             probabilities[name] = min(probabilities[name] + float(probability), 1.0)
-        known = None if recognition.known is None else self._objects[recognition.known]
+        used = None if recognition.known is None else self._objects[recognition.known]
         return [
-            Seen(name, recognition.estimate, outline, probabilities)
-            if name == known
-            else Seen(name, LOST, None, probabilities)
+            WatchedObject(name, recognition.estimate, outline, probabilities)
+            if name == used
+            else WatchedObject(name, class_probabilities=probabilities)
             for name in self.names
         ]

@@ -7,8 +7,14 @@ import numpy as np
 from scipy.special import ndtri, stdtrit
 
 from inhand_tracker.body.anchors import ANCHORS, Anchors, find_anchors
-from inhand_tracker.body.skeleton import has_pelvis, part_lengths, standing_height
-from inhand_tracker.body.window import VIEWS, describe, earlier_frames, places, remember
+from inhand_tracker.body.skeleton import has_pelvis, part_lengths, stature
+from inhand_tracker.body.window import (
+    VIEWS,
+    describe_bodies,
+    earlier_frames,
+    remember_places,
+    trunk_places,
+)
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
 from inhand_tracker.mapping.learning import LabelledSequence
@@ -118,15 +124,15 @@ def _samples_of(
     usable = _usable_frames(sequence)
     right_handed = sequence.right_handed(shape.mirror_normal)
     joints = right_handed.joints[usable]
-    height = standing_height(part_lengths(joints))
+    height = stature(part_lengths(joints))
     turns = rotations.to_matrix(right_handed.rotations[usable])
     centres = right_handed.translations[usable] + turns @ centre
     anchors = find_anchors(joints)
     times = usable / sequence.frame_rate
-    remembered = remember(places(joints, height), times, 1.0 / sequence.frame_rate)
+    remembered = remember_places(trunk_places(joints, height), times, 1.0 / sequence.frame_rate)
     earlier = joints[earlier_frames(usable, sequence.frame_rate)]
     return _Samples(
-        describe(joints, earlier, remembered, height),
+        describe_bodies(joints, earlier, remembered, height),
         _targets(anchors, centres, turns, height),
         anchors,
         np.full(len(usable), height),

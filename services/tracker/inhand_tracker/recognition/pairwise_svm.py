@@ -12,17 +12,22 @@ import numpy as np
 
 from inhand_tracker.geometry.arrays import Array
 
-SURE = 1e-7
-ROUNDS = 100
+# LIBSVM's numbers (svm.cpp), which this file agrees with.
+LEAST_PAIR_PROBABILITY = 1e-7
+"""Probability that neither class of a pair falls below."""
+COUPLING_ROUNDS = 100
+"""Number of rounds of coupling at the most."""
+COUPLING_TOLERANCE = 0.005
+"""Change, times the number of classes, below which coupling ends."""
 
 
 @dataclass(frozen=True)
 class PairwiseSvm:
-    """K classes, V support vectors, and a machine for each of the K (K - 1) / 2 pairs i < j, in the
-    order (0, 1), (0, 2), …, (1, 2), …
+    """A machine for each of the K (K - 1) / 2 pairs i < j of K classes.
 
-    ``vectors`` (V, D), ``coefficients`` (V, pairs), ``offsets`` (pairs,), ``gamma`` that of the
-    kernel exp(−γ |x − v|²), ``sigmoids`` (pairs, 2): P(i | i or j) = 1 / (1 + exp(A f + B)).
+    Pairs come in the order (0, 1), (0, 2), …, (1, 2), … ``vectors`` (V, D) are the support vectors
+    of all machines, ``coefficients`` (V, pairs) and ``offsets`` (pairs,) theirs, ``gamma`` that of
+    the kernel exp(−γ |x − v|²), ``sigmoids`` (pairs, 2): P(i | i or j) = 1 / (1 + exp(A f + B)).
     """
 
     vectors: Array
@@ -33,7 +38,7 @@ class PairwiseSvm:
 
     @property
     def classes(self) -> int:
-        """K."""
+        """Number of classes, K."""
         return int((1 + np.sqrt(1 + 8 * len(self.offsets))) / 2)
 
     @cached_property
@@ -41,16 +46,18 @@ class PairwiseSvm:
         return np.square(self.vectors).sum(axis=1)
 
     def decisions(self, points: Array) -> Array:
-        """The decision values (N, pairs) of points (N, D); positive speaks for the first class."""
+        """Decide on points (N, D), (N, pairs): a positive value speaks for a pair's first class."""
         squares = np.square(points).sum(axis=1)[:, None] + self._squares
         distances = np.maximum(squares - 2.0 * points @ self.vectors.T, 0.0)
         return np.exp(-self.gamma * distances) @ self.coefficients + self.offsets
 
     def probabilities(self, points: Array) -> Array:
-        """How probable each class is, (N, K), of points (N, D)."""
+        """Probabilities (N, K) of the classes of points (N, D)."""
         slopes, shifts = self.sigmoids.T
         exponents = np.clip(slopes * self.decisions(points) + shifts, -500.0, 500.0)
-        wins = np.clip(1.0 / (1.0 + np.exp(exponents)), SURE, 1.0 - SURE)
+        wins = np.clip(
+            1.0 / (1.0 + np.exp(exponents)), LEAST_PAIR_PROBABILITY, 1.0 - LEAST_PAIR_PROBABILITY
+        )
         first, second = np.triu_indices(self.classes, 1)
         pairwise = np.zeros((len(points), self.classes, self.classes))
         pairwise[:, first, second] = wins
@@ -59,7 +66,7 @@ class PairwiseSvm:
 
 
 def couple(pairwise: Array) -> Array:
-    """Class probabilities (N, K) from r_ij = P(i | i or j), (N, K, K) with a zero diagonal.
+    """Combine r_ij = P(i | i or j), (N, K, K) with a zero diagonal, to class probabilities (N, K).
 
     Minimises Σ (r_ji p_i − r_ij p_j)² under Σ p = 1 (Wu, Lin and Weng 2004, algorithm 2).
     """
@@ -69,10 +76,10 @@ def couple(pairwise: Array) -> Array:
     diagonal = np.arange(count)
     quadratic[:, diagonal, diagonal] = np.square(flipped).sum(axis=2)
     shares = np.full(pairwise.shape[:2], 1.0 / count)
-    for _ in range(ROUNDS):
+    for _ in range(COUPLING_ROUNDS):
         pushed = np.einsum("nij,nj->ni", quadratic, shares)
         level = np.einsum("ni,ni->n", shares, pushed)
-        if np.abs(pushed - level[:, None]).max() < 0.005 / count:
+        if np.abs(pushed - level[:, None]).max() < COUPLING_TOLERANCE / count:
             break
         for t in range(count):
             step = (level - pushed[:, t]) / quadratic[:, t, t]

@@ -3,27 +3,23 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-
 from inhand_tracker.body.reader import Body
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.recognition.class_filter import ClassFilter
-from inhand_tracker.recognition.movement import Movement
+from inhand_tracker.recognition.class_filter import ClassFilter, reweighted
 from inhand_tracker.recognition.movement_classes import MovementClasses
+from inhand_tracker.recognition.movement_window import MovementWindow
 from inhand_tracker.recognition.pairwise_svm import PairwiseSvm
+from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION, RecognitionParameters
 from inhand_tracker.recognition.presence import Presence
-
-AT_ONCE = 2.5
-"""So many looks' worth are the last ones together."""
 
 
 @dataclass(frozen=True)
 class Recogniser:
-    """``actions`` (K) are interactions; ``body_poses`` (M, 60) are some of the people learned from.
+    """All that was learned to recognise ``actions`` (K), the names of interactions.
 
-    ``svm`` reads body poses one by one (Darby et al. 2012), ``movements`` the last seconds;
-    ``temper`` is how much of each frame's evidence is new; ``presence`` is what images say of
-    the actions' objects.
+    ``body_poses`` (M, 60) are some of the people learned from. ``svm`` classifies body poses one
+    by one (Darby et al. 2012), ``movements`` the last seconds; ``temper`` is the share of each
+    frame's evidence that is new; ``presence`` is what images say of the actions' objects.
     """
 
     actions: tuple[str, ...]
@@ -39,15 +35,15 @@ class LearnedCascade(Protocol):
 
     @property
     def body_poses(self) -> Array:
-        """(M, 60), of some of the people learned from."""
+        """Body poses (M, 60) of some of the people learned from."""
 
     @property
     def movements(self) -> MovementClasses:
-        """What the last seconds say."""
+        """What the last seconds of movement say."""
 
     @property
     def temper(self) -> float:
-        """How much of each frame's evidence is new."""
+        """Share of each frame's evidence that is new."""
 
     @property
     def presence(self) -> Presence:
@@ -55,31 +51,38 @@ class LearnedCascade(Protocol):
 
 
 class MovementRecogniser:
-    """Follows one person's action by the last seconds of movement."""
+    """Recognises one person's action by the last seconds of movement."""
 
-    def __init__(self, classes: MovementClasses, temper: float) -> None:
+    def __init__(
+        self,
+        classes: MovementClasses,
+        temper: float,
+        parameters: RecognitionParameters = DEFAULT_RECOGNITION,
+    ) -> None:
         self._classes = classes
-        self._filter = ClassFilter(classes.actions, temper)
+        self._parameters = parameters
+        self._filter = ClassFilter(classes.actions, temper, parameters)
         self.restart()
 
     def restart(self) -> None:
-        """Somebody else comes into view."""
-        self._movement = Movement()
+        """Start anew: somebody else comes into view."""
+        self._window = MovementWindow(self._parameters)
         self._filter.restart()
 
     def step(self, time_ns: int, body: Body, seen: Array | None = None) -> Array:
-        """The probabilities (K + 1,) of the actions and, last, of none or an unknown one.
+        """Give the probabilities (K + 1,) of the actions and, last, of none or an unknown one.
 
-        ``seen`` (K + 1,) is log evidence of the last looks at images, None where there is none.
-        It counts at once, and as any other evidence over time.
+        ``seen`` (K + 1,) is the log evidence of the last looks at images, None where there is
+        none. It counts over time, as any other evidence, and at once.
         """
-        self._movement.add(time_ns, body.pose)
-        features = self._movement.features()[None]
-        doubts = self._classes.doubts(features, seeing=seen is not None)
-        evidence = (self._classes.evidence(features) + doubts)[0]
+        evidence = self._movement_evidence(time_ns, body, seeing=seen is not None)
         if seen is None:
             return self._filter.step(time_ns, evidence)
-        probabilities = self._filter.step(time_ns, evidence + seen)
-        logs = np.log(np.maximum(probabilities, 1e-300)) + AT_ONCE * seen
-        weights = np.exp(logs - logs.max())
-        return np.asarray(weights / weights.sum())
+        over_time = self._filter.step(time_ns, evidence + seen)
+        return reweighted(over_time, self._parameters.looks_at_once * seen)
+
+    def _movement_evidence(self, time_ns: int, body: Body, *, seeing: bool) -> Array:
+        self._window.add(time_ns, body.pose)
+        features = self._window.features()[None]
+        doubts = self._classes.doubts(features, seeing=seeing, parameters=self._parameters)
+        return (self._classes.evidence(features, self._parameters) + doubts)[0]

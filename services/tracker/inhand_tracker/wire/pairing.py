@@ -8,57 +8,56 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-T = TypeVar("T")
+from inhand_tracker.wire.parameters import DEFAULT_PAIRING, PairingParameters
 
-FLOWING_S = 1.0
-LONGEST_WAIT_S = 0.05
-FRAMES_KEPT = 4
+Skeleton = TypeVar("Skeleton")
+Pixels = TypeVar("Pixels")
 
 
 @dataclass(frozen=True)
-class _Waiting(Generic[T]):
+class _Waiting(Generic[Skeleton]):
     sequence: int
-    skeleton: T
+    skeleton: Skeleton
     since: float
 
 
-F = TypeVar("F")
+class Pairing(Generic[Skeleton, Pixels]):
+    """Pairs skeletons and frames by their sequence; times are seconds of one monotonic clock."""
 
-
-class Pairing(Generic[T, F]):
-    """Times are seconds of one monotonic clock."""
-
-    def __init__(self) -> None:
-        self._waiting: deque[_Waiting[T]] = deque()
-        self._frames: dict[int, F] = {}
+    def __init__(self, parameters: PairingParameters = DEFAULT_PAIRING) -> None:
+        self._parameters = parameters
+        self._waiting: deque[_Waiting[Skeleton]] = deque()
+        self._frames: dict[int, Pixels] = {}
         self._last_frame_at = float("-inf")
         self._last_skeleton = -1
 
-    def add_skeleton(self, sequence: int, skeleton: T, now: float) -> None:
-        """Take a skeleton; a sequence that went back tells of a restarted camera."""
+    def add_skeleton(self, sequence: int, skeleton: Skeleton, now: float) -> None:
+        """Take a skeleton; a sequence that went back means that the camera was restarted."""
         if sequence < self._last_skeleton:
             self._frames.clear()
         self._last_skeleton = sequence
         self._waiting.append(_Waiting(sequence, skeleton, now))
 
-    def add_frame(self, sequence: int, frame: F, now: float) -> None:
+    def add_frame(self, sequence: int, frame: Pixels, now: float) -> None:
         """Take a frame; only the newest few are kept."""
         if self._frames and sequence < next(reversed(self._frames)):
             self._frames.clear()
             self._last_skeleton = -1
         self._frames[sequence] = frame
-        while len(self._frames) > FRAMES_KEPT:
+        while len(self._frames) > self._parameters.frames_kept:
             del self._frames[next(iter(self._frames))]
         self._last_frame_at = now
 
-    def pop(self, now: float) -> tuple[T, F | None] | None:
-        """The oldest skeleton that need not wait, with its frame or without; or None."""
-        if not self._waiting:
+    def pop(self, now: float) -> tuple[Skeleton, Pixels | None] | None:
+        """Give the oldest skeleton, with its frame or without; None while it has to wait."""
+        if not self._waiting or self._must_wait(self._waiting[0], now):
             return None
-        oldest = self._waiting[0]
-        flowing = now - self._last_frame_at < FLOWING_S
-        newest_frame = next(reversed(self._frames), -1)
-        if flowing and newest_frame < oldest.sequence and now - oldest.since < LONGEST_WAIT_S:
-            return None
-        self._waiting.popleft()
+        oldest = self._waiting.popleft()
         return oldest.skeleton, self._frames.get(oldest.sequence)
+
+    def _must_wait(self, oldest: _Waiting[Skeleton], now: float) -> bool:
+        """Whether the frame of a skeleton may still come."""
+        flowing = now - self._last_frame_at < self._parameters.flowing_s
+        newest_frame = next(reversed(self._frames), -1)
+        patient = now - oldest.since < self._parameters.longest_wait_s
+        return flowing and newest_frame < oldest.sequence and patient

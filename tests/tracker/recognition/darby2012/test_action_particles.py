@@ -4,17 +4,19 @@ import numpy as np
 import pytest
 from inhand_tracker.body.skeleton import PARTS
 from inhand_tracker.recognition.darby2012.action_particles import (
-    NEIGHBOUR_SIGMA,
-    STAYS,
     ActionParticles,
     TrainingPoses,
     corrections,
-    drawn,
-    likeliest,
-    moved,
+    draw_particles,
+    likeliest_actions,
+    move_particles,
     rank_chances,
 )
+from inhand_tracker.recognition.darby2012.parameters import DEFAULT_DARBY2012
 from scipy.stats import norm
+
+STAYS = DEFAULT_DARBY2012.stays
+NEIGHBOUR_SIGMA = DEFAULT_DARBY2012.neighbour_sigma
 
 
 def actions(count: int = 3, frames: int = 40) -> list[TrainingPoses]:
@@ -54,15 +56,17 @@ def test_rank_chances_are_those_of_rounded_normal_numbers() -> None:
 
 
 def test_the_likeliest_actions_hold_half_of_the_mass_and_no_more_than_needed() -> None:
-    np.testing.assert_allclose(likeliest(np.array([0.1, 0.3, 0.35, 0.25])), [0, 6 / 13, 7 / 13, 0])
-    np.testing.assert_allclose(likeliest(np.array([0.2, 0.8])), [0, 1])
-    np.testing.assert_allclose(likeliest(np.array([0.5, 0.5])), [1, 0])
+    np.testing.assert_allclose(
+        likeliest_actions(np.array([0.1, 0.3, 0.35, 0.25])), [0, 6 / 13, 7 / 13, 0]
+    )
+    np.testing.assert_allclose(likeliest_actions(np.array([0.2, 0.8])), [0, 1])
+    np.testing.assert_allclose(likeliest_actions(np.array([0.5, 0.5])), [1, 0])
 
 
 def test_action_particles_change_rarely_and_keep_their_part_unless_they_do() -> None:
     known = actions()
     before = ActionParticles(np.ones(1, int), np.full(1, 4), np.full(1, 7), np.ones(1))
-    after = moved(before, 50_000, known, np.random.default_rng(0))
+    after = move_particles(before, 50_000, known, np.random.default_rng(0))
     stayed = after.actions == 1
     assert stayed.mean() == pytest.approx(STAYS, abs=0.001)
     assert (after.parts[stayed] == 4).all()
@@ -77,7 +81,7 @@ def test_the_correction_is_f_over_g_as_the_equation_says() -> None:
     before = particles([0, 0, 1, 2], [3, 5, 3, 3], [1, 2, 3, 4])
     shares = np.array([0.75, 0.25, 0.0])
     pose = np.random.default_rng(5).normal(size=60)
-    importance = drawn(200, shares, pose, known, np.random.default_rng(2))
+    importance = draw_particles(200, shares, pose, known, np.random.default_rng(2))
     found = corrections(importance, shares, before, known)
     changed = (1.0 - STAYS) / 2
     for index in range(200):

@@ -7,7 +7,7 @@ import numpy as np
 
 from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.body.skeleton import mirror_pose
-from inhand_tracker.body.window import GAP_NS
+from inhand_tracker.body.window import continues
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.estimate import Estimate, weighted_estimate
 from inhand_tracker.geometry.image import Image
@@ -105,7 +105,7 @@ class ParticleFollower(Follower):
 
     def _predict(self, time_ns: int) -> Particles | None:
         """The particles a frame on; None at first and after a gap."""
-        if self._particles is None or not 0 < time_ns - self._time_ns <= GAP_NS:
+        if self._particles is None or not continues(self._time_ns, time_ns):
             return None
         survivors = self._particles.take(systematic_resample(self._weights, self._random))
         return propagate(survivors, self._object.mapping, self._random, self._object.parameters)

@@ -11,7 +11,7 @@ import numpy as np
 
 from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.body.skeleton import mirror_joints
-from inhand_tracker.body.window import GAP_NS, BodyWindow
+from inhand_tracker.body.window import BodyWindow, continues
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.estimate import AGREEMENT_M, AGREEMENT_RAD, Estimate
@@ -107,7 +107,7 @@ class FusionFollower(Follower):
         before, alone = self._before, PoseMixture((expected,), np.ones(1))
         if before is None or not self._parameters.carries:
             return alone
-        if not 0 < time_ns - before.time_ns <= GAP_NS:
+        if not continues(before.time_ns, time_ns):
             return alone
         persistence_s = self._expectation.prior.persistence_s
         return carry_over(before, expected, time_ns, persistence_s, self._parameters)

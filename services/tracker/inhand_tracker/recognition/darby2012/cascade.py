@@ -8,9 +8,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from inhand_tracker.body.reader import Body, BodyReader
+from inhand_tracker.body.reader import Body
 from inhand_tracker.body.skeleton import Bases, mirror_pose
-from inhand_tracker.body.window import GAP_NS
+from inhand_tracker.body.window import continues
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.estimate import LOST, Estimate, weighted_estimate
@@ -19,24 +19,23 @@ from inhand_tracker.geometry.weights import normalised_weights
 from inhand_tracker.methods.darby2014.edges import chamfer_of, edge_log_weights
 from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
 from inhand_tracker.model.model import Model
-from inhand_tracker.recognition.answer import Recognition, boxes_around, known_action
 from inhand_tracker.recognition.darby2012.action_particles import (
     ActionParticles,
     TrainingPoses,
     corrections,
-    drawn,
-    joined,
-    likeliest,
-    moved,
+    draw_particles,
+    join_particles,
+    likeliest_actions,
+    move_particles,
 )
+from inhand_tracker.recognition.darby2012.parameters import DEFAULT_DARBY2012, Darby2012Parameters
+from inhand_tracker.recognition.object_recogniser import ObjectRecogniser
 from inhand_tracker.recognition.recogniser import Recogniser
+from inhand_tracker.recognition.recognition import Recognition, outline_boxes, recognised_action
 from inhand_tracker.shape.viewpoints import VisiblePoints
 
-KINDS = (0.5, 0.4, 0.1)
-"""How many particles are action, importance and initialiser particles, on average."""
 
-
-class Cascade2012:
+class Cascade2012(ObjectRecogniser):
     """Follows whatever one person uses, of ``models`` in the order of the recogniser's actions.
 
     Without an image the particles weigh as they were drawn.
@@ -50,74 +49,68 @@ class Cascade2012:
         left_handed: bool = False,
         particles: int = DEFAULT_DARBY2014.particles,
         seed: int = 0,
+        parameters: Darby2012Parameters = DEFAULT_DARBY2012,
     ) -> None:
+        super().__init__(recogniser, len(models), left_handed=left_handed)
         self._svm = recogniser.svm
-        self._learned = recogniser
         self._models = models
         self._poses = [TrainingPoses(m.mapping.body_poses.astype(np.float32)) for m in models]
         self._outlines = [
             VisiblePoints(m.viewpoints.directions, m.viewpoints.boundaries) for m in models
         ]
-        self._left_handed = left_handed
         self._count = particles
         self._random = np.random.default_rng(seed)
+        self._parameters = parameters
         self.restart()
 
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""
-        self._reader = BodyReader(self._learned, left_handed=self._left_handed)
+        super().restart()
         self._particles: ActionParticles | None = None
-        self._last = Recognition(np.zeros(len(self._models)))
         self._time_ns = 0
 
-    def step(
-        self,
-        joints: Array | None,
-        time_ns: int,
-        image: Image | None = None,
-        camera: Intrinsics | None = None,
+    def _recognise(
+        self, body: Body, time_ns: int, image: Image | None, camera: Intrinsics | None
     ) -> Recognition:
-        """One frame: the person's joints (20, 3) in the camera frame, or None, and an image.
-
-        ``camera`` is for the box where there is no image.
-        """
-        if image is not None:
-            camera = image.camera
-        body = None if joints is None else self._reader.read(joints)
-        if body is None:
-            return Recognition(self._last.probabilities, None, LOST, self._last.box)
         particles = self._propose(body, time_ns)
         translations, orientations = self._place(particles, body)
         logs, boxes = self._see(particles, translations, orientations, image, camera)
         with np.errstate(divide="ignore"):
             weights = normalised_weights(np.log(particles.weights) + logs)
-        self._particles = joined([particles], weights)
+        self._particles = join_particles([particles], weights)
         self._time_ns = time_ns
         masses = np.bincount(particles.actions, weights, len(self._models)).astype(float)
-        known = known_action(masses)
+        known = recognised_action(masses)
         estimate = LOST
         if known is not None:
             ours = particles.actions == known
             estimate = _expected(translations[ours], orientations[ours], weights[ours])
-        self._last = Recognition(masses, known, estimate, _mean_box(boxes, weights))
-        return self._last
+        return Recognition(masses, known, estimate, _mean_box(boxes, weights))
+
+    def _without_body(self, time_ns: int) -> Recognition:
+        return Recognition(self._last.probabilities, None, LOST, self._last.box)
 
     def _propose(self, body: Body, time_ns: int) -> ActionParticles:
-        """Particles whose weights hold the correction of the importance particles."""
-        shares = likeliest(self._svm.probabilities(body.pose[None])[0])
+        """Propose particles, whose weights hold the correction of the importance particles."""
+        memberships = self._svm.probabilities(body.pose[None])[0]
+        shares = likeliest_actions(memberships, self._parameters.top_mass)
         before = self._particles
-        if before is None or not 0 < time_ns - self._time_ns <= GAP_NS:
-            return drawn(self._count, shares, body.pose, self._poses, self._random)
-        acting, important, initial = self._random.multinomial(self._count, KINDS)
-        generated = moved(before, acting, self._poses, self._random)
-        importance = drawn(important, shares, body.pose, self._poses, self._random)
-        initialisers = drawn(initial, shares, body.pose, self._poses, self._random)
+        if before is None or not continues(self._time_ns, time_ns):
+            return draw_particles(self._count, shares, body.pose, self._poses, self._random)
+        acting, important, initial = self._random.multinomial(
+            self._count, self._parameters.particle_shares
+        )
+        generated = move_particles(before, acting, self._poses, self._random, self._parameters)
+        importance = draw_particles(important, shares, body.pose, self._poses, self._random)
+        initialisers = draw_particles(initial, shares, body.pose, self._poses, self._random)
         weights = np.ones(self._count)
-        weights[acting : acting + important] = corrections(importance, shares, before, self._poses)
-        return joined([generated, importance, initialisers], weights)
+        weights[acting : acting + important] = corrections(
+            importance, shares, before, self._poses, self._parameters
+        )
+        return join_particles([generated, importance, initialisers], weights)
 
     def _place(self, particles: ActionParticles, body: Body) -> tuple[Array, Array]:
-        """The particles' poses in the camera frame, (P, 3) and (P, 4)."""
+        """Place the particles in the camera frame: poses (P, 3) and (P, 4)."""
         translations, orientations = np.empty((self._count, 3)), np.empty((self._count, 4))
         for action in np.unique(particles.actions):
             ours = particles.actions == action
@@ -148,7 +141,7 @@ class Cascade2012:
             ours = particles.actions == action
             placed = self._outlines[action].place(translations[ours], orientations[ours])
             pixels = camera.project(placed)
-            boxes[ours] = boxes_around(pixels)
+            boxes[ours] = outline_boxes(pixels)
             chamfer = None if image is None else image.once(chamfer_of)
             if chamfer is not None:
                 logs[ours] = edge_log_weights(chamfer, pixels)

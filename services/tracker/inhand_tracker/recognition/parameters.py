@@ -1,0 +1,101 @@
+"""Every number of recognition that can be tuned.
+
+`inhand recognise DATASET` shows what they are worth together: how often the right object is
+recognised and how well it is placed; with `--false-objects`, how often one is recognised falsely.
+Where nothing else is said a number was set by hand with these figures in view.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class RecognitionParameters:
+    """How movement and images make an action recognised, and which objects are tracked."""
+
+    recognised_probability: float = 0.5
+    """Probability from which an action is recognised (Darby et al. 2012, section 5)."""
+
+    # What is read of a movement (movement_window). A recogniser is trained with these numbers:
+    # with others, train it again.
+    rate_hz: float = 30.0
+    """Frames a second at which movement is read, and all numbers of frames below are meant."""
+    windows: tuple[int, ...] = (15, 45, 90)
+    """Numbers of frames that means, spreads and speeds are taken over."""
+    lags: tuple[int, ...] = (5, 10, 20)
+    """Numbers of frames back to the poses that the present one is compared with."""
+    speed_lag: int = 2
+    """Number of frames between the poses that give a speed."""
+
+    # What a movement is evidence of (movement_classes). `--false-objects` on a dataset without
+    # images shows the doubts; they were chosen there, on two people left out of six.
+    caution: float = 1.0
+    """Log evidence for no action in every frame: a false object is worse than one found later."""
+    caution_without_image: float = 2.0
+    """Log evidence for no action, beside ``caution``, in every frame without an image."""
+    strangeness: float = 8.0
+    """Log evidence against every action of a movement at e times the limits of all movements."""
+    doubt_with_image: float = 10.0
+    """Log evidence against an action of a movement at e times its reach, with an image."""
+    doubt_without_image: float = 20.0
+    """Log evidence against an action of a movement at e times its reach, without an image, which
+    would show whether there is an object."""
+
+    # How evidence adds up over time (class_filter).
+    stays: float = 0.997
+    """Probability that an action, or none, goes on in the next frame (Darby et al. 2012, section
+    5: a change is as rare as a pose 3 σ away)."""
+    none_at_first: float = 0.9
+    """Probability that no action goes on when a person comes into view."""
+    to_none: float = 0.5
+    """Share of the changes from an action that lead to none."""
+    longest_step_s: float = 1.0
+    """Seconds between frames, at the most, that evidence and changes count for."""
+    looks_at_once: float = 2.5
+    """Number of looks' worth of evidence that the last looks at images are together, beside what
+    adds up over time."""
+
+    # What images are evidence of (presence).
+    usual_support_present: float = 24.0
+    """Mean support (log-likelihood ratio) of an object that is there, where none was learned:
+    that of most objects of simulated people."""
+    usual_support_absent: float = 6.0
+    """Mean support of an object that is not there, where none was learned; found alike."""
+    usual_support_spread: float = 8.0
+    """Standard deviation of an object's support, where none was learned; found alike."""
+    usual_part_spreads: tuple[float, float, float, float] = (2.4, 4.6, 0.7, 1.5)
+    """Standard deviations of the parts of an object's own support (edges, region, interior,
+    depth), where none was learned: those of most objects of simulated people."""
+    most_against: float = 6.0
+    """Log evidence against an object, at the most, of the last looks."""
+    trust: float = 1.0
+    """Log evidence for an object that every look has beforehand: most looks fall short of those
+    of training, on simulated people."""
+    part_temper: float = 0.5
+    """Share that counts of what each part says by falling short: parts fall short together."""
+    recoloured_spread: float = 0.7
+    """Standard deviation of what newly learned colours say of the object itself, in those of the
+    interior's support; found on simulated people."""
+    looks_s: float = 2.0
+    """Seconds after which a look counts for a third as much in the mean of looks: one frame errs
+    as the next does."""
+    forgotten_s: float = 4.0
+    """Seconds after which what was seen of an object says a third as much."""
+
+    # Which objects are tracked (cascade).
+    followed: int = 2
+    """Number of actions, likeliest first, whose objects are tracked at the most, beside the one
+    that was used last; cost grows with it."""
+    worth_following: float = 0.2
+    """Share of the probability of all actions from which a second action's object is tracked."""
+    turn_frames: int = 3
+    """Number of successive frames in which another object is looked for, beside the followed
+    ones."""
+    sure_probability: float = 0.9
+    """Probability from which an action is sure, and other objects are looked for less often."""
+    sure_turns: int = 8
+    """While an action is sure, others are looked for in one of this number of turns."""
+    unseen_ns: int = 1_000_000_000
+    """Nanoseconds without a look at an object after which movement alone decides."""
+
+
+DEFAULT_RECOGNITION = RecognitionParameters()

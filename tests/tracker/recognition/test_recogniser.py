@@ -1,0 +1,81 @@
+"""Movement and looks at images together, on two actions that one number tells apart."""
+
+import numpy as np
+import pytest
+from inhand_tracker.body.reader import Body
+from inhand_tracker.body.skeleton import Bases
+from inhand_tracker.recognition.movement_classes import MovementClasses
+from inhand_tracker.recognition.movement_window import MovementWindow
+from inhand_tracker.recognition.parameters import RecognitionParameters
+from inhand_tracker.recognition.recogniser import MovementRecogniser
+from people import FRAME_NS
+
+FIRST, SECOND = (np.full(60, level) for level in (0.0, 1.0))
+"""The body poses of two actions."""
+
+
+def features_of(pose: np.ndarray) -> np.ndarray:
+    window = MovementWindow()
+    window.add(0, pose)
+    return window.features()
+
+
+def classes() -> MovementClasses:
+    """Two actions, and nothing in use half-way; a direction between them counts alone."""
+    first, second = features_of(FIRST), features_of(SECOND)
+    between = (second - first) / np.linalg.norm(second - first)
+    way = 6.0 / np.linalg.norm(second - first)
+    return MovementClasses(
+        means=first,
+        whitening=way * np.eye(len(first)),
+        directions=between[:, None],
+        centres=np.array([[0.0], [6.0], [3.0]]),
+        log_shares=np.log(np.full(3, 1.0 / 3.0)),
+        says=np.array([[2.5, 0.2, 0.3], [0.2, 2.5, 0.3], [0.3, 0.3, 2.4]]),
+        limits=np.full(2, 100.0),
+        reaches=np.full(2, 1.0),
+        owners=np.array([0, 1, 2]),
+    )
+
+
+CLASSES = classes()
+
+
+def body(pose: np.ndarray) -> Body:
+    return Body(np.zeros((20, 3)), pose, Bases(np.zeros((19, 3)), np.zeros((19, 4))), 1.7)
+
+
+def run(
+    pose: np.ndarray, seen: list[float] | None, frames: int = 60, looks_at_once: float = 2.5
+) -> np.ndarray:
+    parameters = RecognitionParameters(looks_at_once=looks_at_once, caution_without_image=0.0)
+    recogniser = MovementRecogniser(CLASSES, 0.4, parameters)
+    evidence = None if seen is None else np.array(seen)
+    for frame in range(frames):
+        probabilities = recogniser.step(frame * FRAME_NS, body(pose), evidence)
+    return probabilities
+
+
+@pytest.mark.parametrize(("pose", "number"), [(FIRST, 0), (SECOND, 1), (0.5 * FIRST, 0)])
+def test_a_movement_that_lasts_is_recognised(pose: np.ndarray, number: int) -> None:
+    probabilities = run(pose, [0.0, 0.0, 0.0])
+    assert probabilities.sum() == pytest.approx(1.0)
+    assert probabilities[number] == probabilities[:2].max()
+    assert probabilities[number] > 5.0 * probabilities[1 - number]
+
+
+def test_a_look_counts_at_once_and_over_time() -> None:
+    one = run(FIRST, [0.0, 3.0, 0.0], frames=1)
+    later = run(FIRST, [0.0, 3.0, 0.0], frames=1, looks_at_once=0.0)
+    assert one[1] / one[0] == pytest.approx(np.exp(2.5 * 3.0) * later[1] / later[0])
+    against = run(FIRST, [-6.0, 0.0, 0.0])
+    assert against[0] < 0.01 < 0.5 < run(FIRST, [3.0, 0.0, 0.0])[0]
+
+
+def test_who_comes_next_starts_without_a_history() -> None:
+    recogniser = MovementRecogniser(CLASSES, 0.4)
+    first = recogniser.step(0, body(FIRST)).copy()
+    for frame in range(1, 20):
+        recogniser.step(frame * FRAME_NS, body(SECOND))
+    recogniser.restart()
+    np.testing.assert_array_equal(recogniser.step(0, body(FIRST)), first)
