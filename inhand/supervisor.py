@@ -39,7 +39,7 @@ class Child:
         self._start_at = 0.0
         self._delay = FIRST_RESTART_S
         self._reports: int | None = None
-        self._silent_s = 0.0
+        self._silent_s: float | None = None
         self._tended_at = time.monotonic()
 
     def tend(self) -> int | None:
@@ -78,17 +78,22 @@ class Child:
         """
         now = time.monotonic()
         awake, self._tended_at = min(now - self._tended_at, LONGEST_TICK_S), now
-        if self._process is None or not reports or reports != self._reports:
-            self._reports, self._silent_s = reports, 0.0
+        if self._process is None:
+            self._reports = self._silent_s = None
             return
-        self._silent_s += awake
-        if self._silent_s > HANGS_AFTER_S:
+        if reports is not None and reports != self._reports:
+            # What was counted of the process before this one is not this one's report.
+            self._silent_s = None if self._reports is None else 0.0
+            self._reports = reports
+        elif self._silent_s is not None:
+            self._silent_s += awake
+        if self._silent_s is not None and self._silent_s > HANGS_AFTER_S:
             log.error(
                 "%s has not come round for %.0f s: it hangs, and is killed",
                 self.name,
                 self._silent_s,
             )
-            self._reports, self._silent_s = None, 0.0
+            self._reports = self._silent_s = None
             self._process.kill()
 
     def send(self, number: int) -> None:

@@ -4,7 +4,14 @@ import logging
 import time
 
 import pytest
-from inhand_runtime.health import MOST_KEYS, HealthBoard
+from inhand_runtime.health import (
+    LOOP_LATE_S,
+    MALFORMED_LASTS_S,
+    MOST_KEYS,
+    MOST_TROUBLES,
+    WINDOW_S,
+    HealthBoard,
+)
 from inhand_schemas.errors import MessageError
 from inhand_schemas.topics import HEALTH
 
@@ -66,4 +73,87 @@ def test_a_sender_of_ever_new_keys_cannot_make_health_grow_without_bound() -> No
     report = board.report()
     assert len(report.topics) == MOST_KEYS + 1
     assert sum(topic.received for topic in report.topics.values()) == 2 * MOST_KEYS
+    assert HEALTH.decode(HEALTH.encode(report)) == report
+
+
+class Clock:
+    """Seconds that pass when a test says so."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def test_a_latency_of_long_ago_is_no_latency_of_now() -> None:
+    clock = Clock()
+    board = HealthBoard("tracker", "first", clock)
+    board.latency(time.time_ns() - 20_000_000)
+    assert board.report().latency_ms is not None
+    clock.now += WINDOW_S + 1.0
+    assert board.report().latency_ms is None
+
+
+def test_a_running_instance_with_a_trouble_is_degraded_until_it_is_well() -> None:
+    board = HealthBoard("capture", "front")
+    board.state = "running"
+    board.trouble("source", "the camera is away")
+    report = board.report()
+    assert (report.state, report.troubles) == ("degraded", ("the camera is away",))
+    board.well("source")
+    report = board.report()
+    assert (report.state, report.troubles) == ("running", ())
+    assert report.last_error == "the camera is away"
+
+
+def test_a_trouble_that_lasts_is_logged_once(caplog: pytest.LogCaptureFixture) -> None:
+    board = HealthBoard("capture", "front")
+    for _ in range(5):
+        board.trouble("source", "the camera is away")
+    assert len(caplog.records) == 1
+
+
+def test_malformed_messages_are_a_trouble_while_they_come(caplog: pytest.LogCaptureFixture) -> None:
+    clock = Clock()
+    board = HealthBoard("tracker", "first", clock)
+    board.state = "running"
+    board.malformed("a", MessageError("no valid Skeletons"))
+    report = board.report()
+    assert report.state == "degraded"
+    assert report.last_error == "a: dropped a message: no valid Skeletons"
+    clock.now += MALFORMED_LASTS_S + 1.0
+    board.came_round()
+    assert board.report().state == "running"
+
+
+def test_a_main_loop_that_does_not_come_round_is_told() -> None:
+    clock = Clock()
+    board = HealthBoard("tracker", "first", clock)
+    board.state = "running"
+    clock.now += LOOP_LATE_S + 1.0
+    report = board.report()
+    assert report.loop_age_s == LOOP_LATE_S + 1.0
+    assert "main loop has not come round" in report.troubles[0]
+    board.came_round()
+    assert board.report().troubles == ()
+
+
+@pytest.mark.parametrize(
+    ("numbers", "lost"),
+    [([3, 4, 5], 0), ([3, 6, 7], 2), ([9, 2, 3], 0), ([1, 1, 2], 0), ([0, 2**62, 2**62 + 2], 1)],
+)
+def test_what_never_came_is_counted_by_the_numbers(numbers: list[int], lost: int) -> None:
+    board = HealthBoard("recorder", "disk")
+    for number in numbers:
+        board.received("a", number)
+    assert board.report().topics["a"].lost == lost
+
+
+def test_troubles_that_a_sender_invents_are_bounded() -> None:
+    board = HealthBoard("tracker", "first")
+    for number in range(1000):
+        board.trouble(f"name {number}", "x" * 10_000)
+    report = board.report()
+    assert len(report.troubles) == MOST_TROUBLES
     assert HEALTH.decode(HEALTH.encode(report)) == report
