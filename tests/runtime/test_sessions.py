@@ -5,14 +5,22 @@ import signal
 import socket
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.inbox import Inbox, Received
 from inhand_runtime.session import open_session, subscribe
 from inhand_runtime.settings import ZenohSettings
-from inhand_schemas.messages import CameraInfo, ColourImage, ObjectPose, RgbdFrame, Skeletons
-from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
+from inhand_schemas.messages import (
+    CameraInfo,
+    ColourImage,
+    Event,
+    ObjectPose,
+    RgbdFrame,
+    Skeletons,
+)
+from inhand_schemas.topics import EVENT, INFO, LABEL, POSE, RGBD, SKELETONS, AnyTopic
 from msgspec.structs import replace
 from running_rig import RunningRig, eventually
 from wire import Wire
@@ -96,6 +104,92 @@ def test_a_kept_topic_reaches_those_who_came_before(wire: Wire, rig: RunningRig)
         publisher = late.publisher(INFO, "front")
         publisher.put(INFO_MESSAGE)
         eventually("the message", lambda: heard)
+
+
+def test_a_kept_value_that_is_repeated_comes_once_and_a_new_one_again(
+    wire: Wire, rig: RunningRig
+) -> None:
+    with Wire.at(rig.meeting) as other:
+        heard = other.hear(INFO)
+        publisher = wire.publisher(INFO, "front")
+        publisher.put(INFO_MESSAGE)
+        eventually("the value", lambda: heard)
+        for _ in range(5):
+            publisher.repeat()
+        publisher.put(replace(INFO_MESSAGE, sequence=1))
+        eventually("the new value", lambda: len(heard) == 2)
+        assert [INFO.decode(one.payload).sequence for one in heard] == [0, 1]
+
+
+def test_a_key_that_somebody_deletes_is_no_message(wire: Wire, rig: RunningRig) -> None:
+    with Wire.at(rig.meeting) as other:
+        heard = other.hear(SKELETONS)
+        publisher = wire.publisher(SKELETONS, "front")
+        eventually("the reader", publisher.wanted)
+        wire.session.delete(publisher.key)
+        publisher.put(Skeletons(sequence=7, time_ns=1))
+        eventually("the message", lambda: heard)
+        assert [SKELETONS.decode(one.payload).sequence for one in heard] == [7]
+
+
+READER = """
+import sys, time
+from inhand_runtime.session import open_session, subscribe
+from inhand_runtime.settings import ZenohSettings
+from inhand_schemas.keys import Site
+from inhand_schemas.topics import TOPICS
+with open_session(ZenohSettings(meeting=sys.argv[1])) as session:
+    keep = [
+        subscribe(session, topic.pattern(Site()), topic.delivery, lambda sample: None)
+        for topic in TOPICS.values()
+    ]
+    print("reads", flush=True)
+    time.sleep(600)
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("topic", [LABEL, EVENT, SKELETONS, RGBD])
+def test_a_reader_that_is_stopped_holds_nobody_up(
+    topic: AnyTopic, wire: Wire, rig: RunningRig
+) -> None:
+    stopped = rig.python("-c", READER, rig.meeting)
+    stopped.said("reads")
+    with Wire.at(rig.meeting) as reader:
+        heard = reader.hear(topic)
+        publisher = wire.publisher(topic, "front")
+
+        def both_read() -> bool:
+            publisher.put(_message(topic, 0))
+            return bool(heard) and wire.knows(2)
+
+        eventually("both readers", both_read)
+        stopped.popen.send_signal(signal.SIGSTOP)
+        begin = time.monotonic()
+        for number in range(1, STOPPED_MESSAGES + 1):
+            publisher.put(_message(topic, number))
+            time.sleep(max(0.0, begin + number / 60.0 - time.monotonic()))
+        took = time.monotonic() - begin
+        wanted = set(range(1, STOPPED_MESSAGES + 1))
+        eventually(
+            "all messages", lambda: wanted <= {topic.decode(one.payload).sequence for one in heard}
+        )
+    stopped.popen.send_signal(signal.SIGCONT)
+    assert took < STOPPED_MESSAGES / 60.0 + 2.0  # a reader once held them for 5 s
+
+
+STOPPED_MESSAGES = 420
+
+
+def _message(topic: AnyTopic, number: int) -> Any:
+    stamp = {"sequence": number, "time_ns": number}
+    if topic is RGBD:
+        return RgbdFrame(**stamp, colour=ColourImage("jpeg", 640, 480, bytes(60_000)))
+    if topic is EVENT:
+        return Event(**stamp, kind="drop", description="x" * 4000)
+    if topic is SKELETONS:
+        return Skeletons(**stamp)
+    return replace(LOST, **stamp, person_joints=((0.1, 0.2, 0.3),) * 20)
 
 
 def test_a_publisher_knows_whether_anybody_listens(wire: Wire, rig: RunningRig) -> None:

@@ -43,6 +43,10 @@ class Wire:
         """A publisher that counts nothing."""
         return Publisher(self.session, topic, topic.key(self.site, name), lambda _key: None)
 
+    def knows(self, count: int) -> bool:
+        """Whether that many other processes are connected now."""
+        return len(self.session.info.peers_zid()) >= count
+
     def live(self) -> list[str]:
         """The instances that announce themselves now, as ``service/instance``."""
         replies = self.session.liveliness().get(self.site.live_pattern())
