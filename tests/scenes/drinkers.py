@@ -17,7 +17,7 @@ from inhand_tracker.methods.fusion.tracker import FusionTracker
 from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.viewpoints import find_viewpoints
-from inhand_tracker.sight.appearance import Sample, learn_appearance
+from inhand_tracker.sight.appearance import AppearanceSample, learn_appearance
 
 SEED = 23
 FRAME_RATE = 15.0
@@ -65,7 +65,7 @@ def mug_model() -> Model:
         )
         for one in people
     ]
-    samples: list[Sample] = [
+    samples: list[AppearanceSample] = [
         (
             image(one.participant, frame),
             one.translations[frame],

@@ -30,9 +30,6 @@ class GaussianSight:
     def start(self) -> Colours:
         return TRAINED
 
-    def look_around(self, colours: Colours, *_: Any) -> Colours:
-        return colours
-
     def view(self, frame: Any, colours: Colours, joints: Any) -> "View":
         return View(frame, colours)
 
@@ -65,8 +62,17 @@ class GaussianSight:
         )
 
     def learn(
-        self, colours: Colours, frame: Any, origin: np.ndarray, turn: np.ndarray, rate: float
+        self,
+        colours: Colours,
+        frame: Any,
+        origin: np.ndarray,
+        turn: np.ndarray,
+        *,
+        of_object: float = 0.0,
+        around: float = 0.0,
     ) -> Colours:
+        if of_object == 0.0:
+            return colours
         self.learned.append(origin)
         return Colours(LEARNED, None)
 

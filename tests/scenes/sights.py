@@ -9,9 +9,10 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.shape.viewpoints import Viewpoints, find_viewpoints
-from inhand_tracker.sight.appearance import Appearance, Sample, learn_appearance
+from inhand_tracker.sight.appearance import Appearance, AppearanceSample, learn_appearance
 from inhand_tracker.sight.frame import prepare
-from inhand_tracker.sight.sight import SIGHT_TERMS, Sight, SightTerm, SightView
+from inhand_tracker.sight.sight import SIGHT_TERMS, Sight, SightTerm
+from inhand_tracker.sight.view import SightView
 from people import quaternion_of, scipy_rotation
 from scipy.spatial.transform import Rotation
 
@@ -65,7 +66,9 @@ def appearance(returns_depth: bool = True) -> Appearance:
     """Learned with the box elsewhere than where it is looked for."""
     turn = quaternion_of(Rotation.from_rotvec([-0.3, 0.8, 0.1]))
     place = np.array([-0.2, 0.1, 1.4])
-    samples: list[Sample] = [(draw(place, turn, returns_depth=returns_depth), place, turn, None)]
+    samples: list[AppearanceSample] = [
+        (draw(place, turn, returns_depth=returns_depth), place, turn, None)
+    ]
     learned = learn_appearance(box(), samples)
     assert learned is not None
     return learned
@@ -81,7 +84,7 @@ def sight(
 
 def view_of(eyes: Sight, image: Image, joints: np.ndarray | None = None) -> SightView:
     frame = prepare(image)
-    return eyes.view(frame, eyes.look_around(eyes.start(), frame, PLACE, TURN), joints)
+    return eyes.view(frame, eyes.learn(eyes.start(), frame, PLACE, TURN, around=0.5), joints)
 
 
 def scattered(count: int, metres: float, degrees: float) -> tuple[np.ndarray, np.ndarray]:

@@ -20,8 +20,9 @@ from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.shape.viewpoints import find_viewpoints
 from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.frame import SightFrame, prepare
-from inhand_tracker.sight.refinement import Prior
-from inhand_tracker.sight.sight import Sight, SightView
+from inhand_tracker.sight.refinement import PosePrior
+from inhand_tracker.sight.sight import Sight
+from inhand_tracker.sight.view import SightView
 
 from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.datasets.tracks import Track
@@ -39,7 +40,8 @@ STARTS = 20
 SCATTER_M, SCATTER_RAD = 0.05, np.deg2rad(20.0)
 """The root mean squares of the poses that the true one is ranked among."""
 SCATTERED = 10_000
-LEARNING_RATE = 0.3
+LEARNING_RATE, AROUND_RATE = 0.3, 0.5
+"""Share of the newest frame in the learned colours of the object and of its surroundings."""
 DRAWN, REFINED = 1000, 5
 """Poses that are tried about where an object was, and those of them that are refined."""
 SEED = 0
@@ -166,8 +168,8 @@ def _directions(count: int, random: np.random.Generator) -> Array:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
-def _prior(pose: Pose) -> Prior:
-    return Prior(*pose, np.diag(np.repeat([3.0 / START_M**2, 3.0 / START_RAD**2], 3)))
+def _prior(pose: Pose) -> PosePrior:
+    return PosePrior(*pose, np.diag(np.repeat([3.0 / START_M**2, 3.0 / START_RAD**2], 3)))
 
 
 def _refined(sight: Sight, view: SightView, start: Pose) -> Pose:
@@ -186,8 +188,7 @@ def _follow(sight: Sight, view: SightView, last: Pose, random: np.random.Generat
 
 
 def _learn(sight: Sight, colours: Colours, frame: SightFrame, pose: Pose) -> Colours:
-    around = sight.look_around(colours, frame, *pose)
-    return sight.learn(around, frame, *pose, rate=LEARNING_RATE)
+    return sight.learn(colours, frame, *pose, of_object=LEARNING_RATE, around=AROUND_RATE)
 
 
 def _rank(

@@ -139,7 +139,7 @@ def _weigh_frame(
 ) -> None:
     frame = prepare(image, region)
     for sight in objects:
-        colours = sight.look_around(sight.start(), frame, poses[0][0], poses[1][0])
+        colours = sight.learn(sight.start(), frame, poses[0][0], poses[1][0], around=0.5)
         sight.log_likelihood(*poses, sight.view(frame, colours, joints))
 
 

@@ -5,7 +5,7 @@ from contextlib import suppress
 
 import numpy as np
 from inhand_schemas.errors import MessageError
-from inhand_tracker.sight.appearance import Sample
+from inhand_tracker.sight.appearance import AppearanceSample
 from inhand_tracker.wire.conversion import image_of, joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry
@@ -15,7 +15,9 @@ RECORDINGS, FRAMES = 12, 60
 """At the most, evenly spaced: an object looks much the same in all."""
 
 
-def appearance_samples(dataset: Dataset, entries: Sequence[DatasetEntry]) -> Iterator[Sample]:
+def appearance_samples(
+    dataset: Dataset, entries: Sequence[DatasetEntry]
+) -> Iterator[AppearanceSample]:
     """Some frames of some recordings of one object; none of recordings without images.
 
     Damaged pixels are passed over. Raises DatasetError or RecordingError.

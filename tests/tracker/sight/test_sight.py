@@ -5,7 +5,7 @@ import pytest
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.rotations import angle_between
 from inhand_tracker.sight.frame import prepare
-from inhand_tracker.sight.refinement import Prior
+from inhand_tracker.sight.refinement import PosePrior
 from inhand_tracker.sight.sight import SIGHT_TERMS, SightTerm
 from people import STANDING, quaternion_of, scipy_rotation
 from scipy.spatial.transform import Rotation
@@ -64,7 +64,7 @@ def test_without_appearance_edges_and_depth_find_it_all_the_same() -> None:
 
 def test_colours_learned_on_the_way_tell_as_much_as_those_of_training() -> None:
     eyes, frame = sight(("region",)), prepare(draw())
-    colours = eyes.learn(eyes.look_around(eyes.start(), frame, PLACE, TURN), frame, PLACE, TURN)
+    colours = eyes.learn(eyes.start(), frame, PLACE, TURN, of_object=0.1, around=0.5)
     poses = scattered(2000, 0.05, 20.0)
     weights = eyes.log_likelihood(*poses, eyes.view(frame, colours))
     assert np.mean(weights > weights[0]) < 0.01
@@ -136,9 +136,9 @@ def test_threads_give_the_same() -> None:
     assert two.log_likelihood(np.empty((0, 3)), np.empty((0, 4)), view).shape == (0,)
 
 
-def prior_about(place: np.ndarray, turn: np.ndarray, metres: float, degrees: float) -> Prior:
+def prior_about(place: np.ndarray, turn: np.ndarray, metres: float, degrees: float) -> PosePrior:
     spread = np.repeat([3.0 / metres**2, 3.0 / np.deg2rad(degrees) ** 2], 3)
-    return Prior(place, turn, np.diag(spread))
+    return PosePrior(place, turn, np.diag(spread))
 
 
 @pytest.mark.parametrize("terms", [SIGHT_TERMS, ("edges", "region", "interior")])

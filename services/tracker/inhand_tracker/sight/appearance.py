@@ -1,30 +1,26 @@
-"""How an object looks, learned from frames in which it is known where it is."""
+"""How an object looks, learned from frames with its true pose."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
 
-from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Flags, Singles
-from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.shape.raster import nearest_depths
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.sight.colours import BINS, Bins, smoothed
 from inhand_tracker.sight.frame import SightFrame, prepare
 from inhand_tracker.sight.limbs import limb_mask
+from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
+from inhand_tracker.sight.silhouette import (
+    interior,
+    pixels_covered,
+    region_around,
+    silhouette_depths,
+)
 
-BESIDE = 1.0
-"""How far the surroundings reach, in widths of the object."""
-IN_FRONT_M = 0.05
-FEWEST_PIXELS = 200
-MOST_COVERED = 0.8
-RETURNED, BEHIND = 0.9, 0.05
-"""Where no depth was seen in training."""
-
-Sample = tuple[Image, Array, Array, Array | None]
+AppearanceSample = tuple[Image, Array, Array, Array | None]
 """A frame, the object's true translation (3,) and rotation (4,), and the joints (20, 3) of the
 person, or None."""
 
@@ -42,101 +38,88 @@ class Appearance:
     behind: float
 
 
-def learn_appearance(shape: ObjectShape, samples: Iterable[Sample]) -> Appearance | None:
-    """From frames in which it is known where the object is; None where no colour is seen.
+@dataclass
+class _Counts:
+    """Pixels of all samples: by colour (4096,), on the object, around it, and of limbs around it;
+    and how many of the object's returned depth, or that of something behind."""
+
+    of_object: Array = field(default_factory=lambda: np.zeros(BINS))
+    around: Array = field(default_factory=lambda: np.zeros(BINS))
+    of_limbs: Array = field(default_factory=lambda: np.zeros(BINS))
+    returned: int = 0
+    behind: int = 0
+    looked_at: int = 0
+
+    def add_depths(self, frame: SightFrame, depths: Array, silhouette: Flags) -> None:
+        """Count what was measured of the surface where nothing covers it."""
+        if frame.depth is None:
+            return
+        uncovered = interior(silhouette) & ~pixels_covered(frame, depths)
+        off = frame.depth[uncovered] - depths[uncovered]
+        self.returned += int((np.abs(off) < frame.parameters.aside_m).sum())
+        self.behind += int((off >= frame.parameters.aside_m).sum())
+        self.looked_at += len(off)
+
+    def add_colours(self, frame: SightFrame, silhouette: Flags, joints: Array | None) -> None:
+        """Count colours on the silhouette, and beside it those of a person with joints (20, 3)."""
+        if frame.bins is None:
+            return
+        self.of_object += _counts(frame.bins, silhouette)
+        beside = ~cv2.dilate(silhouette.astype(np.uint8), np.ones((3, 3))).astype(bool)
+        self.around += _counts(frame.bins, beside)
+        limbs = limb_mask(joints, frame.camera, frame.depth, frame.parameters).astype(bool)
+        self.of_limbs += _counts(frame.bins, beside & limbs)
+
+
+def learn_appearance(
+    shape: ObjectShape,
+    samples: Iterable[AppearanceSample],
+    parameters: SightParameters = DEFAULT_SIGHT,
+) -> Appearance | None:
+    """Learn from frames with the object's true pose; None where no colour is seen.
 
     A few dozen are enough. Pixels in front of which something nearer was measured are left out,
     and so is the share of the colours of arms and hands that fingers over the object make likely.
     """
-    of_object, around, of_limbs = np.zeros((3, BINS))
-    returned = behind = asked = 0
+    counts = _Counts()
     for image, translation, rotation, joints in samples:
-        region = region_around(shape, translation, rotation, image.camera)
+        region = region_around(shape, translation, rotation, image.camera, parameters)
         if region is None:
             continue
-        frame = prepare(image, region)
+        frame = prepare(image, region, parameters)
         depths = silhouette_depths(shape, translation, rotation, frame.camera)
         silhouette = np.isfinite(depths)
-        if frame.depth is not None:
-            covered = (frame.depth > 0.0) & (frame.depth < depths - IN_FRONT_M)
-            seen = _interior(silhouette) & ~covered
-            off = frame.depth[seen] - depths[seen]
-            returned += int((np.abs(off) < IN_FRONT_M).sum())
-            behind += int((off >= IN_FRONT_M).sum())
-            asked += len(off)
-            silhouette &= ~covered
-        if frame.bins is not None:
-            of_object += _counts(frame.bins, silhouette)
-            beside = ~cv2.dilate(silhouette.astype(np.uint8), np.ones((3, 3))).astype(bool)
-            around += _counts(frame.bins, beside)
-            limbs = limb_mask(joints, frame.camera, frame.depth).astype(bool)
-            of_limbs += _counts(frame.bins, beside & limbs)
-    if min(of_object.sum(), around.sum()) < FEWEST_PIXELS:
+        counts.add_depths(frame, depths, silhouette)
+        counts.add_colours(frame, silhouette & ~pixels_covered(frame, depths), joints)
+    of_object, around = counts.of_object, counts.around
+    if min(of_object.sum(), around.sum()) < parameters.fewest_pixels:
         return None
+    own = _without_limbs(of_object / of_object.sum(), counts.of_limbs, parameters)
+    looked_at = counts.looked_at
     return Appearance(
-        smoothed(_without_limbs(of_object / of_object.sum(), of_limbs)),
-        smoothed((around / around.sum()).astype(np.float32)),
-        returned / asked if asked else RETURNED,
-        behind / asked if asked else BEHIND,
+        smoothed(own, parameters),
+        smoothed((around / around.sum()).astype(np.float32), parameters),
+        counts.returned / looked_at if looked_at else parameters.returned,
+        counts.behind / looked_at if looked_at else parameters.behind,
     )
 
 
-def _without_limbs(of_object: Array, of_limbs: Array) -> Singles:
-    """The histogram (4096,) of an object without the fingers over it.
+def _without_limbs(of_object: Array, of_limbs: Array, parameters: SightParameters) -> Singles:
+    """Take the fingers over an object out of its histogram (4096,).
 
-    How much of it they are is told by the colours that are usual for limbs: half of these, by
-    weight, are no commoner on the object than the share says.
+    The colours that are usual for limbs show which share of it they are: half of these, by
+    weight, are no commoner on the object than that share says.
     """
-    if of_limbs.sum() < FEWEST_PIXELS:
+    if of_limbs.sum() < parameters.fewest_pixels:
         return of_object.astype(np.float32)
     limbs = of_limbs / of_limbs.sum()
-    usual = limbs > limbs.max() / 20.0
+    usual = limbs > limbs.max() / parameters.usual_limb_ratio
     ratios = of_object[usual] / limbs[usual]
     order = np.argsort(ratios)
     middle = np.searchsorted(np.cumsum(limbs[usual][order]), 0.5 * limbs[usual].sum())
-    share = min(float(ratios[order][middle]), MOST_COVERED)
+    share = min(float(ratios[order][middle]), parameters.most_covered)
     left = np.maximum(of_object - share * limbs, 0.0)
     return np.asarray(left / left.sum(), np.float32)
-
-
-def region_around(
-    shape: ObjectShape, translation: Array, rotation: Array, camera: Intrinsics
-) -> tuple[float, float, float, float] | None:
-    """The part of the image that holds an object and its surroundings; None when it holds none."""
-    pixels = camera.project(rotations.rotate(rotation, shape.vertices) + translation)
-    if not np.isfinite(pixels).all():
-        return None
-    low, high = pixels.min(axis=0), pixels.max(axis=0)
-    margin = max(BESIDE * float(np.sqrt(np.prod(high - low))) / 2.0, 8.0)
-    if (high < 0.0).any() or (low > [camera.width, camera.height]).any():
-        return None
-    left, top = (low - margin).tolist()
-    right, bottom = (high + margin).tolist()
-    return left, top, right, bottom
-
-
-def silhouette_depths(
-    shape: ObjectShape, translation: Array, rotation: Array, camera: Intrinsics
-) -> Array:
-    """(H, W): how far away the object's surface is in each pixel, infinite beside it."""
-    placed = rotations.rotate(rotation, shape.vertices) + translation
-    size = max(camera.width, camera.height)
-    depths = nearest_depths(camera.project(placed), placed[:, 2], shape.faces, size)
-    return depths[: camera.height, : camera.width]
-
-
-def pixels_within(frame: SightFrame, depths: Array) -> Flags:
-    """The pixels (H, W) of a silhouette that nothing nearer covers."""
-    within = np.isfinite(depths)
-    if frame.depth is not None:
-        within &= ~((frame.depth > 0.0) & (frame.depth < depths - IN_FRONT_M))
-    return within
-
-
-def _interior(silhouette: Flags) -> Flags:
-    """The silhouette without its rim, where depth is often missing; all of a thin one."""
-    inner = cv2.erode(silhouette.astype(np.uint8), np.ones((3, 3))).astype(bool)
-    return inner if inner.any() else silhouette
 
 
 def _counts(bins: Bins, chosen: Flags) -> Array:

@@ -11,42 +11,51 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.sight.colours import Bins, colour_bins
 from inhand_tracker.sight.oriented_edges import edge_distances, edge_scores
+from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
 Region = tuple[float, float, float, float]
 """Left, top, right and bottom in pixels."""
+
+SMALLEST_PIXELS = 16
+"""Width and height of the smallest part of an image, so that filters have pixels to work on."""
 
 
 @dataclass(frozen=True)
 class SightFrame:
     """A part of an image: ``colour`` (H, W, 3) and ``depth`` (H, W) in metres, 0 where nothing was
-    measured, or None; ``camera`` is that of the part."""
+    measured, or None; ``camera`` is that of the part. It is read as ``parameters`` say."""
 
     camera: Intrinsics
     colour: Bytes | None
     depth: Singles | None
+    parameters: SightParameters = DEFAULT_SIGHT
 
     @cached_property
     def bins(self) -> Bins | None:
-        """The colours' bins (H, W)."""
+        """The colours' bins (H, W), or None."""
         return None if self.colour is None else colour_bins(self.colour)
 
     @cached_property
     def edges(self) -> Bytes | None:
-        """Distances (4, H, W) to oriented edges."""
+        """Distances (4, H, W) to oriented edges, or None without colour."""
         if self.colour is None:
             return None
-        return edge_distances(np.asarray(cv2.cvtColor(self.colour, cv2.COLOR_RGB2GRAY), np.uint8))
+        grey = np.asarray(cv2.cvtColor(self.colour, cv2.COLOR_RGB2GRAY), np.uint8)
+        return edge_distances(grey, self.parameters)
 
     @cached_property
     def edge_scores(self) -> Singles | None:
-        """(4, 8), what those distances say."""
-        return None if self.edges is None else edge_scores(self.edges)
+        """Scores (4, 8) of those distances, or None without colour."""
+        return None if self.edges is None else edge_scores(self.edges, self.parameters)
 
 
-def prepare(image: Image, region: Region | None = None) -> SightFrame:
-    """The part of an image within a region, or all of it; what needs work is done when asked for.
+def prepare(
+    image: Image, region: Region | None = None, parameters: SightParameters = DEFAULT_SIGHT
+) -> SightFrame:
+    """Cut the part within a region out of an image, or take all of it.
 
-    Depth of another size is brought to that of the colours.
+    Depth of another size is brought to that of the colours. Edges and bins are found when they are
+    first asked for.
     """
     camera, colour, depth = image.camera, image.colour, image.depth
     if colour is not None:
@@ -67,14 +76,12 @@ def prepare(image: Image, region: Region | None = None) -> SightFrame:
         camera,
         None if colour is None else np.ascontiguousarray(colour),
         None if depth is None else np.ascontiguousarray(depth, np.float32),
+        parameters,
     )
 
 
-SMALLEST_PIXELS = 16
-
-
 def _whole_pixels(region: Region, camera: Intrinsics) -> tuple[int, int, int, int]:
-    """The region's pixels within the image, 16 each way at the least."""
+    """Round a region to pixels of the image, SMALLEST_PIXELS or more each way."""
     ends = []
     for low, high, size in (
         (region[0], region[2], camera.width),

@@ -1,95 +1,42 @@
-"""Looking for one object in prepared frames: weighing poses, and refining them.
+"""Looking for one object in prepared frames: how likely its poses are, and the likeliest nearby.
 
 The terms: ``edges`` that run as the outline does; ``region``, colours of the object just within
 the outline and others just beside it; ``interior``, colours of the object all over it; ``depth``,
 where it was measured at the surface, or nearer by something in front, which says nothing, or
-farther away, which speaks against (a mixture as of Wüthrich et al. 2013).
+farther away, which speaks against.
 """
 
 from collections.abc import Collection
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal, get_args
 
-import cv2
 import numpy as np
 
-from inhand_tracker.geometry import rotations
-from inhand_tracker.geometry.arrays import Array, Bytes, Singles
+from inhand_tracker.geometry.arrays import Array, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.shape.contours import find_contours
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.shape.view_grid import view_grid
 from inhand_tracker.shape.viewpoints import Viewpoints
-from inhand_tracker.sight.appearance import (
-    BEHIND,
-    RETURNED,
-    Appearance,
-    pixels_within,
-    region_around,
-    silhouette_depths,
-)
-from inhand_tracker.sight.colours import (
-    Colours,
-    blend,
-    histogram,
-    log_odds_by_colour,
-    look_up,
-)
+from inhand_tracker.sight.appearance import Appearance
+from inhand_tracker.sight.colour_learning import learn_colours
+from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.frame import SightFrame, prepare
-from inhand_tracker.sight.kernels import SEEN, Outlines, Pixels, depth_scores, weigh
-from inhand_tracker.sight.limbs import limb_mask
-from inhand_tracker.sight.refinement import (
-    DAMPING,
-    REACH_M,
-    REACH_RAD,
-    REACHES,
-    TRUST,
-    Prior,
-    Refined,
-    gather,
-)
+from inhand_tracker.sight.kernels.inputs import Outlines
+from inhand_tracker.sight.kernels.weigh import VISIBLE
+from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
+from inhand_tracker.sight.refinement import PosePrior, PoseRefiner, Refined
+from inhand_tracker.sight.view import SightView, view_frame
+from inhand_tracker.sight.weighing import PoseWeigher
 
 SightTerm = Literal["edges", "region", "interior", "depth"]
 
 SIGHT_TERMS: tuple[SightTerm, ...] = get_args(SightTerm)
 
-TERM_WEIGHTS = np.array([4.5, 13.0, 6.0, 5.0])
-"""How many independent points each term's are worth."""
-POINT_WEIGHTS = np.array([0.2, 1.0])
-"""The same for a point of the outline and of the surface in refinement."""
-LIMB_WEIGHT = 0.5
-_REFINED_TERMS = [0, 1, 3]
-
-CERTAIN = 0.8
-"""How sure a pixel's colour can make one of where it belongs."""
-LIMB_SHARE = 0.25
-"""How much of what speaks against the object is believed where a hand may cover it."""
-FEWEST_IN_THREAD = 500
-"""Poses for which another thread is worth while."""
-LEAST_SEEN = 0.1
-FEWEST_SEEN = 1.0
-"""Poses that can be seen, with which others can be compared."""
-LEAST_RETURNED = 0.5
-"""Depth that is measured of less of an object's surface is rather that of the hand around it."""
-
-
-@dataclass(frozen=True)
-class SightView:
-    """A frame with one object's eyes: ``colour_scores`` (H, W, 2), what each pixel's colour says
-    to its being within and beside the object, and ``limbs`` (H, W). ``unseen`` is the
-    log-likelihood ratio of an object that is out of the frame, or covered: of one that is so for a
-    part, that part of it counts."""
-
-    frame: SightFrame
-    colour_scores: Singles
-    limbs: Bytes
-    unseen: float = 0.0
-
 
 class Sight:
-    """Weighs and refines poses of one object; many poses are weighed in so many threads."""
+    """Weighs and refines poses of one object; many poses are weighed in several threads."""
 
     def __init__(
         self,
@@ -99,65 +46,44 @@ class Sight:
         terms: Collection[SightTerm] = SIGHT_TERMS,
         *,
         threads: int = 1,
+        parameters: SightParameters = DEFAULT_SIGHT,
     ) -> None:
         self._shape = shape
-        self._threads = threads
-        self._pool = ThreadPoolExecutor(threads)
-        contours = viewpoints.contours
-        if contours is None:
-            contours = find_contours(shape, viewpoints.directions)
-        self._outlines = Outlines(
-            view_grid(contours.directions),
-            contours.directions,
-            _points_last(contours.points),
-            _points_last(contours.normals),
-            contours.inside,
-            contours.outside,
-            _points_last(contours.surface_points),
-            _points_last(contours.surface_normals),
-            np.sqrt(contours.areas),
-        )
-        self._wanted = np.array([term in terms for term in SIGHT_TERMS])
         self._appearance = appearance
-        returned, behind = RETURNED, BEHIND
+        self._parameters = parameters
+        returned, behind = parameters.returned, parameters.behind
         if appearance is not None:
             returned, behind = appearance.returned, appearance.behind
-        self._returned = returned if returned >= LEAST_RETURNED else 0.0
-        self._depth_scores = depth_scores(self._returned, behind)
+        returned = returned if returned >= parameters.least_returned else 0.0
+        outlines = _outlines(shape, viewpoints)
+        wanted = np.array([term in terms for term in SIGHT_TERMS])
+        self._weigher = PoseWeigher(outlines, wanted, (returned, behind), parameters, threads)
+        self._refiner = PoseRefiner(outlines, wanted, returned, parameters)
+        self._term_weights = np.array(
+            [
+                parameters.edges_weight,
+                parameters.region_weight,
+                parameters.interior_weight,
+                parameters.depth_weight,
+            ]
+        )
 
     def compile(self) -> None:
-        """Let all that a first frame would wait for be compiled: seconds, once an installation."""
+        """Compile all that a first frame would wait for: seconds, once an installation."""
         camera = Intrinsics(50.0, 50.0, 15.5, 15.5, 32, 32)
         image = Image(None, camera, np.ones((32, 32), np.float32), np.zeros((32, 32, 3), np.uint8))
-        frame = prepare(image)
+        frame = prepare(image, parameters=self._parameters)
         ahead, upright = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0, 0.0])
-        colours = self.look_around(Colours(), frame, ahead, upright)
-        colours = self.learn(colours, frame, ahead, upright)
+        colours = self.learn(Colours(), frame, ahead, upright, of_object=0.5, around=0.5)
         view = self.view(frame, colours, np.tile(ahead, (20, 1)))
         self.log_likelihood(ahead[None], upright[None], view)
         self.refine(ahead[None], upright[None], view)
 
     def start(self) -> Colours:
-        """What is known of the object's colours and its surroundings' from training."""
+        """The colours of the object and its surroundings as training left them."""
         if self._appearance is None:
             return Colours()
         return Colours(self._appearance.of_object, self._appearance.around)
-
-    def look_around(
-        self,
-        colours: Colours,
-        frame: SightFrame,
-        translation: Array,
-        rotation: Array,
-        rate: float = 0.5,
-    ) -> Colours:
-        """The surroundings' colours learned from around a predicted pose (3,), (4,)."""
-        part, depths = self._part_around(frame, translation, rotation)
-        if part is None or part.bins is None:
-            return colours
-        wide = cv2.dilate(np.isfinite(depths).astype(np.uint8), np.ones((5, 5)))
-        around = histogram(part.bins, (1 - wide).astype(np.float32))
-        return replace(colours, around=blend(colours.around, around, rate))
 
     def learn(
         self,
@@ -165,99 +91,83 @@ class Sight:
         frame: SightFrame,
         translation: Array,
         rotation: Array,
-        rate: float = 0.1,
+        *,
+        of_object: float = 0.0,
+        around: float = 0.0,
     ) -> Colours:
-        """The object's colours learned from a pose (3,), (4,) that is trusted."""
-        part, depths = self._part_around(frame, translation, rotation)
-        if part is None or part.bins is None:
-            return colours
-        seen = histogram(part.bins, pixels_within(part, depths).astype(np.float32))
-        return replace(colours, of_object=blend(colours.of_object, seen, rate))
-
-    def _part_around(
-        self, frame: SightFrame, translation: Array, rotation: Array
-    ) -> tuple[SightFrame | None, Array]:
-        """The part of a coloured frame around a pose, and how far away its surface is in each pixel
-        of it; None where there is nothing to learn colours from."""
-        region = region_around(self._shape, translation, rotation, frame.camera)
-        if frame.colour is None or region is None:
-            return None, np.empty((0, 0))
-        part = prepare(Image(None, frame.camera, frame.depth, frame.colour), region)
-        return part, silhouette_depths(self._shape, translation, rotation, part.camera)
+        """Learn colours from a pose (3,), (4,): with this frame's share ``of_object`` in the
+        object's, where the pose is trusted, and ``around`` in its surroundings'."""
+        return learn_colours(
+            self._shape, colours, frame, (translation, rotation), (of_object, around)
+        )
 
     def view(self, frame: SightFrame, colours: Colours, joints: Array | None = None) -> SightView:
-        """A frame as one with these colours sees it, and a person with joints (20, 3) in it."""
-        limbs = limb_mask(joints, frame.camera, frame.depth)
-        scores = np.zeros((*limbs.shape, 2), np.float32)
-        if frame.bins is not None:
-            within = 1.0 / (1.0 + np.exp(-log_odds_by_colour(colours)))
-            sure = CERTAIN * within + (1.0 - CERTAIN) * (1.0 - within)
-            table = np.log(2.0 * np.column_stack((sure, 1.0 - sure)))
-            look_up(frame.bins, limbs, table.astype(np.float32), LIMB_SHARE, scores)
-        return SightView(frame, scores, limbs)
+        """Score a frame for the object with these colours, and a person with joints (20, 3)."""
+        return view_frame(frame, colours, joints, self._parameters)
 
     def log_likelihood(self, translations: Array, orientations: Array, view: SightView) -> Array:
-        """Of poses (P, 3) and (P, 4), (P,): how many times likelier (log) the frame is with the
-        object there than with none; 0 where the frame says nothing."""
-        scores = self._scores(translations, orientations, view)
-        return scores[:, :SEEN] @ TERM_WEIGHTS + (1.0 - scores[:, SEEN]) * view.unseen
+        """Return how many times likelier (log) the frame is with the object at each of poses
+        (P, 3) and (P, 4) than with none, (P,); 0 where the frame says nothing."""
+        scores = self._weigher.scores(translations, orientations, view)
+        return scores[:, :VISIBLE] @ self._term_weights + (1.0 - scores[:, VISIBLE]) * view.unseen
 
     def compare_unseen(
         self, translations: Array, orientations: Array, view: SightView, trust: float
     ) -> SightView:
-        """The view in which an object that is not seen is as likely as one that is, of a sample of
-        what is believed, poses (P, 3) and (P, 4).
+        """Return the view in which an object that is not seen is as likely as one that is, by a
+        sample of what is believed, poses (P, 3) and (P, 4).
 
         Not to be seen is no evidence, but a pose that could be seen is unlikely by a frame without
         the object: to come off better others need only lie out of it. So they get the mean
         likelihood of those that can be seen (of their seen part, as if it were all), where that
         is less than 1. The frame counts by ``trust``.
         """
-        scores = self._scores(translations, orientations, view)
-        seen = scores[:, SEEN]
-        if seen.sum() < FEWEST_SEEN:
+        scores = self._weigher.scores(translations, orientations, view)
+        visible = scores[:, VISIBLE]
+        if visible.sum() < self._parameters.fewest_visible:
             return view
-        said = trust * (scores[:, :SEEN] @ TERM_WEIGHTS) / np.maximum(seen, LEAST_SEEN)
-        most = float(said.max())
-        mean = most + float(np.log(seen @ np.exp(said - most) / seen.sum()))
+        whole = np.maximum(visible, self._parameters.least_visible)
+        likelihoods = trust * (scores[:, :VISIBLE] @ self._term_weights) / whole
+        most = float(likelihoods.max())
+        mean = most + float(np.log(visible @ np.exp(likelihoods - most) / visible.sum()))
         return replace(view, unseen=min(mean / trust, 0.0))
 
     def log_likelihoods_by_term(
         self, translations: Array, orientations: Array, view: SightView
     ) -> dict[str, Array]:
-        """The parts of ``log_likelihood``, each (P,)."""
-        scores = self._scores(translations, orientations, view)[:, :SEEN] * TERM_WEIGHTS
-        return dict(zip(SIGHT_TERMS, scores.T, strict=True))
+        """Return the parts of ``log_likelihood``, each (P,)."""
+        scores = self._weigher.scores(translations, orientations, view)
+        parts = scores[:, :VISIBLE] * self._term_weights
+        return dict(zip(SIGHT_TERMS, parts.T, strict=True))
 
     def refine(
         self,
         translations: Array,
         orientations: Array,
         view: SightView,
-        prior: Prior | None = None,
+        prior: PosePrior | None = None,
         trust: float = 1.0,
     ) -> Refined:
-        """Poses (K, 3) and (K, 4) moved to where the frame and the prior agree best nearby; one
+        """Move poses (K, 3) and (K, 4) to where the frame and the prior agree best nearby; one
         that does not become likelier stays where it is.
 
         The frame counts by ``trust``: less than 1 where the frames before have said the same.
         """
-        moved, turned, information = self._steps(translations, orientations, view, prior, trust)
-        worse = self._posterior(moved, turned, view, prior, trust) < self._posterior(
-            translations, orientations, view, prior, trust
-        )
+        moved = self._refiner.refine((translations, orientations), view, prior, trust)
+        after = self._log_posterior(moved.translations, moved.rotations, view, prior, trust)
+        worse = after < self._log_posterior(translations, orientations, view, prior, trust)
         return Refined(
-            np.where(worse[:, None], translations, moved),
-            np.where(worse[:, None], orientations, turned),
-            np.where(worse[:, None, None], 0.0, TRUST * information),
+            np.where(worse[:, None], translations, moved.translations),
+            np.where(worse[:, None], orientations, moved.rotations),
+            np.where(worse[:, None, None], 0.0, moved.information),
         )
 
-    def _posterior(
+    def _log_posterior(
         self,
         translations: Array,
         orientations: Array,
         view: SightView,
-        prior: Prior | None,
+        prior: PosePrior | None,
         trust: float,
     ) -> Array:
         likelihood = trust * self.log_likelihood(translations, orientations, view)
@@ -265,86 +175,23 @@ class Sight:
             return likelihood
         return likelihood + prior.log_density(translations, orientations)
 
-    def _steps(
-        self,
-        translations: Array,
-        orientations: Array,
-        view: SightView,
-        prior: Prior | None,
-        trust: float,
-    ) -> tuple[Array, Array, Array]:
-        """Poses (K, 3) and (K, 4) after all Gauss-Newton steps, and the image's (K, 6, 6)."""
-        frame = view.frame
-        coloured, deep = frame.bins is not None, frame.depth is not None
-        wanted = self._wanted[_REFINED_TERMS] & [coloured, coloured, deep]
-        pixels = self._pixels(view)
-        information = np.zeros((len(translations), 6, 6))
-        reach_m, reach_rad = (REACH_M, REACH_RAD) if prior is None else prior.reach()
-        for share in REACHES:
-            information = np.zeros((len(translations), 6, 6))
-            gradients = np.zeros((len(translations), 6))
-            gather(
-                translations,
-                orientations,
-                self._outlines,
-                pixels,
-                self._returned,
-                wanted,
-                share * reach_m,
-                share * reach_rad,
-                trust * POINT_WEIGHTS,
-                information,
-                gradients,
-            )
-            total, pull = information + np.diag(DAMPING), gradients
-            if prior is not None:
-                total, pull = prior.added_to(total, pull, translations, orientations)
-            steps = np.linalg.solve(total, pull[..., None])[..., 0]
-            translations = translations + steps[:, :3]
-            turns = rotations.from_vector(np.asarray(steps[:, 3:], np.float64))
-            orientations = rotations.normalise(rotations.multiply(turns, orientations))
-        return translations, orientations, information
 
-    def _scores(self, translations: Array, orientations: Array, view: SightView) -> Array:
-        frame = view.frame
-        coloured, deep = frame.bins is not None, frame.depth is not None
-        wanted = self._wanted & [coloured, coloured, coloured, deep]
-        pixels = self._pixels(view)
-        scores = np.zeros((len(translations), SEEN + 1), np.float32)
-
-        def weigh_some(part: slice) -> None:
-            weigh(
-                np.ascontiguousarray(translations[part], np.float32),
-                np.ascontiguousarray(orientations[part], np.float32),
-                self._outlines,
-                pixels,
-                np.float32(LIMB_WEIGHT),
-                self._depth_scores,
-                wanted,
-                scores[part],
-            )
-
-        share = max(FEWEST_IN_THREAD, -(-len(scores) // self._threads))
-        parts = [slice(start, start + share) for start in range(0, len(scores), share)]
-        if len(parts) > 1:
-            list(self._pool.map(weigh_some, parts))
-        elif parts:
-            weigh_some(parts[0])
-        return scores.astype(float)
-
-    def _pixels(self, view: SightView) -> Pixels:
-        """The frame for the kernels; what it does not hold is not read, or says nothing."""
-        frame, camera = view.frame, view.frame.camera
-        size = (camera.height, camera.width)
-        edges, scores, depth = frame.edges, frame.edge_scores, frame.depth
-        return Pixels(
-            np.array([camera.fx, camera.fy, camera.cx, camera.cy], np.float32),
-            np.zeros((4, 1, 1), np.uint8) if edges is None else edges,
-            np.zeros((4, 8), np.float32) if scores is None else scores,
-            view.colour_scores,
-            view.limbs,
-            np.zeros(size, np.float32) if depth is None else depth,
-        )
+def _outlines(shape: ObjectShape, viewpoints: Viewpoints) -> Outlines:
+    """Lay an object's contours out for kernels; older models hold none."""
+    contours = viewpoints.contours
+    if contours is None:
+        contours = find_contours(shape, viewpoints.directions)
+    return Outlines(
+        view_grid(contours.directions),
+        contours.directions,
+        _points_last(contours.points),
+        _points_last(contours.normals),
+        contours.inside,
+        contours.outside,
+        _points_last(contours.surface_points),
+        _points_last(contours.surface_normals),
+        np.sqrt(contours.areas),
+    )
 
 
 def _points_last(points: Singles) -> Singles:

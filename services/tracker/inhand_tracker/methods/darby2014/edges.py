@@ -9,7 +9,13 @@ from inhand_tracker.geometry.arrays import Array, Bytes, Singles
 from inhand_tracker.geometry.camera import NEAREST_M
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.darby2014.parameters import DEFAULT_EDGE_IMAGE, EdgeImageParameters
-from inhand_tracker.shape.view_grid import nearest_view
+from inhand_tracker.sight.kernels.projection import (
+    in_image,
+    projected,
+    rotated,
+    rotation_matrix,
+    view_of_pose,
+)
 
 
 def chamfer_of(image: Image) -> Singles | None:
@@ -59,40 +65,31 @@ def weigh_by_edges(
     ``grid`` finds (``view_grid``); ``lens`` is (fx, fy, cx, cy).
     """
     height, width = chamfer.shape
-    fx, fy, cx, cy = lens[0], lens[1], lens[2] + 0.5, lens[3] + 0.5
+    corner_lens = lens[0], lens[1], lens[2] + 0.5, lens[3] + 0.5
     count = boundaries.shape[2]
     u, v = np.empty(count), np.empty(count)
     for pose in range(len(translations)):
         tx, ty, tz = translations[pose, 0], translations[pose, 1], translations[pose, 2]
-        w, x, y, z = (
+        turn = rotation_matrix(
             orientations[pose, 0],
             orientations[pose, 1],
             orientations[pose, 2],
             orientations[pose, 3],
         )
-        r0, r1, r2 = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)
-        r3, r4, r5 = 2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)
-        r6, r7, r8 = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)
-        view = nearest_view(
-            grid,
-            directions,
-            -(r0 * tx + r3 * ty + r6 * tz),
-            -(r1 * tx + r4 * ty + r7 * tz),
-            -(r2 * tx + r5 * ty + r8 * tz),
-        )
+        view = view_of_pose(grid, directions, turn, tx, ty, tz)
         for point in range(count):
             a, b, c = (
                 boundaries[view, 0, point],
                 boundaries[view, 1, point],
                 boundaries[view, 2, point],
             )
-            depth = r6 * a + r7 * b + r8 * c + tz
-            column = fx * (r0 * a + r1 * b + r2 * c + tx) / depth + cx
-            u[point] = column if depth > NEAREST_M else -1.0
-            v[point] = fy * (r3 * a + r4 * b + r5 * c + ty) / depth + cy
+            x, y, z = rotated(turn, a, b, c)
+            depth = z + tz
+            column, row = projected(corner_lens, x + tx, y + ty, depth)
+            u[point], v[point] = column if depth > NEAREST_M else -1.0, row
         total = 0.0
         for point in range(count):
-            if 0.0 <= u[point] < width and 0.0 <= v[point] < height:
+            if in_image(u[point], v[point], width, height):
                 away = 1.0 - chamfer[int(v[point]), int(u[point])]
                 total += away * away
             else:

@@ -7,6 +7,7 @@ what one of them is worth on a dataset shows `inhand bench ablation DATASET --va
 from dataclasses import dataclass
 
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
+from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
 
 @dataclass(frozen=True)
@@ -15,6 +16,8 @@ class FusionParameters:
 
     prior: PriorParameters = DEFAULT_PRIOR
     """How the body's predictions are combined."""
+    sight: SightParameters = DEFAULT_SIGHT
+    """How images are read, and how poses are weighed by them and refined."""
 
     # What is believed before an image is seen (belief).
     carries: bool = True

@@ -8,8 +8,9 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever, mixture
 from inhand_tracker.methods.fusion.parameters import FusionParameters
-from inhand_tracker.sight.refinement import Prior as RefinementPrior
-from inhand_tracker.sight.sight import Sight, SightView
+from inhand_tracker.sight.refinement import PosePrior
+from inhand_tracker.sight.sight import Sight
+from inhand_tracker.sight.view import SightView
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ class ImagePosterior:
             self.sphere.origins(centres, orientations),
             orientations,
             self.view,
-            RefinementPrior(part.centre - arm, part.rotation, forth.T @ information @ forth),
+            PosePrior(part.centre - arm, part.rotation, forth.T @ information @ forth),
             self.parameters.refinement_temper * self.sharpness,
         )
         modes = []

@@ -17,8 +17,9 @@ from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.methods.fusion.posterior import ImagePosterior
 from inhand_tracker.sight.frame import Region, SightFrame, prepare
-from inhand_tracker.sight.sight import Sight, SightView
+from inhand_tracker.sight.sight import Sight
 from inhand_tracker.sight.support import Support
+from inhand_tracker.sight.view import SightView
 
 
 class ImageSearch:
@@ -70,10 +71,10 @@ class ImageSearch:
 
     def _open(self, guess: PoseGaussian, image: Image, region: Region, joints: Array) -> SightView:
         """Prepare a region of the image, and learn its surroundings' colours."""
-        frame = prepare(image, region)
+        frame = prepare(image, region, self._parameters.sight)
         origin = guess.centre - self._sphere.arm(guess.rotation)
-        self._colours = self._sight.look_around(
-            self._colours, frame, origin, guess.rotation, self._parameters.around_rate
+        self._colours = self._sight.learn(
+            self._colours, frame, origin, guess.rotation, around=self._parameters.around_rate
         )
         return self._sight.view(frame, self._colours, joints)
 
@@ -125,9 +126,8 @@ class ImageSearch:
         if seen[best] <= self._parameters.learning_log_likelihood:
             return
         origin = modes[best].centre - self._sphere.arm(modes[best].rotation)
-        self._colours = self._sight.learn(
-            self._colours, frame, origin, modes[best].rotation, self._parameters.learning_rate
-        )
+        rate, rotation = self._parameters.learning_rate, modes[best].rotation
+        self._colours = self._sight.learn(self._colours, frame, origin, rotation, of_object=rate)
 
     def _supported(self, modes: list[PoseGaussian], view: SightView, joints: Array) -> Support:
         """The image's support by the colours of training: what was learned since may be another

@@ -54,7 +54,9 @@ class FusionTracker(FollowingTracker):
         self._object = _FusedObject(expectation, sphere, parameters)
         self._sight: Sight | None = None
         if terms:
-            self._sight = Sight(model.shape, model.viewpoints, model.appearance, terms)
+            self._sight = Sight(
+                model.shape, model.viewpoints, model.appearance, terms, parameters=parameters.sight
+            )
             self._sight.compile()
         self._seed = seed
         self.restart()

@@ -1,0 +1,295 @@
+"""Adding up what a frame says for moving poses: information and gradients of Gauss-Newton steps.
+
+As contour trackers do (Stoiber et al. 2022): across each point of the outline, how likely it is
+that the outline lies at each distance, by the colours on both sides and the edges between; and
+the distances of the surface from the measured depth along its normals.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from inhand_tracker.geometry.arrays import Array, Flags, Singles
+from inhand_tracker.sight.kernels.inputs import Outlines, ScoredPixels, Sensor
+from inhand_tracker.sight.kernels.projection import (
+    NEAREST,
+    Matrix,
+    depth_noise,
+    edge_channel,
+    image_normal,
+    in_image,
+    is_covered,
+    projected,
+    rotated,
+    rotation_matrix,
+    view_of_pose,
+)
+
+
+class GatherSettings(NamedTuple):
+    """Which of edges, colours and depth are ``wanted`` (3,), how far poses may be off
+    (``reach_m``, ``reach_rad``), which share of the surface returns depth, how much a point of
+    the outline and of the surface counts, and numbers of ``SightParameters``."""
+
+    wanted: Flags
+    reach_m: float
+    reach_rad: float
+    returned: float
+    outline_weight: float
+    surface_weight: float
+    sensor: Sensor
+    samples: int
+    least_step_pixels: float
+    widest_edge_step: float
+    contour_error_m: float
+    in_front_per_m: float
+    behind_per_m: float
+    colour_weight: float
+    limb_factor: float
+
+
+class Equations(NamedTuple):
+    """The Gauss-Newton equations of K poses: ``information`` (K, 6, 6) and ``gradients`` (K, 6),
+    for a translation and then a rotation vector on the left, both in the camera frame."""
+
+    information: Array
+    gradients: Array
+
+
+@njit(cache=True, nogil=True)
+def gather(
+    translations: Array,
+    orientations: Array,
+    outlines: Outlines,
+    pixels: ScoredPixels,
+    settings: GatherSettings,
+    equations: Equations,
+) -> None:
+    """Add to the ``equations`` of poses (K, 3) and (K, 4) what a frame says of each."""
+    information, gradients = equations
+    count = 2 * settings.samples + 1
+    log_posterior, within, beside = np.empty(count), np.empty(count), np.empty(count)
+    for pose in range(len(translations)):
+        place = translations[pose, 0], translations[pose, 1], translations[pose, 2]
+        w, x, y, z = orientations[pose]
+        turn = rotation_matrix(w, x, y, z)
+        view = view_of_pose(outlines.grid, outlines.directions, turn, place[0], place[1], place[2])
+        if settings.wanted[0] or settings.wanted[1]:
+            _gather_outline(
+                (turn, place, view),
+                outlines,
+                pixels,
+                settings,
+                (log_posterior, within, beside),
+                (information[pose], gradients[pose]),
+            )
+        if settings.wanted[2]:
+            _gather_surface(
+                (turn, place, view),
+                outlines,
+                pixels,
+                settings,
+                (information[pose], gradients[pose]),
+            )
+
+
+@njit(cache=True, nogil=True)
+def _gather_outline(
+    seen: tuple[Matrix, tuple[float, float, float], int],
+    outlines: Outlines,
+    pixels: ScoredPixels,
+    settings: GatherSettings,
+    buffers: tuple[Array, Array, Array],
+    equation: tuple[Array, Array],
+) -> None:
+    """Add what lies across each point of the outline to a pose's equation."""
+    turn, place, view = seen
+    lens = _corner_lens(pixels.lens)
+    fx, fy = lens[0], lens[1]
+    height, width = pixels.limbs.shape
+    for point in range(outlines.points.shape[2]):
+        a, b, c = outlines.points[view, :, point]
+        arm = rotated(turn, a, b, c)
+        px, py, pz = arm[0] + place[0], arm[1] + place[1], arm[2] + place[2]
+        reach = _reach(arm, settings)
+        if pz < NEAREST:
+            continue
+        u, v = projected(lens, px, py, pz)
+        if not in_image(u, v, width, height):
+            continue
+        margin = settings.sensor.covered_m + 2.0 * _noise(pz, settings.sensor) + reach
+        if is_covered(pixels.depth[int(v), int(u)], pz, margin):
+            continue
+        a, b, c = outlines.normals[view, :, point]
+        nx, ny = image_normal(lens, rotated(turn, a, b, c), px, py, pz)
+        length = np.sqrt(nx * nx + ny * ny)
+        if length < 1e-9:
+            continue
+        nx, ny = nx / length, ny / length
+        step = max(reach * fx / pz / settings.samples, settings.least_step_pixels)
+        sides = outlines.inside[view, point] * fx / pz, outlines.outside[view, point] * fx / pz
+        _sample_across((u, v, nx, ny), step, sides, pixels, settings, buffers)
+        mean, variance = _outline_offset(step, settings.samples, buffers)
+        variance += np.square(settings.contour_error_m * fx / pz)
+        flat = settings.samples * (settings.samples + 1) * step * step / 3.0
+        certainty = 1.0 / variance - 1.0 / flat
+        if certainty <= 0.0:
+            continue
+        # The pixel's displacement along (nx, ny) by a displacement of the point.
+        across = nx * fx / pz, ny * fy / pz, -(nx * fx * px + ny * fy * py) / (pz * pz)
+        _add(equation, across, arm, mean, settings.outline_weight * certainty)
+
+
+@njit(cache=True, nogil=True)
+def _sample_across(
+    line: tuple[float, float, float, float],
+    step: float,
+    sides: tuple[float, float],
+    pixels: ScoredPixels,
+    settings: GatherSettings,
+    buffers: tuple[Array, Array, Array],
+) -> None:
+    """Fill the ``buffers`` with each sample's edge score, and its colour's scores within and
+    beside the object, from inside out across the ``line`` (u, v, and its normal).
+
+    Colours count as far as the silhouette goes on inwards, and so far that it does not begin
+    anew outwards (``sides``).
+    """
+    u, v, nx, ny = line
+    log_posterior, within, beside = buffers
+    height, width = pixels.limbs.shape
+    channel = edge_channel(nx, ny)
+    for sample in range(2 * settings.samples + 1):
+        away = (sample - settings.samples) * step
+        within[sample] = beside[sample] = log_posterior[sample] = 0.0
+        su, sv = u + away * nx, v + away * ny
+        if not in_image(su, sv, width, height):
+            continue
+        column, row = int(su), int(sv)
+        if settings.wanted[1] and -away < sides[0] and away < sides[1]:
+            within[sample] = step * pixels.colour_scores[row, column, 0]
+            beside[sample] = step * pixels.colour_scores[row, column, 1]
+        if (
+            settings.wanted[0]
+            and step < settings.widest_edge_step
+            and not pixels.limbs[row, column]
+        ):
+            distance = pixels.edges[channel, row, column]
+            log_posterior[sample] = pixels.edge_scores[channel, distance]
+
+
+@njit(cache=True, nogil=True)
+def _outline_offset(
+    step: float, samples: int, buffers: tuple[Array, Array, Array]
+) -> tuple[float, float]:
+    """Return the mean and variance, in pixels, of where the outline lies across a point of it."""
+    log_posterior, within, beside = buffers
+    before = 0.0
+    most = -1e30
+    for sample in range(2 * samples + 1):
+        # Half of the pixel that the outline runs through is on either side.
+        middle = 0.5 * (within[sample] - beside[sample])
+        log_posterior[sample] += before + middle
+        before += 2.0 * middle
+        most = max(most, log_posterior[sample])
+    mass = mean = square = 0.0
+    for sample in range(2 * samples + 1):
+        away = (sample - samples) * step
+        share = np.exp(log_posterior[sample] - most)
+        mass += share
+        mean += share * away
+        square += share * away * away
+    mean /= mass
+    return mean, square / mass - mean * mean + 0.5 * step * step + 0.25
+
+
+@njit(cache=True, nogil=True)
+def _gather_surface(
+    seen: tuple[Matrix, tuple[float, float, float], int],
+    outlines: Outlines,
+    pixels: ScoredPixels,
+    settings: GatherSettings,
+    equation: tuple[Array, Array],
+) -> None:
+    """Add the measured depths at each point of the surface to a pose's equation."""
+    turn, place, view = seen
+    lens = _corner_lens(pixels.lens)
+    height, width = pixels.limbs.shape
+    for point in range(outlines.surface_points.shape[2]):
+        a, b, c = outlines.surface_points[view, :, point]
+        arm = rotated(turn, a, b, c)
+        px, py, pz = arm[0] + place[0], arm[1] + place[1], arm[2] + place[2]
+        reach = _reach(arm, settings)
+        if pz < NEAREST:
+            continue
+        u, v = projected(lens, px, py, pz)
+        if not in_image(u, v, width, height):
+            continue
+        column, row = int(u), int(v)
+        measured = pixels.depth[row, column]
+        if measured <= 0.0:
+            continue
+        error = measured - pz
+        noise = _noise(pz, settings.sensor)
+        deviation = np.sqrt(noise * noise + reach * reach / 3.0)
+        near = np.exp(-0.5 * error * error / (deviation * deviation)) / (2.5066 * deviation)
+        density = settings.in_front_per_m if error < 0.0 else settings.behind_per_m
+        other = density / max(settings.returned, 0.01)
+        if settings.wanted[1]:
+            # A colour of the surroundings shows that the surface is another thing's.
+            scores = pixels.colour_scores[row, column]
+            other *= np.exp(settings.colour_weight * (scores[1] - scores[0]))
+        if pixels.limbs[row, column]:
+            other *= settings.limb_factor
+        a, b, c = outlines.surface_normals[view, :, point]
+        across = rotated(turn, a, b, c)
+        # The measured point lies on the same ray, ``measured`` away.
+        share = measured / pz - 1.0
+        residual = share * (across[0] * px + across[1] * py + across[2] * pz)
+        spread = deviation * max(abs(across[2]), 0.2)
+        certainty = near / (near + other) / (spread * spread)
+        _add(equation, across, arm, residual, settings.surface_weight * certainty)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _corner_lens(lens: Singles) -> tuple[float, float, float, float]:
+    """Count pixels from the image's corner, as ``projection`` does."""
+    return lens[0], lens[1], lens[2] + 0.5, lens[3] + 0.5
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _reach(arm: tuple[float, float, float], settings: GatherSettings) -> float:
+    """Return how far a point may be off, in metres, at ``arm`` from the object's origin."""
+    length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
+    return settings.reach_m + settings.reach_rad * length
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _noise(depth: float, sensor: Sensor) -> float:
+    return depth_noise(sensor.noise_m, sensor.noise_per_m, depth)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _add(
+    equation: tuple[Array, Array],
+    across: tuple[float, float, float],
+    arm: tuple[float, float, float],
+    residual: float,
+    weight: float,
+) -> None:
+    """Add one measurement: the point at ``arm`` from the origin is off by ``residual`` along
+    ``across``."""
+    information, gradient = equation
+    row = (
+        across[0],
+        across[1],
+        across[2],
+        arm[1] * across[2] - arm[2] * across[1],
+        arm[2] * across[0] - arm[0] * across[2],
+        arm[0] * across[1] - arm[1] * across[0],
+    )
+    for i in range(6):
+        gradient[i] += weight * residual * row[i]
+        for j in range(6):
+            information[i, j] += weight * row[i] * row[j]

@@ -1,0 +1,51 @@
+"""Gradients of an image to edges of four directions."""
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from inhand_tracker.geometry.arrays import Bytes
+
+
+@njit(cache=True, nogil=True, fastmath=True)
+def mark_edges(
+    across: NDArray[np.int16],
+    down: NDArray[np.int16],
+    least_gradient: float,
+    agreement: float,
+    no_edge: Bytes,
+) -> None:
+    """Set ``no_edge`` (4, H, W) to 0 at edges: where the gradient (``across``, ``down``), (H, W)
+    each, is ``least_gradient`` or more, and greatest along its direction.
+
+    An edge counts for every channel that its normal agrees with (``agreement``, a cosine).
+    """
+    height, width = across.shape
+    diagonal = np.float32(np.sqrt(0.5))
+    for row in range(1, height - 1):
+        for column in range(1, width - 1):
+            x, y = np.float32(across[row, column]), np.float32(down[row, column])
+            square = x * x + y * y
+            if square < least_gradient * least_gradient:
+                continue
+            strengths = (abs(x), abs(x + y) * diagonal, abs(y), abs(x - y) * diagonal)
+            if strengths[0] >= max(strengths[1], strengths[2], strengths[3]):
+                step_row, step_column = 0, 1
+            elif strengths[1] >= max(strengths[2], strengths[3]):
+                step_row, step_column = 1, 1
+            elif strengths[2] >= strengths[3]:
+                step_row, step_column = 1, 0
+            else:
+                step_row, step_column = 1, -1
+            ahead_x = np.float32(across[row + step_row, column + step_column])
+            ahead_y = np.float32(down[row + step_row, column + step_column])
+            behind_x = np.float32(across[row - step_row, column - step_column])
+            behind_y = np.float32(down[row - step_row, column - step_column])
+            if square < ahead_x * ahead_x + ahead_y * ahead_y:
+                continue
+            if square <= behind_x * behind_x + behind_y * behind_y:
+                continue
+            least = np.float32(agreement) * np.sqrt(square)
+            for channel in range(4):
+                if strengths[channel] >= least:
+                    no_edge[channel, row, column] = 0

@@ -1,0 +1,57 @@
+"""Where an object at a pose is in an image: the region around it, and its surface's depths."""
+
+import cv2
+import numpy as np
+
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array, Flags
+from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.shape.raster import nearest_depths
+from inhand_tracker.shape.shape import ObjectShape
+from inhand_tracker.sight.frame import Region, SightFrame
+from inhand_tracker.sight.parameters import SightParameters
+
+
+def region_around(
+    shape: ObjectShape,
+    translation: Array,
+    rotation: Array,
+    camera: Intrinsics,
+    parameters: SightParameters,
+) -> Region | None:
+    """Find the part of the image that holds an object and its surroundings; None where the object
+    is out of the image."""
+    pixels = camera.project(rotations.rotate(rotation, shape.vertices) + translation)
+    if not np.isfinite(pixels).all():
+        return None
+    low, high = pixels.min(axis=0), pixels.max(axis=0)
+    size = float(np.sqrt(np.prod(high - low)))
+    margin = max(parameters.margin_sizes * size / 2.0, parameters.least_margin_pixels)
+    if (high < 0.0).any() or (low > [camera.width, camera.height]).any():
+        return None
+    left, top = (low - margin).tolist()
+    right, bottom = (high + margin).tolist()
+    return left, top, right, bottom
+
+
+def silhouette_depths(
+    shape: ObjectShape, translation: Array, rotation: Array, camera: Intrinsics
+) -> Array:
+    """Draw the depth (H, W) of the object's surface in each pixel, infinite beside it."""
+    placed = rotations.rotate(rotation, shape.vertices) + translation
+    size = max(camera.width, camera.height)
+    depths = nearest_depths(camera.project(placed), placed[:, 2], shape.faces, size)
+    return depths[: camera.height, : camera.width]
+
+
+def pixels_covered(frame: SightFrame, depths: Array) -> Flags:
+    """Find the pixels (H, W) where something nearer than the surface's ``depths`` was measured."""
+    if frame.depth is None:
+        return np.zeros(depths.shape, bool)
+    return (frame.depth > 0.0) & (frame.depth < depths - frame.parameters.aside_m)
+
+
+def interior(silhouette: Flags) -> Flags:
+    """Take its rim, where depth is often missing, off a silhouette; a thin one stays whole."""
+    inner = cv2.erode(silhouette.astype(np.uint8), np.ones((3, 3))).astype(bool)
+    return inner if inner.any() else silhouette

@@ -1,0 +1,55 @@
+"""A frame as it is scored for one object: what each pixel's colour says, and where limbs are."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from inhand_tracker.geometry.arrays import Array, Bytes, Singles
+from inhand_tracker.sight.colours import Colours, colour_scores
+from inhand_tracker.sight.frame import SightFrame
+from inhand_tracker.sight.kernels.inputs import ScoredPixels
+from inhand_tracker.sight.kernels.score_colours import score_colours
+from inhand_tracker.sight.limbs import limb_mask
+from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
+
+
+@dataclass(frozen=True)
+class SightView:
+    """A frame scored for one object: ``colour_scores`` (H, W, 2), the log-likelihood ratios of each
+    pixel's colour for its being within and beside the object, and ``limbs`` (H, W), 1 where a limb
+    may cover it. ``unseen`` is the log-likelihood ratio of an object that is out of the frame, or
+    covered; of one that is so in part, that part of ``unseen`` counts."""
+
+    frame: SightFrame
+    colour_scores: Singles
+    limbs: Bytes
+    unseen: float = 0.0
+
+    def pixels(self) -> ScoredPixels:
+        """The view as kernels take it; what the frame lacks is not read, or says nothing."""
+        frame, camera = self.frame, self.frame.camera
+        size = (camera.height, camera.width)
+        edges, scores, depth = frame.edges, frame.edge_scores, frame.depth
+        return ScoredPixels(
+            np.array([camera.fx, camera.fy, camera.cx, camera.cy], np.float32),
+            np.zeros((4, 1, 1), np.uint8) if edges is None else edges,
+            np.zeros((4, 8), np.float32) if scores is None else scores,
+            self.colour_scores,
+            self.limbs,
+            np.zeros(size, np.float32) if depth is None else depth,
+        )
+
+
+def view_frame(
+    frame: SightFrame,
+    colours: Colours,
+    joints: Array | None = None,
+    parameters: SightParameters = DEFAULT_SIGHT,
+) -> SightView:
+    """Score a frame for an object with these colours, held by a person with joints (20, 3)."""
+    limbs = limb_mask(joints, frame.camera, frame.depth, parameters)
+    scores = np.zeros((*limbs.shape, 2), np.float32)
+    if frame.bins is not None:
+        table = colour_scores(colours, parameters)
+        score_colours(frame.bins, limbs, table, parameters.limb_share, scores)
+    return SightView(frame, scores, limbs)
