@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from inhand_lab.importers.motion import import_motion
-from inhand_lab.importers.timing import FRAME_RATE
+from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.utd_mhad import import_utd_mhad
 from inhand_lab.importers.ycb_video import import_ycb_video
 from rich.console import Console
@@ -28,9 +28,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         one.add_argument(
             "--frame-rate",
             type=positive_number,
-            default=FRAME_RATE,
+            default=DEFAULT_IMPORT.frame_rate,
             metavar="HZ",
-            help=f"keep every k-th frame, to get this rate (default: {FRAME_RATE:g})",
+            help="keep every k-th frame, to get this rate "
+            f"(default: {DEFAULT_IMPORT.frame_rate:g})",
         )
         one.set_defaults(importer=importer)
 

@@ -18,6 +18,8 @@ FORMAT = "inhand-dataset"
 VERSION = 1
 CAMERA = "camera"
 """Name of the only camera of a dataset that is written here."""
+START_NS = 1_000_000_000_000_000_000
+"""Time of the first frame of every recording that is written here (9 September 2001)."""
 
 
 class DatasetError(InhandError):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from inhand_schemas.messages import Message, Skeletons
 
-from inhand_lab.datasets.dataset import CAMERA, Dataset, DatasetEntry
+from inhand_lab.datasets.dataset import CAMERA, START_NS, Dataset, DatasetEntry
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.world.messages import (
@@ -20,7 +20,6 @@ from inhand_lab.world.random_streams import GENERATOR_VERSION
 from inhand_lab.world.simulation import Simulation, simulate
 
 FRAME_RATE = 30
-START_NS = 1_000_000_000_000_000_000
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
 """Other people's data as datasets: one module a format, each with one ``import_…`` function.
 
-The functions are alike: the files or folders to read, the folder to write, the frame rate wanted.
+Every function takes the files or folders to read, the folder to write, and the frame rate wanted.
 """

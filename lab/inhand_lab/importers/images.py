@@ -1,4 +1,4 @@
-"""Image files of other people."""
+"""Reads image files of other people."""
 
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from inhand_lab.datasets.dataset import DatasetError
 
 
 def read_image(path: Path, flags: int) -> NDArray[Any]:
-    """The pixels as ``cv2.imdecode`` gives them for the flags; raises DatasetError."""
+    """Read the pixels as ``cv2.imdecode`` decodes them with the flags; raises DatasetError."""
     try:
         data = np.frombuffer(path.read_bytes(), np.uint8)
     except OSError as error:

@@ -1,4 +1,4 @@
-"""MATLAB files of other people."""
+"""Reads MATLAB files of other people."""
 
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from inhand_lab.datasets.dataset import DatasetError
 
 
 def read_mat(path: Path, *names: str) -> list[NDArray[Any]]:
-    """The numeric arrays of those names; raises DatasetError."""
+    """Read the numeric arrays of those names; raises DatasetError."""
     try:
         contents = scipy.io.loadmat(path, appendmat=False, variable_names=names)
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""Arrays of an import as messages."""
+"""Makes messages of an import's arrays."""
 
 import numpy as np
 from inhand_schemas.messages import ObjectPose, Person, Skeletons
@@ -11,7 +11,7 @@ PERSON = 0
 
 
 def imported_skeletons(sequence: int, time_ns: int, joints: Array) -> Skeletons:
-    """One person's joints (20, 3) in the camera frame; those that are not finite are missing."""
+    """Make skeletons of one person's joints (20, 3) in the camera frame, missing if not finite."""
     seen = np.asarray(np.isfinite(joints).all(axis=1))
     if not seen.any():
         return Skeletons(sequence=sequence, time_ns=time_ns)
@@ -19,7 +19,7 @@ def imported_skeletons(sequence: int, time_ns: int, joints: Array) -> Skeletons:
     person = Person(
         id=PERSON,
         joints=tuple((x, y, z) for x, y, z in positions),
-        states=tuple("tracked" if there else "missing" for there in seen),
+        states=tuple("tracked" if finite else "missing" for finite in seen),
         confidences=tuple(seen.astype(float).tolist()),
     )
     return Skeletons(sequence=sequence, time_ns=time_ns, people=(person,))
@@ -33,7 +33,7 @@ def imported_label(
     rotation: Array,
     person: int | None = None,
 ) -> ObjectPose:
-    """The true camera_from_object: (3,) and (4,)."""
+    """Make a label of the true camera_from_object, (3,) and (4,)."""
     return ObjectPose(
         sequence=sequence,
         time_ns=time_ns,

@@ -1,4 +1,4 @@
-"""Motion archives as datasets, seen by a camera that was not there."""
+"""Imports motion archives as datasets, as if a camera had been there."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -14,23 +14,23 @@ from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.messages import PERSON, imported_label, imported_skeletons
 from inhand_lab.importers.motion_archive import Motion, read_motion
+from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.shapes import shape_of_mesh, shape_of_points
 from inhand_lab.importers.sources import find_files
-from inhand_lab.importers.timing import FRAME_RATE, Timing, thin
-
-DISTANCE_M = 3.0
-SAME_POINT_M = 0.01
+from inhand_lab.importers.timing import Timing, thin
 
 _HALF_TURN_ABOUT_X = np.array([0.0, 1.0, 0.0, 0.0])
 
 
-def import_motion(sources: Sequence[Path], folder: Path, frame_rate: float = FRAME_RATE) -> Dataset:
-    """Archives, or folders of them, as a dataset of skeletons and labels, one recording each.
+def import_motion(
+    sources: Sequence[Path], folder: Path, frame_rate: float = DEFAULT_IMPORT.frame_rate
+) -> Dataset:
+    """Import archives, or folders of them, as skeletons and labels, one recording each.
 
     Each recording is placed as a whole: the person stands upright 3 m before the camera and faces
     it when first seen. An ``.obj`` with the object's name beside the archive is its mesh;
     otherwise it is the convex hull of the marked points. The first archive that has an object
-    tells its marked points; others may differ by 1 cm. Raises DatasetError or InhandError.
+    gives its marked points; others may differ by 1 cm. Raises DatasetError or InhandError.
     """
     motions = [read_motion(path) for path in find_files(sources, ".npz")]
     timings = [thin(motion.path, motion.recorded_rate, frame_rate) for motion in motions]
@@ -52,14 +52,14 @@ def import_motion(sources: Sequence[Path], folder: Path, frame_rate: float = FRA
 
 
 def world_in_camera(joints: Array) -> Bases:
-    """The world frame as a camera sees it that stands 3 m before the person and faces them.
+    """Return the world frame in that of a camera 3 m before the person, facing them.
 
     ``joints`` (T, 20, 3) are in the world frame. Of the first pelvis that is seen, x (to the
     person's left) becomes the camera's x, y (up the spine) its -y, and z (forwards) its -z.
     """
     pelvis = pelvis_basis(next(frame for frame in joints if has_pelvis(frame)))
     rotation = rotations.multiply(_HALF_TURN_ABOUT_X, rotations.conjugate(pelvis.rotations))
-    centre = np.array([0.0, 0.0, DISTANCE_M])
+    centre = np.array([0.0, 0.0, DEFAULT_IMPORT.distance_m])
     return Bases(centre - rotations.rotate(rotation, pelvis.origins), rotation)
 
 
@@ -67,20 +67,7 @@ def _messages(motion: Motion, timing: Timing) -> Iterator[Message]:
     world = world_in_camera(motion.joints)
     joints = world.origins + rotations.rotate(world.rotations, motion.joints)
     translations, orientations = world.to_camera(motion.translations, motion.orientations)
-    yield CameraInfo(
-        sequence=0,
-        time_ns=timing.time_ns(0),
-        width=640,
-        height=480,
-        fx=525.0,
-        fy=525.0,
-        cx=319.5,
-        cy=239.5,
-        frame_rate=timing.frame_rate,
-        has_colour=False,
-        has_depth=False,
-        description=f"imagined 3 m before the person of {motion.path.name}",
-    )
+    yield _imagined_camera(motion, timing)
     for sequence, frame in enumerate(range(0, len(joints), timing.step)):
         time_ns = timing.time_ns(sequence)
         yield imported_skeletons(sequence, time_ns, joints[frame])
@@ -89,16 +76,38 @@ def _messages(motion: Motion, timing: Timing) -> Iterator[Message]:
             yield imported_label(sequence, time_ns, motion.object, translation, orientation, PERSON)
 
 
+def _imagined_camera(motion: Motion, timing: Timing) -> CameraInfo:
+    width, height = DEFAULT_IMPORT.image_width, DEFAULT_IMPORT.image_height
+    return CameraInfo(
+        sequence=0,
+        time_ns=timing.time_ns(0),
+        width=width,
+        height=height,
+        fx=DEFAULT_IMPORT.focal_length,
+        fy=DEFAULT_IMPORT.focal_length,
+        cx=(width - 1) / 2.0,
+        cy=(height - 1) / 2.0,
+        frame_rate=timing.frame_rate,
+        has_colour=False,
+        has_depth=False,
+        description=f"imagined {DEFAULT_IMPORT.distance_m:g} m before the person of "
+        f"{motion.path.name}",
+    )
+
+
 def _shapes(motions: Sequence[Motion]) -> list[ObjectShape]:
     first: dict[str, Motion] = {}
     for motion in motions:
-        known = first.setdefault(motion.object, motion)
-        same_points = known.marked_vertices.shape == motion.marked_vertices.shape and np.allclose(
-            known.marked_vertices, motion.marked_vertices, rtol=0.0, atol=SAME_POINT_M
+        other = first.setdefault(motion.object, motion)
+        same_points = other.marked_vertices.shape == motion.marked_vertices.shape and np.allclose(
+            other.marked_vertices,
+            motion.marked_vertices,
+            rtol=0.0,
+            atol=DEFAULT_IMPORT.same_point_m,
         )
         if not same_points:
             raise DatasetError(
-                f"{known.path} and {motion.path} mark other points of {motion.object!r}: import "
+                f"{other.path} and {motion.path} mark other points of {motion.object!r}: import "
                 "them into two datasets"
             )
     return [_shape(motion) for motion in first.values()]

@@ -1,4 +1,4 @@
-"""Motion archives (.npz): a measured body and a measured object in some world frame.
+"""Reads motion archives (.npz): a measured body and a measured object in some world frame.
 
 ``joints`` (T, 20, 3) in metres, ``joint_names`` (20,), ``object_pose`` (T, 7) as x y z qw qx qy
 qz, ``vertices`` (M, 3) marked points in the object's frame, ``fps``, ``interaction``, ``object``,
@@ -17,10 +17,8 @@ from inhand_tracker.geometry.arrays import Array
 from numpy.typing import NDArray
 
 from inhand_lab.datasets.dataset import DatasetError
+from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.shapes import object_name
-
-LONGEST_PART_M = 0.75
-"""Longer than anybody's shank, thigh or trunk."""
 
 log = logging.getLogger(__name__)
 
@@ -83,7 +81,7 @@ def _object_poses(path: Path, values: dict[str, Any], frames: int) -> Array:
     if np.isnan(poses).all():
         raise DatasetError(f"{path} has no frame with an object: object_pose is nowhere measured")
     lengths = np.linalg.norm(poses[:, 3:], axis=1)
-    if (np.abs(lengths[np.isfinite(lengths)] - 1.0) > 1e-3).any():
+    if (np.abs(lengths[np.isfinite(lengths)] - 1.0) > DEFAULT_IMPORT.unit_tolerance).any():
         raise DatasetError(f"{path}: object_pose holds rotations that are no unit quaternions")
     return poses
 
@@ -99,7 +97,7 @@ def _warn_of_odd_parts(path: Path, joints: Array) -> None:
     lengths = part_lengths(joints)
     for part, name in enumerate(PARTS):
         seen = lengths[np.isfinite(lengths[:, part]), part]
-        if seen.size and np.median(seen) > LONGEST_PART_M:
+        if seen.size and np.median(seen) > DEFAULT_IMPORT.longest_part_m:
             log.warning(
                 "%s: %s is %.2f m from its parent joint, as in nobody: its joints seem to be "
                 "misnamed, so its body poses mean little",

@@ -1,7 +1,7 @@
 """Shapes of measured objects, from a mesh or from points alone.
 
-The data do not tell an object's plane of symmetry, so the shapes take its x axis for the normal;
-that matters only where a right-handed person's recordings teach a left-handed one's.
+The data name no plane of symmetry, so the shapes take the x axis for its normal; that matters only
+where a left-handed person is tracked with what right-handed people showed, or the reverse.
 """
 
 import itertools
@@ -16,16 +16,18 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.shape.shape import ObjectShape
 
 from inhand_lab.datasets.dataset import DatasetError
+from inhand_lab.importers.parameters import DEFAULT_IMPORT
 
-THINNEST_M = 0.01
 MIRROR_NORMAL = np.array([1.0, 0.0, 0.0])
 
 _CORNERS = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
-_TETRAHEDRON = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) * THINNEST_M / 2.0
+_TETRAHEDRON = (
+    np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) * DEFAULT_IMPORT.thinnest_m / 2.0
+)
 
 
 def object_name(text: str) -> str:
-    """A name for keys: ``golfClub`` → ``golf_club``; raises DatasetError."""
+    """Turn a text into a name for keys, ``golfClub`` → ``golf_club``; raises DatasetError."""
     name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", text).lower()
     name = re.sub(r"[^a-z0-9]+", "_", name).strip("_")
     try:
@@ -36,9 +38,9 @@ def object_name(text: str) -> str:
 
 
 def shape_of_mesh(name: str, path: Path, marked_vertices: Array | None = None) -> ObjectShape:
-    """The mesh in a file, in metres, with the extreme points marked where nothing else is.
+    """Read the mesh in a file, in metres; raises DatasetError.
 
-    Raises DatasetError.
+    Its extreme points are marked where no others are given.
     """
     try:
         mesh = trimesh.load_mesh(path, process=False)
@@ -53,15 +55,15 @@ def shape_of_mesh(name: str, path: Path, marked_vertices: Array | None = None) -
 
 
 def shape_of_points(name: str, points: Array, marked_vertices: Array | None = None) -> ObjectShape:
-    """The convex hull of points (N, 3): all that is known of an object without a mesh.
+    """Return the convex hull of points (N, 3), for an object without a mesh.
 
-    It fills hollows and lacks what no point covers. Points that are flat to within 1 cm (or on a
-    line, or a single one) become a body all the same: each is replaced by the corners of a
+    The hull fills hollows and lacks what no point covers. Points that are flat to within 1 cm (or
+    on a line, or a single one) become a body all the same: each is replaced by the corners of a
     tetrahedron, which reach 9 mm from it, 5 mm along each axis.
     """
     centred = points - points.mean(axis=0)
     axes = np.linalg.eigh(centred.T @ centred)[1]
-    flat = np.ptp(centred @ axes, axis=0).min() < THINNEST_M
+    flat = np.ptp(centred @ axes, axis=0).min() < DEFAULT_IMPORT.thinnest_m
     body = (points[:, None] + _TETRAHEDRON).reshape(-1, 3) if flat else points
     hull = trimesh.convex.convex_hull(body)
     return ObjectShape(
@@ -74,7 +76,7 @@ def shape_of_points(name: str, points: Array, marked_vertices: Array | None = No
 
 
 def extreme_points(points: Array) -> Array:
-    """Of points (N, 3) those that reach farthest to the corners of their box, (M ≤ 8, 3)."""
+    """Return the points (M ≤ 8, 3) that reach farthest to the corners of the points' (N, 3) box."""
     low, high = points.min(axis=0), points.max(axis=0)
     scaled = (points - (low + high) / 2.0) / np.maximum(high - low, 1e-9)
     return points[np.unique(np.argmax(scaled @ _CORNERS.T, axis=0))]

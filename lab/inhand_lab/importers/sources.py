@@ -1,4 +1,4 @@
-"""The files that an import reads."""
+"""Finds the files that an import reads."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -7,19 +7,19 @@ from inhand_lab.datasets.dataset import DatasetError
 
 
 def find_files(sources: Iterable[Path], suffix: str) -> list[Path]:
-    """The sources themselves, or the files of such a name in those that are folders.
+    """Return the sources, and for a folder its files with that suffix.
 
     Raises DatasetError for one that is missing or has another name, for a folder without any, and
     for two files of the same name, which would be the same recording.
     """
-    found: dict[str, Path] = {}
+    paths_by_name: dict[str, Path] = {}
     for source in sources:
         for path in _files_of(source, suffix):
-            if found.setdefault(path.name, path) != path:
+            if paths_by_name.setdefault(path.name, path) != path:
                 raise DatasetError(
-                    f"{found[path.name]} and {path} would be the same recording: rename one"
+                    f"{paths_by_name[path.name]} and {path} would be the same recording: rename one"
                 )
-    return list(found.values())
+    return list(paths_by_name.values())
 
 
 def _files_of(source: Path, suffix: str) -> list[Path]:

@@ -1,15 +1,10 @@
-"""When the frames of an import were taken."""
+"""Times of an import's frames."""
 
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-from inhand_lab.datasets.dataset import DatasetError
-
-START_NS = 1_000_000_000_000_000_000
-"""The first frame of every recording, since the data do not tell the day (9 September 2001)."""
-
-FRAME_RATE = 30.0
+from inhand_lab.datasets.dataset import START_NS, DatasetError
 
 
 @dataclass(frozen=True)
@@ -21,11 +16,11 @@ class Timing:
 
     @property
     def frame_rate(self) -> float:
-        """The rate of the frames that are kept, in Hz."""
+        """Rate of the frames that are kept, in Hz."""
         return self.recorded_rate / self.step
 
     def time_ns(self, index: int) -> int:
-        """When the kept frame of that index was taken, to the nanosecond below."""
+        """Return when the kept frame of that index was taken, to the nanosecond below."""
         return START_NS + int(index * self.step * 1_000_000_000 / Fraction(self.recorded_rate))
 
 

@@ -1,4 +1,4 @@
-"""UTD-MHAD: Kinect skeletons and depth of people who mime actions (Chen et al. 2015).
+"""Imports UTD-MHAD: Kinect skeletons and depth of people who mime actions (Chen et al. 2015).
 
 The sensor shows people as a mirror does, so its image is turned round here: x' = -x and u' = 319 -
 u. Its skeletons are in a right-handed frame all the same (x to the sensor's left, y up, z
@@ -21,8 +21,9 @@ from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.matlab import read_mat
 from inhand_lab.importers.messages import imported_skeletons
+from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.sources import find_files
-from inhand_lab.importers.timing import FRAME_RATE, Timing, thin
+from inhand_lab.importers.timing import Timing, thin
 
 SKELETON_SUFFIX = "_skeleton.mat"
 DEPTH_SUFFIX = "_depth.mat"
@@ -61,7 +62,7 @@ ACTIONS = (
     "lunge",
     "squat",
 )
-"""What the actions a1 to a27 mime."""
+"""Interactions that the actions a1 to a27 mime, in this order."""
 
 JOINT_ORDER = (
     "Head",
@@ -104,9 +105,9 @@ class UtdMhadTrial:
 
 
 def import_utd_mhad(
-    sources: Sequence[Path], folder: Path, frame_rate: float = FRAME_RATE
+    sources: Sequence[Path], folder: Path, frame_rate: float = DEFAULT_IMPORT.frame_rate
 ) -> Dataset:
-    """``*_skeleton.mat`` files, or folders of them, as a dataset without objects or labels.
+    """Import ``*_skeleton.mat`` files, or folders of them, without objects or labels.
 
     ``*_depth.mat`` beside a skeleton comes with it. The two are paired by index; where one is
     longer its last frames are left out, and ``dataset.toml`` says how many were in all. Raises
@@ -156,7 +157,7 @@ def read_trial(path: Path) -> UtdMhadTrial:
 
 
 def read_depth(path: Path) -> NDArray[np.uint16]:
-    """The depth (T, 240, 320) in millimetres as a camera sees it; raises DatasetError."""
+    """Read the depth (T, 240, 320) in millimetres, as a camera sees it; raises DatasetError."""
     (depth,) = read_mat(path, "d_depth")
     if depth.ndim == 2:
         depth = depth[..., None]

@@ -1,4 +1,4 @@
-"""What YCB-Video says about a frame: the camera, and which object is where."""
+"""Reads the annotations of YCB-Video's frames: the camera, and where each object is."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.importers.matlab import read_mat
+from inhand_lab.importers.parameters import DEFAULT_IMPORT
 
 META_SUFFIX = "-meta.mat"
 POSES_FILE = "poses.json"
@@ -39,13 +40,16 @@ CLASS_NAMES = (
     "052_extra_large_clamp",
     "061_foam_brick",
 )
-"""The objects of the classes 1 to 21."""
+"""Names of the objects of classes 1 to 21, in this order."""
 
 
 @dataclass(frozen=True)
 class Annotation:
-    """One frame: ``camera_matrix`` (3, 3) in pixels, depth units a metre, and for each object's
-    name camera_from_object as translation (3,) and rotation (4,)."""
+    """The annotation of one frame.
+
+    ``camera_matrix`` (3, 3) is in pixels, ``depth_divisor`` the number of depth units in a metre;
+    ``camera_from_objects`` holds each object's translation (3,) and rotation (4,) by its name.
+    """
 
     camera_matrix: Array
     depth_divisor: float
@@ -53,7 +57,7 @@ class Annotation:
 
 
 class FramePoses(msgspec.Struct, frozen=True):
-    """A frame of ``poses.json``, the same as its ``-meta.mat``: poses (3, 4) by class number."""
+    """A frame of ``poses.json``, with its poses (3, 4) by class number."""
 
     K: list[list[float]]
     depth_divisor: float
@@ -61,7 +65,7 @@ class FramePoses(msgspec.Struct, frozen=True):
 
 
 def read_poses_file(root: Path) -> dict[str, FramePoses]:
-    """``poses.json`` by frame, nothing where there is none; raises DatasetError."""
+    """Read ``poses.json`` by frame, empty where there is none; raises DatasetError."""
     path = root / POSES_FILE
     if not path.exists():
         return {}
@@ -72,9 +76,9 @@ def read_poses_file(root: Path) -> dict[str, FramePoses]:
 
 
 def read_annotation(frame: Path, poses: Mapping[str, FramePoses]) -> Annotation:
-    """The annotation of the frame ``…/data/0000/000001``: its ``-meta.mat``, or else its entry.
+    """Read the annotation of the frame ``…/data/0000/000001``; raises DatasetError.
 
-    Raises DatasetError.
+    It is that of the frame's ``-meta.mat``, or else its entry in ``poses.json``.
     """
     meta = frame.with_name(frame.name + META_SUFFIX)
     if meta.exists():
@@ -121,7 +125,10 @@ def _class_name(path: Path, number: int) -> str:
 def _pose(path: Path, value: Any) -> tuple[Array, Array]:
     matrix = _matrix(path, "pose", value, (3, 4))
     rotation = matrix[:, :3]
-    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-3 or np.linalg.det(rotation) < 0.0:
+    if (
+        np.abs(rotation @ rotation.T - np.eye(3)).max() > DEFAULT_IMPORT.unit_tolerance
+        or np.linalg.det(rotation) < 0.0
+    ):
         raise DatasetError(f"{path}: a pose holds no rotation")
     return matrix[:, 3], rotations.from_matrix(rotation)
 

@@ -1,4 +1,4 @@
-"""Shapes of YCB-Video's objects: their models, or what the frames show of them."""
+"""Finds shapes of YCB-Video's objects: their models, or what the frames show of them."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,18 +10,18 @@ from inhand_tracker.shape.shape import ObjectShape
 
 from inhand_lab.importers.images import read_image
 from inhand_lab.importers.matlab import read_mat
+from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.shapes import shape_of_mesh, shape_of_points
 from inhand_lab.importers.ycb_annotations import CLASS_NAMES, META_SUFFIX
 
 LABEL_SUFFIX = "-label.png"
 MODEL_FILES = ("textured.obj", "textured_simple.obj")
-FEWEST_POINTS = 100
 
 
 def find_shape(name: str, root: Path, frames: Sequence[Path]) -> ObjectShape | None:
-    """``models/NAME/textured.obj``, or else the hull of the surface that the first frame shows.
+    """Load ``models/NAME/textured.obj``, or else the hull of the surface that a frame shows.
 
-    Only a ``-meta.mat`` tells the surface (``vertmap``, the object's coordinates pixel by pixel).
+    The surface comes from a ``-meta.mat`` (``vertmap``, the object's coordinates pixel by pixel).
     None where there is neither. Raises DatasetError.
     """
     shape = model_shape(name, root)
@@ -32,7 +32,7 @@ def find_shape(name: str, root: Path, frames: Sequence[Path]) -> ObjectShape | N
 
 
 def model_shape(name: str, root: Path) -> ObjectShape | None:
-    """The shape of ``models/NAME/textured.obj``, where it is; raises DatasetError."""
+    """Load ``models/NAME/textured.obj``, None where it is missing; raises DatasetError."""
     for file in MODEL_FILES:
         path = root / "models" / name / file
         if path.is_file():
@@ -41,10 +41,10 @@ def model_shape(name: str, root: Path) -> ObjectShape | None:
 
 
 def seen_points(name: str, frames: Sequence[Path]) -> Array | None:
-    """The surface (N, 3) that the first frame that tells it shows; raises DatasetError."""
+    """Return the surface (N, 3) in the first frame with enough of it; raises DatasetError."""
     for frame in frames:
         points = _visible_surface(name, frame)
-        if len(points) >= FEWEST_POINTS:
+        if len(points) >= DEFAULT_IMPORT.fewest_points:
             return points
     return None
 

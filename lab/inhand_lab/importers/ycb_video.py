@@ -1,4 +1,4 @@
-"""YCB-Video: a moving RGB-D camera and objects that lie still, with true poses (Xiang et al. 2017).
+"""Imports YCB-Video: a moving RGB-D camera and still objects with true poses (Xiang et al. 2017).
 
 A source is the data set's folder, or an excerpt of it: ``data/0000/000001-color.png`` and
 ``-depth.png`` (uint16), aligned; the poses as ``ycb_annotations`` finds them, the objects' shapes
@@ -18,7 +18,8 @@ from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.images import read_image
 from inhand_lab.importers.messages import imported_label
-from inhand_lab.importers.timing import FRAME_RATE, Timing, thin
+from inhand_lab.importers.parameters import DEFAULT_IMPORT
+from inhand_lab.importers.timing import Timing, thin
 from inhand_lab.importers.ycb_annotations import Annotation, read_annotation, read_poses_file
 from inhand_lab.importers.ycb_shapes import find_shape
 
@@ -31,7 +32,7 @@ PARTICIPANT = "nobody"
 
 @dataclass(frozen=True)
 class Clip:
-    """One video. ``frames`` are paths without their endings; ``numbers`` count from the first."""
+    """One video; ``frames`` are paths without their endings, ``numbers`` count from the first."""
 
     folder: Path
     frames: tuple[Path, ...]
@@ -40,9 +41,9 @@ class Clip:
 
 
 def import_ycb_video(
-    sources: Sequence[Path], folder: Path, frame_rate: float = FRAME_RATE
+    sources: Sequence[Path], folder: Path, frame_rate: float = DEFAULT_IMPORT.frame_rate
 ) -> Dataset:
-    """Data-set folders as a dataset of images and labels without people, one recording a video.
+    """Import data-set folders as images and labels without people, one recording a video.
 
     A recording labels every object of its video, each on a topic of its own, so that its entry
     names none. Raises DatasetError or InhandError.
@@ -66,7 +67,7 @@ def import_ycb_video(
 
 
 def read_clips(root: Path, step: int = 1) -> list[Clip]:
-    """The videos of a data-set folder, every ``step``-th frame; raises DatasetError."""
+    """Read the videos of a data-set folder, every ``step``-th frame; raises DatasetError."""
     folders = sorted({path.parent for path in root.glob(f"data/*/*{COLOUR_SUFFIX}")})
     if not folders:
         raise DatasetError(

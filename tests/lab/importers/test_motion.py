@@ -15,11 +15,10 @@ from foreign_data import (
     only_entry,
     save_archive,
 )
-from inhand_lab.datasets.dataset import DatasetEntry, DatasetError, load_dataset
+from inhand_lab.datasets.dataset import START_NS, DatasetEntry, DatasetError, load_dataset
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.recorded_frames import load_camera, load_frames
 from inhand_lab.importers.motion import import_motion
-from inhand_lab.importers.timing import START_NS
 from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_schemas.messages import CameraInfo
 from inhand_tracker.body.skeleton import pelvis_basis

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 import trimesh
 from foreign_data import K, messages_of, only_entry, pose_matrix, save_meta, save_video
-from inhand_lab.datasets.dataset import DatasetError
+from inhand_lab.datasets.dataset import START_NS, DatasetError
 from inhand_lab.datasets.recorded_frames import iterate_pixels, load_camera
-from inhand_lab.importers.timing import START_NS
 from inhand_lab.importers.ycb_video import import_ycb_video
 from inhand_runtime.pixels import decode_colour, decode_depth
 from inhand_schemas.messages import ObjectPose
