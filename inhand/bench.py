@@ -8,9 +8,9 @@ from typing import Any
 
 from inhand_lab.benchmarks.ablation import Worth, ablate, varied
 from inhand_lab.benchmarks.likelihood_check import ObjectCheck, check_likelihood
+from inhand_lab.benchmarks.parameters import DEFAULT_TRAINING_COST
 from inhand_lab.benchmarks.tracker_speed import TrackerSpeed, measure_tracker
 from inhand_lab.benchmarks.training_cost import (
-    SIZES,
     TrainingCost,
     benchmark_training,
     training_steps,
@@ -193,8 +193,8 @@ def _ablation_row(worth: Worth) -> dict[str, Any]:
 
 
 def _training(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
-    with progress_bars(training_steps(SIZES)) as advance:
-        costs = list(benchmark_training(SIZES, usable_cores(), advance))
+    with progress_bars(training_steps(DEFAULT_TRAINING_COST.sizes)) as advance:
+        costs = list(benchmark_training(DEFAULT_TRAINING_COST.sizes, usable_cores(), advance))
     sizes = [{**asdict(cost.learning), **asdict(cost.asking)} for cost in costs]
     return training_table(costs), {"sizes": sizes}
 

@@ -1,4 +1,4 @@
-"""What a frame of ``fusion`` costs, by how many labelled frames its prior was learned from.
+"""Measures what a frame of ``fusion`` costs, by the size of its prior's training.
 
 The people are simulated. Beyond the first 1,000 frames they are repeated, each time with another
 noise of their joints, as other people: what a regression costs does not depend on who they are.
@@ -16,23 +16,19 @@ from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.viewpoints import find_viewpoints
 
+from inhand_lab.benchmarks.parameters import DEFAULT_FUSION_COST as DEFAULT
 from inhand_lab.benchmarks.rendered_images import rendered_image
 from inhand_lab.world.messages import shape_of
 from inhand_lab.world.simulation import Simulation, simulate
 
 INTERACTION = "drinkFromMug"
-SEED = 0
-SIZES = (1_000, 10_000, 100_000)
-PEOPLE, FRAMES = 4, 250
-STRANGER = PEOPLE
-SHOWN = range(60, 90)
-NOISE_M = 0.01
+SHOWN = slice(DEFAULT.first_shown, DEFAULT.last_shown)
 
 
 @dataclass(frozen=True)
 class FusionCost:
-    """Seconds to learn a prior from so many frames, and the median milliseconds that a frame then
-    takes without an image and with one."""
+    """Seconds to learn a prior from ``frames`` labelled frames, and the median milliseconds that a
+    frame then takes without an image and with one."""
 
     frames: int
     learning_s: float
@@ -40,17 +36,20 @@ class FusionCost:
     seen_ms: float
 
 
-def measure_fusion(sizes: Sequence[int] = SIZES) -> tuple[FusionCost, ...]:
-    """One object, one person, as many hypotheses as usual."""
-    people = [simulate(INTERACTION, person, SEED, FRAMES) for person in range(PEOPLE)]
+def measure_fusion(sizes: Sequence[int] = DEFAULT.sizes) -> tuple[FusionCost, ...]:
+    """Measure frames of one object and one person, with as many hypotheses as usual."""
+    people = [
+        simulate(INTERACTION, person, DEFAULT.seed, DEFAULT.frames)
+        for person in range(DEFAULT.people)
+    ]
     sequences = [true_sequence(one) for one in people]
     shape = shape_of(people[0].object_model)
     # fusion asks the mapping for what is usual of joints alone: its size costs a frame nothing.
     mapping = learn(sequences, shape.mirror_normal)
     model = Model(INTERACTION, shape, mapping, find_viewpoints(shape))
-    shown = simulate(INTERACTION, STRANGER, SEED, SHOWN.stop)
-    images = [rendered_image(shown, frame) for frame in SHOWN]
-    joints = shown.true_joints_in_camera[SHOWN.start : SHOWN.stop]
+    shown = simulate(INTERACTION, DEFAULT.people, DEFAULT.seed, DEFAULT.last_shown)
+    images = [rendered_image(shown, frame) for frame in range(SHOWN.start, SHOWN.stop)]
+    joints = shown.true_joints_in_camera[SHOWN]
     left_handed = shown.person.handedness == "left"
     costs = []
     for size in sizes:
@@ -66,7 +65,7 @@ def measure_fusion(sizes: Sequence[int] = SIZES) -> tuple[FusionCost, ...]:
 
 
 def true_sequence(done: Simulation) -> LabelledSequence:
-    """A performance as it was done, with the true joints."""
+    """Return a performance with its true joints."""
     return LabelledSequence(
         str(done.participant),
         done.person.handedness == "left",
@@ -77,12 +76,12 @@ def true_sequence(done: Simulation) -> LabelledSequence:
 
 
 def _of_size(sequences: Sequence[LabelledSequence], size: int) -> list[LabelledSequence]:
-    """Sequences of so many frames together, or hardly more."""
-    random = np.random.default_rng(SEED)
+    """Repeat sequences until they have ``size`` frames together, or hardly more."""
+    random = np.random.default_rng(DEFAULT.seed)
     copies = []
-    for number in range(-(-size // FRAMES)):
+    for number in range(-(-size // DEFAULT.frames)):
         one = sequences[number % len(sequences)]
-        noise = NOISE_M * random.normal(size=one.joints.shape)
+        noise = DEFAULT.noise_m * random.normal(size=one.joints.shape)
         copies.append(replace(one, participant=str(number), joints=one.joints + noise))
     return copies
 
@@ -92,6 +91,6 @@ def _frame_ms(tracker: FusionTracker, joints: np.ndarray, images: Sequence[Image
     took = []
     for frame, (body, image) in enumerate(zip(joints, images, strict=True)):
         began = time.perf_counter()
-        tracker.step(body, (frame + 1) * 33_333_333, image)
+        tracker.step(body, (frame + 1) * DEFAULT.frame_ns, image)
         took.append(time.perf_counter() - began)
     return 1e3 * float(np.median(took))

@@ -1,4 +1,4 @@
-"""A simulated frame as a tracker gets it, through the messages' coding."""
+"""Makes images of simulated frames as a tracker gets them, through the messages' coding."""
 
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_schemas.messages import RgbdFrame
@@ -12,7 +12,7 @@ NEEDS: tuple[Need, ...] = ("edges", "depth", "colour")
 
 
 def rendered_image(shown: Simulation, number: int) -> Image:
-    """One frame's picture and depth."""
+    """Render one frame's colour and depth."""
     seen = shown.render(number)
     frame = RgbdFrame(
         sequence=0,

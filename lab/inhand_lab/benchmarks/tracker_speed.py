@@ -1,4 +1,4 @@
-"""How many hypotheses the tracker weighs in a second, beside a plain evaluation one by one."""
+"""Measures the hypotheses that the tracker weighs in a second, beside NumPy one by one."""
 
 import os
 import time
@@ -22,31 +22,24 @@ from inhand_tracker.shape.viewpoints import BOUNDARY_POINTS, Viewpoints, find_vi
 from inhand_tracker.sight.frame import Region, prepare
 from inhand_tracker.sight.sight import Sight
 
-from inhand_lab.benchmarks.fusion_cost import SIZES, FusionCost, measure_fusion, true_sequence
+from inhand_lab.benchmarks.fusion_cost import FusionCost, measure_fusion, true_sequence
+from inhand_lab.benchmarks.parameters import DEFAULT_FUSION_COST
+from inhand_lab.benchmarks.parameters import DEFAULT_TRACKER_SPEED as DEFAULT
 from inhand_lab.benchmarks.rendered_images import rendered_image
 from inhand_lab.workers import usable_cores
 from inhand_lab.world.messages import shape_of
 from inhand_lab.world.simulation import Simulation, simulate
 
 INTERACTION = "drinkFromMug"
-SEED = 0
-PEOPLE = 2
-LEARNED_FRAMES = 120
-SHOWN_FRAME = 60
-HYPOTHESES = 1000
-NAIVE_HYPOTHESES = 100
-SECONDS = 6.0
-FRAME_CORES = 2
-HYPOTHESIS_COUNTS = (100, 1_000, 10_000)
-OBJECT_COUNTS = (1, 2, 4)
-REGION_MARGIN = 60.0
 
 
 @dataclass(frozen=True)
 class FrameCost:
-    """Milliseconds on ``cores`` cores to prepare a frame and to weigh so many hypotheses of each of
-    so many objects by every term; ``naive_ms``, what NumPy takes for their published edges alone,
-    one hypothesis after the other."""
+    """Cost of a frame in which hypotheses of each of several objects are weighed by every term.
+
+    ``ms`` are the milliseconds on ``cores`` cores to prepare the frame and weigh them; ``naive_ms``
+    those that NumPy takes for their published edges alone, one hypothesis after the other.
+    """
 
     objects: int
     hypotheses: int
@@ -75,12 +68,12 @@ class TrackerSpeed:
 
 
 def measure_tracker(
-    seconds: float = SECONDS, training_sizes: Sequence[int] = SIZES
+    seconds: float = DEFAULT.seconds, training_sizes: Sequence[int] = DEFAULT_FUSION_COST.sizes
 ) -> TrackerSpeed:
-    """Measure rates for so many seconds, on one core, and then what is learned of each size."""
-    shown = simulate(INTERACTION, PEOPLE, SEED, LEARNED_FRAMES)
-    model, image = _model(), rendered_image(shown, SHOWN_FRAME)
-    translations, orientations = _poses(model, shown, HYPOTHESES)
+    """Measure rates on one core and costs of frames, ``seconds`` each, and then fusion's."""
+    shown = simulate(INTERACTION, DEFAULT.people, DEFAULT.seed, DEFAULT.learned_frames)
+    model, image = _model(), rendered_image(shown, DEFAULT.shown_frame)
+    translations, orientations = _poses(model, shown, DEFAULT.hypotheses)
     edges, sight = Likelihood(model), _sight(model)
     view = sight.view(prepare(image), sight.start())
 
@@ -91,17 +84,17 @@ def measure_tracker(
         return sight.log_likelihood(translations, orientations, view)
 
     def weigh_naively() -> Array:
-        few = translations[:NAIVE_HYPOTHESES], orientations[:NAIVE_HYPOTHESES]
+        few = translations[: DEFAULT.naive_hypotheses], orientations[: DEFAULT.naive_hypotheses]
         return naive_edge_log_weights(*few, model.viewpoints, image)
 
     with _one_core():
         edges_s, full_s, naive_s = _fastest((weigh_by_edges, weigh_fully, weigh_naively), seconds)
-    edge_rate, naive_rate = HYPOTHESES / edges_s, NAIVE_HYPOTHESES / naive_s
+    edge_rate, naive_rate = DEFAULT.hypotheses / edges_s, DEFAULT.naive_hypotheses / naive_s
     return TrackerSpeed(
         edge_rate,
         BOUNDARY_POINTS,
         1,
-        HYPOTHESES / full_s,
+        DEFAULT.hypotheses / full_s,
         edge_rate / naive_rate,
         tuple(_frame_costs(model, shown, image, 1e3 / naive_rate, seconds)),
         measure_fusion(training_sizes),
@@ -111,21 +104,21 @@ def measure_tracker(
 def _frame_costs(
     model: Model, shown: Simulation, image: Image, naive_ms: float, seconds: float
 ) -> Iterator[FrameCost]:
-    """Every count of hypotheses with every count of objects, which here are all the same one.
+    """Time every count of hypotheses with every count of objects, which are all the same one.
 
-    ``naive_ms`` is what NumPy takes for one hypothesis.
+    ``naive_ms`` are the milliseconds that NumPy takes for one hypothesis.
     """
-    cores = min(FRAME_CORES, usable_cores())
-    objects = [_sight(model, cores) for _ in range(max(OBJECT_COUNTS))]
-    joints = shown.true_joints_in_camera[SHOWN_FRAME]
-    for hypotheses, count in product(HYPOTHESIS_COUNTS, OBJECT_COUNTS):
+    cores = min(DEFAULT.frame_cores, usable_cores())
+    objects = [_sight(model, cores) for _ in range(max(DEFAULT.object_counts))]
+    joints = shown.true_joints_in_camera[DEFAULT.shown_frame]
+    for hypotheses, count in product(DEFAULT.hypothesis_counts, DEFAULT.object_counts):
         poses = _poses(model, shown, hypotheses)
         around = image.camera.project(poses[0])
-        low, high = around.min(axis=0) - REGION_MARGIN, around.max(axis=0) + REGION_MARGIN
-
+        low = around.min(axis=0) - DEFAULT.region_margin_pixels
+        high = around.max(axis=0) + DEFAULT.region_margin_pixels
         region = (*low.tolist(), *high.tolist())
         weigh_frame = partial(_weigh_frame, objects[:count], poses, image, region, joints)
-        share = seconds / (len(HYPOTHESIS_COUNTS) * len(OBJECT_COUNTS))
+        share = seconds / (len(DEFAULT.hypothesis_counts) * len(DEFAULT.object_counts))
         (took_s,) = _fastest((weigh_frame,), share)
         yield FrameCost(count, hypotheses, cores, 1e3 * took_s, naive_ms * hypotheses * count)
 
@@ -146,7 +139,7 @@ def _weigh_frame(
 def naive_edge_log_weights(
     translations: Array, orientations: Array, viewpoints: Viewpoints, image: Image
 ) -> Array:
-    """What the edge likelihood is, (P,), one pose at a time: the reference of the ratio."""
+    """Return log-weights (P,) by the published edges, one pose at a time: the ratio's reference."""
     chamfer, camera = image.once(chamfer_of), image.camera
     if chamfer is None:
         raise ValueError("the image has no luminance")
@@ -167,7 +160,10 @@ def naive_edge_log_weights(
 
 
 def _model() -> Model:
-    people = [simulate(INTERACTION, person, SEED, LEARNED_FRAMES) for person in range(PEOPLE)]
+    people = [
+        simulate(INTERACTION, person, DEFAULT.seed, DEFAULT.learned_frames)
+        for person in range(DEFAULT.people)
+    ]
     shape = shape_of(people[0].object_model)
     sequences = [true_sequence(one) for one in people]
     return Model(INTERACTION, shape, learn(sequences, shape.mirror_normal), find_viewpoints(shape))
@@ -178,18 +174,18 @@ def _sight(model: Model, threads: int = 1) -> Sight:
 
 
 def _poses(model: Model, shown: Simulation, count: int) -> tuple[Array, Array]:
-    """Poses (P, 3) and (P, 4) that particles all over the training frames have in the frame."""
-    random = np.random.default_rng(SEED)
+    """Return the poses (P, 3) and (P, 4) in a frame of particles from all over the training."""
+    random = np.random.default_rng(DEFAULT.seed)
     frames = random.integers(len(model.mapping.body_poses), size=(2, count))
     numbers = random.integers(len(PARTS), size=(2, count))
-    joints = shown.true_joints_in_camera[SHOWN_FRAME]
+    joints = shown.true_joints_in_camera[DEFAULT.shown_frame]
     bases = part_bases(joints, pelvis_basis(joints))
     particles = Particles(*frames, *numbers)
     return particles.poses(model.mapping, bases, shown.person.height)
 
 
 def _fastest(works: Sequence[Callable[[], object]], seconds: float) -> list[float]:
-    """The least seconds that each took, in turns: what else the machine does only ever adds."""
+    """Return the least seconds that each work took, in turns: other load can only add to it."""
     least, end = [float("inf")] * len(works), time.perf_counter() + seconds
     while time.perf_counter() < end:
         for index, work in enumerate(works):

@@ -1,4 +1,4 @@
-"""What learning and asking cost from 10,000 to a million labelled frames.
+"""Measures what learning and asking cost from 10,000 to a million labelled frames.
 
 The frames are simulated people who drink from a mug, each six times, as a skeleton tracker saw
 them: bodies, movement and noise that differ as people's do. Every size is the beginning of the
@@ -27,6 +27,7 @@ from inhand_tracker.model.model_file import load_model, save_model
 from inhand_tracker.shape.viewpoints import find_viewpoints
 from scipy.spatial.distance import cdist
 
+from inhand_lab.benchmarks.parameters import DEFAULT_TRAINING_COST as DEFAULT
 from inhand_lab.workers import in_processes
 from inhand_lab.world.messages import shape_of
 from inhand_lab.world.simulation import simulate
@@ -34,19 +35,13 @@ from inhand_lab.world.simulation import simulate
 Asked = TypeVar("Asked")
 Result = TypeVar("Result")
 
-SIZES = (10_000, 100_000, 1_000_000)
 INTERACTION = "drinkFromMug"
 MODEL = "mug.model"
-SEED = 20
-FRAMES = 360
-PERFORMANCES = 6
-STRANGER = 1_000_000
-LINEAR_SEARCHES = 50
 
 
 @dataclass(frozen=True)
 class Percentiles:
-    """Of the milliseconds that single calls took."""
+    """Percentiles of the milliseconds that single calls took."""
 
     p50: float
     p99: float
@@ -54,7 +49,7 @@ class Percentiles:
 
 @dataclass(frozen=True)
 class Learning:
-    """What learning and saving cost; memory is the peak of the process, all included."""
+    """Cost of learning and saving; memory is the peak of the process, all included."""
 
     frames: int
     recordings: int
@@ -67,10 +62,10 @@ class Learning:
 
 @dataclass(frozen=True)
 class Asking:
-    """What loading and asking cost.
+    """Cost of loading and asking.
 
     ``linear_ms`` is the median of SciPy's ``cdist`` over all frames, the reference of the same
-    run, and ``found`` the share of body poses for which the search finds what it finds.
+    run, and ``found`` the share of body poses for which the search is as near as it.
     """
 
     load_s: float
@@ -83,28 +78,28 @@ class Asking:
 
 @dataclass(frozen=True)
 class TrainingCost:
-    """What one size costs."""
+    """Cost of one size of training."""
 
     learning: Learning
     asking: Asking
 
 
 def training_steps(sizes: Sequence[int]) -> dict[str, int]:
-    """What the benchmark goes through, each with the number of its steps."""
+    """Return the stages that the benchmark goes through, each with the number of its steps."""
     return {"simulating people": _people(max(sizes)) + 1, "learning and asking": 2 * len(sizes)}
 
 
 def benchmark_training(
     sizes: Sequence[int], processes: int, on_step: Callable[[str], None]
 ) -> Iterator[TrainingCost]:
-    """The cost of learning each number of frames; ``on_step`` is called at every step."""
+    """Measure the cost of each number of frames; ``on_step`` gets the stage of every step."""
     simulating, asking = training_steps(sizes)
     with tempfile.TemporaryDirectory(prefix="inhand-bench-") as name:
         folder = Path(name)
-        people = [*range(_people(max(sizes))), STRANGER]
+        people = [*range(_people(max(sizes))), DEFAULT.stranger]
         in_processes(partial(_simulate, folder), people, processes, lambda _: on_step(simulating))
         for size in sizes:
-            learned = _in_fresh_process(_learn, folder, -(-size // FRAMES))
+            learned = _in_fresh_process(_learn, folder, -(-size // DEFAULT.frames))
             on_step(asking)
             asked = _in_fresh_process(_ask, folder)
             on_step(asking)
@@ -112,14 +107,14 @@ def benchmark_training(
 
 
 def _people(size: int) -> int:
-    return -(-size // (FRAMES * PERFORMANCES))
+    return -(-size // (DEFAULT.frames * DEFAULT.performances))
 
 
 def _simulate(folder: Path, participant: int) -> None:
-    """Write what a body tracker saw of a participant, and where the mug was."""
+    """Save what a body tracker saw of a participant, and where the mug was."""
     takes = [
-        simulate(INTERACTION, participant, SEED, FRAMES, performance=performance)
-        for performance in range(PERFORMANCES)
+        simulate(INTERACTION, participant, DEFAULT.seed, DEFAULT.frames, performance=performance)
+        for performance in range(DEFAULT.performances)
     ]
     joints = np.array([take.joints_in_camera for take in takes])
     joints[np.array([take.joint_states for take in takes]) == 0] = np.nan
@@ -143,9 +138,9 @@ def _sequences(folder: Path, participant: int) -> Iterator[LabelledSequence]:
 
 
 def _learn(folder: Path, recordings: int) -> Learning:
-    people = range(-(-recordings // PERFORMANCES))
+    people = range(-(-recordings // DEFAULT.performances))
     sequences = [one for person in people for one in _sequences(folder, person)][:recordings]
-    shape = shape_of(simulate(INTERACTION, 0, SEED, 1).object_model)
+    shape = shape_of(simulate(INTERACTION, 0, DEFAULT.seed, 1).object_model)
     began, cpu_began = time.perf_counter(), time.process_time()
     mapping = learn(sequences, shape.mirror_normal)
     training_s, training_cpu_s = time.perf_counter() - began, time.process_time() - cpu_began
@@ -171,10 +166,10 @@ def _ask(folder: Path) -> Asking:
     loaded = time.perf_counter()
     index = BodyPoseIndex(mapping)
     indexed = time.perf_counter()
-    poses = _body_poses(next(_sequences(folder, STRANGER)))
+    poses = _body_poses(next(_sequences(folder, DEFAULT.stranger)))
     nearest, nearest_ms = _timed(index.nearest, poses)
     _, cluster_ms = _timed(index.cluster, [frame for frame, _ in nearest])
-    some = slice(None, None, max(1, len(poses) // LINEAR_SEARCHES))
+    some = slice(None, None, max(1, len(poses) // DEFAULT.linear_searches))
     linear, linear_ms = _timed(
         lambda pose: float(cdist(pose[None], mapping.body_poses).min()), poses[some]
     )
@@ -185,12 +180,12 @@ def _ask(folder: Path) -> Asking:
         nearest_ms=nearest_ms,
         cluster_ms=cluster_ms,
         linear_ms=linear_ms.p50,
-        found=float((distances <= np.array(linear) * (1.0 + 1e-5)).mean()),
+        found=float((distances <= np.array(linear) * (1.0 + DEFAULT.equal_distance)).mean()),
     )
 
 
 def _body_poses(sequence: LabelledSequence) -> list[Array]:
-    """The body poses (60,) of the frames in which the whole body was seen."""
+    """Return the body poses (60,) of the frames in which the whole body was seen."""
     joints = sequence.joints[np.isfinite(sequence.joints).all(axis=(1, 2))]
     return list(body_pose(joints, pelvis_basis(joints), stature(part_lengths(joints))))
 
@@ -198,7 +193,7 @@ def _body_poses(sequence: LabelledSequence) -> list[Array]:
 def _timed(
     function: Callable[[Asked], Result], inputs: Sequence[Asked]
 ) -> tuple[list[Result], Percentiles]:
-    """The results of single calls, and what a call took."""
+    """Return the results of single calls, and how long they took."""
     results, milliseconds = [], []
     for asked in inputs:
         began = time.perf_counter()

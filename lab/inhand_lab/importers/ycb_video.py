@@ -8,11 +8,13 @@ as ``ycb_shapes`` does.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_schemas.messages import CameraInfo, Message, RgbdFrame
+from numpy.typing import NDArray
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
@@ -86,6 +88,16 @@ def read_clips(root: Path, step: int = 1) -> list[Clip]:
     return clips
 
 
+def read_colour(frame: Path) -> NDArray[Any]:
+    """Read the RGB image (H, W, 3) of a frame; raises DatasetError."""
+    return read_image(frame.with_name(frame.name + COLOUR_SUFFIX), cv2.IMREAD_COLOR_RGB)
+
+
+def read_depth_units(frame: Path) -> NDArray[Any]:
+    """Read the depth (H, W) of a frame in the data set's units; raises DatasetError."""
+    return read_image(frame.with_name(frame.name + DEPTH_SUFFIX), cv2.IMREAD_UNCHANGED)
+
+
 def _numbered_frames(folder: Path) -> dict[int, Path]:
     frames = {}
     for path in sorted(folder.glob(f"*{COLOUR_SUFFIX}")):
@@ -103,8 +115,7 @@ def _messages(clip: Clip, timing: Timing) -> Iterator[Message]:
     yield _camera_info(clip, timing)
     for number, path, annotation in zip(clip.numbers, clip.frames, clip.annotations, strict=True):
         time_ns = timing.time_ns(number)
-        colour = read_image(path.with_name(path.name + COLOUR_SUFFIX), cv2.IMREAD_COLOR_RGB)
-        depth = read_image(path.with_name(path.name + DEPTH_SUFFIX), cv2.IMREAD_UNCHANGED)
+        colour, depth = read_colour(path), read_depth_units(path)
         if depth.dtype != np.uint16 or depth.shape != colour.shape[:2]:
             raise DatasetError(
                 f"{path}{DEPTH_SUFFIX} is {depth.dtype} {depth.shape}, and should be uint16 "
@@ -122,10 +133,7 @@ def _messages(clip: Clip, timing: Timing) -> Iterator[Message]:
 
 def _camera_info(clip: Clip, timing: Timing) -> CameraInfo:
     first = clip.annotations[0]
-    colour = read_image(
-        clip.frames[0].with_name(clip.frames[0].name + COLOUR_SUFFIX), cv2.IMREAD_COLOR_RGB
-    )
-    height, width = colour.shape[:2]
+    height, width = read_colour(clip.frames[0]).shape[:2]
     return CameraInfo(
         sequence=0,
         time_ns=timing.time_ns(0),

@@ -1,10 +1,12 @@
 """The likelihood on real frames."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from inhand_lab.benchmarks.likelihood_check import check_likelihood
+from inhand_lab.benchmarks.parameters import DEFAULT_LIKELIHOOD_CHECK
 from inhand_lab.datasets.dataset import DatasetError
 from real_data import DATA, needs_real_data
 
@@ -16,7 +18,7 @@ YCB = DATA / "ycb-video"
 @needs_real_data
 @pytest.mark.long
 def test_real_objects_are_found_to_millimetres_and_the_truth_ranks_high() -> None:
-    checks = check_likelihood(YCB, starts=6, scattered=3000)
+    checks = check_likelihood(YCB, replace(DEFAULT_LIKELIHOOD_CHECK, starts=6, scattered=3000))
     assert {check.shape for check in checks} == {"box", "cup"}
     assert len(checks) == 3
     for check in checks:
@@ -28,8 +30,9 @@ def test_real_objects_are_found_to_millimetres_and_the_truth_ranks_high() -> Non
 
 @needs_real_data
 def test_the_verb_writes_what_it_shows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    quick = replace(DEFAULT_LIKELIHOOD_CHECK, starts=1, scattered=10)
     monkeypatch.setattr(
-        "inhand.bench.check_likelihood", lambda source: check_likelihood(source, 1, 10)
+        "inhand.bench.check_likelihood", lambda source: check_likelihood(source, quick)
     )
     assert main(["bench", "likelihood", str(YCB), "--json", str(tmp_path / "out.json")]) == 0
     objects = json.loads((tmp_path / "out.json").read_text())["objects"]

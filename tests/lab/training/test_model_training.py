@@ -9,7 +9,6 @@ from shutil import copytree
 import msgspec
 import numpy as np
 import pytest
-from inhand_lab.benchmarks.training_cost import benchmark_training, training_steps
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError, load_dataset
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.training.checks import check_hands, check_sequence
@@ -22,7 +21,6 @@ from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.model.model_file import load_model
 
 from inhand.__main__ import main
-from inhand.bench import training_table
 
 FRAMES = 60
 ENTRY = DatasetEntry(file="recordings/a.mcap", interaction="drink", participant="p0", object="mug")
@@ -260,19 +258,3 @@ def test_what_was_learned_is_counted_over_all_frames(dataset: Dataset) -> None:
     assert learned.good_translations == 1.0
     assert learned.translation_part == ("HandRight", pytest.approx(1.0 - 1.0 / frames))
     assert learned.radii == pytest.approx((0.1, 0.2, 0.4))
-
-
-@pytest.mark.long
-def test_the_cost_of_training_is_measured_for_every_size() -> None:
-    told: Counter[str] = Counter()
-    sizes = (720, 2160)
-    costs = list(benchmark_training(sizes, 1, lambda stage: told.update([stage])))
-    assert told == training_steps(sizes)
-    assert [cost.learning.recordings for cost in costs] == [2, 6]
-    for cost, size in zip(costs, sizes, strict=True):
-        assert 0.9 * size < cost.learning.frames <= size
-        assert cost.learning.peak_memory_mb > 50.0
-        assert cost.asking.found == 1.0
-        assert 0.0 < cost.asking.nearest_ms.p50 <= cost.asking.nearest_ms.p99
-    assert costs[1].learning.model_mb > 1.5 * costs[0].learning.model_mb
-    assert training_table(costs).row_count == 14

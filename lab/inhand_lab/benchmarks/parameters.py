@@ -1,0 +1,113 @@
+"""Every number of the benchmarks that can be tuned: on whom and on how much each measures.
+
+`inhand bench tracker`, `training`, and `likelihood SOURCE` show what they come to. Simulated people
+drink from a mug in all of them; where their random numbers start is of no account.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class FusionCostParameters:
+    """From whom fusion's prior is learned, and on what its frames are timed."""
+
+    seed: int = 0
+    """Where the simulated people's random numbers start."""
+    people: int = 4
+    """Number of simulated people; the one whose number comes next is tracked."""
+    frames: int = 250
+    """Number of frames of each person: 1,000 together."""
+    sizes: tuple[int, ...] = (1_000, 10_000, 100_000)
+    """Numbers of labelled frames that a prior is learned from."""
+    noise_m: float = 0.01
+    """Standard deviation in metres of the noise with which people are repeated as others."""
+    first_shown: int = 60
+    """First frame that is timed: the mug is about to be taken."""
+    last_shown: int = 90
+    """Frame before which the timing ends."""
+    frame_ns: int = 33_333_333
+    """Time from one frame to the next, in nanoseconds: 30 Hz."""
+
+
+@dataclass(frozen=True)
+class LikelihoodCheckParameters:
+    """How the likelihood is tested in real frames with true poses."""
+
+    seed: int = 0
+    """Where the random numbers of poses start."""
+    start_m: float = 0.03
+    """Distance in metres of a start from the true pose, in a random direction."""
+    start_rad: float = float(np.deg2rad(10.0))
+    """Angle in radians of a start from the true pose, about a random axis."""
+    starts: int = 20
+    """Number of starts in each frame."""
+    scatter_m: float = 0.05
+    """Root mean square in metres of the poses among which the true one is ranked."""
+    scatter_rad: float = float(np.deg2rad(20.0))
+    """Root mean square in radians of the poses among which the true one is ranked."""
+    scattered: int = 10_000
+    """Number of poses among which the true one is ranked."""
+    object_rate: float = 0.3
+    """Share of the newest frame in the learned colours of the object."""
+    around_rate: float = 0.5
+    """Share of the newest frame in the learned colours of its surroundings."""
+    drawn: int = 1000
+    """Number of poses that are tried about an object's last one."""
+    refined: int = 5
+    """Number of these, the likeliest ones, that are refined."""
+
+
+@dataclass(frozen=True)
+class TrackerSpeedParameters:
+    """What is weighed, and for how long."""
+
+    seed: int = 0
+    """Where the random numbers of people and poses start."""
+    people: int = 2
+    """Number of simulated people who are learned from; the next one is shown."""
+    learned_frames: int = 120
+    """Number of frames of each of them."""
+    shown_frame: int = 60
+    """The frame in which poses are weighed."""
+    hypotheses: int = 1000
+    """Number of poses that are weighed at once for the rates."""
+    naive_hypotheses: int = 100
+    """Number of poses that NumPy weighs one by one for the reference."""
+    seconds: float = 6.0
+    """Seconds for which rates are measured, and again for the costs of frames."""
+    frame_cores: int = 2
+    """Number of cores, at the most, on which whole frames are timed."""
+    hypothesis_counts: tuple[int, ...] = (100, 1_000, 10_000)
+    """Numbers of hypotheses of an object in the frames that are timed."""
+    object_counts: tuple[int, ...] = (1, 2, 4)
+    """Numbers of objects in the frames that are timed."""
+    region_margin_pixels: float = 60.0
+    """Margin in pixels around the poses of the part of a frame that is prepared."""
+
+
+@dataclass(frozen=True)
+class TrainingCostParameters:
+    """On how many labelled frames training is timed, and how it is asked afterwards."""
+
+    seed: int = 20
+    """Where the simulated people's random numbers start."""
+    sizes: tuple[int, ...] = (10_000, 100_000, 1_000_000)
+    """Numbers of labelled frames."""
+    frames: int = 360
+    """Number of frames of a recording: the paper's."""
+    performances: int = 6
+    """Number of recordings of each person."""
+    stranger: int = 1_000_000
+    """The number of the person whose body poses are asked for: beyond all that are learned from."""
+    linear_searches: int = 50
+    """Number of body poses, at the least, that are looked for linearly as the reference."""
+    equal_distance: float = 1e-5
+    """Relative difference up to which the search found the same distance as the reference."""
+
+
+DEFAULT_FUSION_COST = FusionCostParameters()
+DEFAULT_LIKELIHOOD_CHECK = LikelihoodCheckParameters()
+DEFAULT_TRACKER_SPEED = TrackerSpeedParameters()
+DEFAULT_TRAINING_COST = TrainingCostParameters()
