@@ -1,4 +1,4 @@
-"""Work in several processes of one thread each, so that they never ask for more cores."""
+"""Runs work in several processes of one thread each, so that they never ask for more cores."""
 
 import os
 import signal
@@ -21,7 +21,7 @@ _ONE_THREAD = dict.fromkeys(
 
 
 def usable_cores() -> int:
-    """The cores that this process may use."""
+    """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0))
 
 
@@ -31,9 +31,9 @@ def in_processes(
     processes: int,
     on_done: Callable[[Result], None] = lambda _: None,
 ) -> list[Result]:
-    """The results of all tasks, in their order; ``on_done`` gets each when it is there.
+    """Return the results of all tasks, in their order; ``on_done`` gets each as it comes.
 
-    A single task, or process, is no reason to start another one. The first error ends all; raises
+    A single task, or a single process, runs in this one. The first error ends all; raises
     InhandError when a worker is killed.
     """
     if processes == 1 or len(tasks) == 1:

@@ -1,1 +1,1 @@
-"""What things cost, and what each part is worth."""
+"""Benchmarks: costs in time and memory, and the worth of each part."""

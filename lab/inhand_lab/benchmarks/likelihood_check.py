@@ -38,10 +38,11 @@ Pose = tuple[Array, Array]
 class ObjectCheck:
     """Results of one object in all frames.
 
-    ``translation_mm`` and ``rotation_deg`` are the medians of refined
-    poses' errors over frames and starts (a cup's turn about its axis does not count), ``…_90`` are
-    what 90 % stay below. ``rank`` is the share of the scattered poses that are likelier than the
-    true one, the median over the frames, and ``worst_rank`` the greatest."""
+    ``translation_mm`` and ``rotation_deg`` are the medians of refined poses' errors over frames and
+    starts (a cup's turn about its axis does not count), ``…_90`` the errors below which 90 % stay.
+    ``rank`` is the share of the scattered poses that are likelier than the true one, the median
+    over the frames, and ``worst_rank`` the greatest.
+    """
 
     name: str
     shape: str

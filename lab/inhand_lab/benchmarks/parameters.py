@@ -1,7 +1,7 @@
 """Every number of the benchmarks that can be tuned: on whom and on how much each measures.
 
 `inhand bench tracker`, `training`, and `likelihood SOURCE` show what they come to. Simulated people
-drink from a mug in all of them; where their random numbers start is of no account.
+drink from a mug in all of them.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ class FusionCostParameters:
     """From whom fusion's prior is learned, and on what its frames are timed."""
 
     seed: int = 0
-    """Where the simulated people's random numbers start."""
+    """Seed of the simulated people."""
     people: int = 4
     """Number of simulated people; the one whose number comes next is tracked."""
     frames: int = 250
@@ -33,10 +33,10 @@ class FusionCostParameters:
 
 @dataclass(frozen=True)
 class LikelihoodCheckParameters:
-    """How the likelihood is tested in real frames with true poses."""
+    """The poses by which the likelihood is tested in real frames with true ones."""
 
     seed: int = 0
-    """Where the random numbers of poses start."""
+    """Seed of the poses."""
     start_m: float = 0.03
     """Distance in metres of a start from the true pose, in a random direction."""
     start_rad: float = float(np.deg2rad(10.0))
@@ -61,10 +61,10 @@ class LikelihoodCheckParameters:
 
 @dataclass(frozen=True)
 class TrackerSpeedParameters:
-    """What is weighed, and for how long."""
+    """The poses and frames that are weighed, and the time for it."""
 
     seed: int = 0
-    """Where the random numbers of people and poses start."""
+    """Seed of people and poses."""
     people: int = 2
     """Number of simulated people who are learned from; the next one is shown."""
     learned_frames: int = 120
@@ -92,7 +92,7 @@ class TrainingCostParameters:
     """On how many labelled frames training is timed, and how it is asked afterwards."""
 
     seed: int = 20
-    """Where the simulated people's random numbers start."""
+    """Seed of the simulated people."""
     sizes: tuple[int, ...] = (10_000, 100_000, 1_000_000)
     """Numbers of labelled frames."""
     frames: int = 360

@@ -1,4 +1,4 @@
-"""What a tracker sees of a recording, as its daemon would: bodies and images, no labels."""
+"""Shows a recording to trackers as their daemon would: bodies and images, no labels."""
 
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress

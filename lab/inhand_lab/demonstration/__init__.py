@@ -1,1 +1,1 @@
-"""The demonstration rig, and what its recording shows."""
+"""The demonstration: a rig of simulated people, and a review of its recording."""

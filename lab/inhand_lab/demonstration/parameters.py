@@ -8,7 +8,7 @@ class DemonstrationParameters:
     """Who is simulated to be learned from, and who is met afterwards."""
 
     seed: int = 7
-    """Where the simulated people's random numbers start."""
+    """Seed of the simulated people."""
     trained_participants: int = 12
     """Number of people who are learned from: as many as are learned within seconds."""
     trained_frames: int = 360

@@ -1,4 +1,4 @@
-"""What a demonstration needs before it starts: a learned model, and the settings of its rig."""
+"""Prepares a demonstration: a learned model, and the settings of its rig."""
 
 import socket
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What a recording of a rig shows: traffic, latency, and errors where truth was recorded."""
+"""Reviews a rig's recording: traffic, latency, and errors where truth was recorded."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -27,10 +27,11 @@ class Traffic:
 
 @dataclass(frozen=True)
 class Review:
-    """``traffic`` by stream, health apart.
+    """The results of a review.
 
-    ``latencies_ms`` (P,) from a frame's capture to its pose at the recorder; ``sequences`` (S,)
-    of the frames with both a pose and a label, with their ``vertex_errors_m`` (S,).
+    ``traffic`` is by stream, without health. ``latencies_ms`` (P,) are from a frame's capture to
+    its pose at the recorder. ``sequences`` (S,) are those of the frames with both a pose and a
+    label, ``vertex_errors_m`` (S,) their errors.
     """
 
     traffic: dict[str, Traffic]
@@ -43,7 +44,7 @@ class Review:
 
 @dataclass
 class _Contents:
-    """What one pass over a recording collects."""
+    """The messages that one pass over a recording collects."""
 
     object_name: str
     recorded: Counter[str] = field(default_factory=Counter)

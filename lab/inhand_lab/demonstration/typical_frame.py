@@ -22,7 +22,7 @@ from inhand_lab.report.picture import TRACKED, TRUE, WHITE, picture_of
 
 def draw_typical_frame(recording: Path, review: Review, shape: ObjectShape, path: Path) -> None:
     """Draw the skeleton and the true and the tracked object into a picture file."""
-    order = _from_median_on(review.vertex_errors_m)[: DEFAULT_DEMONSTRATION.picture_candidates]
+    order = order_from_median(review.vertex_errors_m)[: DEFAULT_DEMONSTRATION.picture_candidates]
     candidates = review.sequences[order].tolist()
     errors = dict(zip(candidates, review.vertex_errors_m[order].tolist(), strict=True))
     frame, skeletons = _find_frame(recording, candidates)
@@ -44,8 +44,8 @@ def draw_typical_frame(recording: Path, review: Review, shape: ObjectShape, path
         raise InhandError(f"cannot write {path}")
 
 
-def _from_median_on(errors: Array) -> Indices:
-    """The indices (S,) of the errors (S,), that of the median first, then ever less typical."""
+def order_from_median(errors: Array) -> Indices:
+    """Return the indices (S,) of errors (S,), that of the median first, then ever less typical."""
     order = np.argsort(errors)
     return order[np.argsort(np.abs(np.arange(len(order)) - len(order) // 2))]
 

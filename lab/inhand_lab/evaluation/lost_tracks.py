@@ -1,4 +1,4 @@
-"""When a track, or the body that it hangs on, is lost, and how long until it is found again.
+"""Finds when a track, or the body that it hangs on, is lost, and how long until it is found again.
 
 A track is lost from the frame in which the vertex error exceeds 20 cm, or no pose is given, until
 the error is below 10 cm again. The body is lost while the tracker's person has no pelvis or, where
@@ -75,8 +75,8 @@ def recoveries_after(body_lost: Flags, lost: Flags, times_ns: Indices) -> Recove
     """
     _, ends = _stretches(body_lost)
     ends = ends[ends < len(lost)]
-    found = np.append(np.flatnonzero(~lost), len(lost))
-    back = found[np.searchsorted(found, ends)]
+    tracked = np.append(np.flatnonzero(~lost), len(lost))
+    back = tracked[np.searchsorted(tracked, ends)]
     times = _ends_of_frames(times_ns)
     return _sum(times[back] - times[ends])
 

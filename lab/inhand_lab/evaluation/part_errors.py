@@ -1,4 +1,4 @@
-"""How well each part of the body predicts an object's pose, and all of them together.
+"""Measures how well each part of the body, and all of them together, predict an object's pose.
 
 Each part's prediction is the mean over the cluster of the nearest training pose: what the particles
 of a method come to that redraws all of them in every frame and has no image. So the errors explain

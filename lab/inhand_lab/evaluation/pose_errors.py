@@ -1,4 +1,4 @@
-"""How far poses are from the true ones, by the measures of the field.
+"""Measures the errors of poses against the true ones, as the field does.
 
 - Vertex error: the mean distance of corresponding marked vertices (Darby et al. 2014, section 6.2).
 - Translation and rotation apart. For an object with symmetries the rotation is the least one over

@@ -20,7 +20,7 @@ from inhand_lab.evaluation.pose_errors import ErrorGauge, region_share
 
 @dataclass(frozen=True)
 class Score:
-    """How well a tracker did in the labelled frames of one recording.
+    """The score of a tracker in the labelled frames of one recording.
 
     The errors are means over the frames in which a pose was given, or had been given before: it
     counts until the next. Shares are of all labelled frames; a frame before the first pose is

@@ -25,8 +25,11 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Motion:
-    """One archive: ``joints`` (T, 20, 3), in the order of ``JOINT_NAMES``, and the object's
-    ``translations`` (T, 3) and ``orientations`` (T, 4) in the world frame."""
+    """One archive, in its world frame.
+
+    ``joints`` (T, 20, 3) are in the order of ``JOINT_NAMES``; ``translations`` (T, 3) and
+    ``orientations`` (T, 4) are the object's.
+    """
 
     path: Path
     joints: Array

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class ImportParameters:
-    """What an import assumes where the data say nothing."""
+    """The assumptions of an import where the data say nothing."""
 
     frame_rate: float = 30.0
     """Rate of frames that are kept, in Hz, where none is asked for: that of a Kinect."""

@@ -1,4 +1,4 @@
-"""Shapes of measured objects, from a mesh or from points alone.
+"""Makes shapes of measured objects, from a mesh or from points alone.
 
 The data name no plane of symmetry, so the shapes take the x axis for its normal; that matters only
 where a left-handed person is tracked with what right-handed people showed, or the reverse.

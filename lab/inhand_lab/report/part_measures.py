@@ -1,4 +1,4 @@
-"""How a mapping's measures go over the frames of a training sequence (Darby et al. 2014, 4.3, 4.4).
+"""Follows a mapping's measures over a training sequence (Darby et al. 2014, sections 4.3, 4.4).
 
 Angles are those of the rotations, twice the method's own θ. A gap in the labels counts as a step.
 """

@@ -14,9 +14,10 @@ from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.evaluation.protocol import Candidate, Protocol, evaluate
 from inhand_lab.evaluation.scoring import Judge
 from inhand_lab.evaluation.summary import summarise
-from inhand_schemas.messages import ObjectPose
+from inhand_schemas.messages import ObjectPose, Pose
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.fusion.tracker import FusionTracker
+from msgspec import structs
 from waving import box, entry_of, messages, waving, write_dataset
 
 EDGES, NONE = ("edges",), ()
@@ -120,15 +121,7 @@ def moved_label(label: ObjectPose, shift_m: float) -> ObjectPose:
     pose = label.camera_from_object
     assert pose is not None
     x, y, z = pose.translation
-    return ObjectPose(
-        sequence=label.sequence,
-        time_ns=label.time_ns,
-        object=label.object,
-        camera=label.camera,
-        state=label.state,
-        confidence=label.confidence,
-        camera_from_object=type(pose)((x + shift_m, y, z), pose.rotation),
-    )
+    return structs.replace(label, camera_from_object=Pose((x + shift_m, y, z), pose.rotation))
 
 
 def test_a_lost_object_counts_at_its_last_pose_and_before_the_first_as_lost(tmp_path: Path) -> None:

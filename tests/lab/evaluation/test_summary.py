@@ -8,8 +8,6 @@ from inhand_lab.evaluation.lost_tracks import Recoveries
 from inhand_lab.evaluation.protocol import Candidate, Terms, Trial
 from inhand_lab.evaluation.scoring import Score
 from inhand_lab.evaluation.summary import summarise, terms_name, with_terms, worth
-from inhand_lab.report.tables import error_grid, measures_grid, worth_grid
-from rich.console import Console
 
 NONE = Recoveries(0, 0.0)
 SCORE = Score(100, 0.10, 0.05, np.radians(10.0), 0.5, 0.25, 0.1, NONE, NONE)
@@ -93,39 +91,3 @@ def test_the_worth_of_a_term_is_over_all_methods_and_may_be_a_loss() -> None:
 )
 def test_terms_have_names(terms: Terms, name: str) -> None:
     assert terms_name(terms) == name
-
-
-def printed(grid: object, width: int = 80) -> list[str]:
-    console = Console(width=width, color_system=None)
-    with console.capture() as capture:
-        console.print(grid)
-    return capture.get().splitlines()
-
-
-COMPARED = ("fusion", *METHODS)
-
-
-def test_the_methods_that_are_usually_compared_fit_into_80_columns_with_their_whole_names() -> None:
-    trials = [trial(100.5, method=name, interaction="putOnGlasses") for name in COMPARED]
-    summary = summarise([*trials, *(trial(141.0, "b", method=name) for name in COMPARED)])
-    for grid in (error_grid(summary), measures_grid(summary)):
-        lines = printed(grid.for_terminal())
-        assert max(map(len, lines)) <= 80
-        text = "\n".join(lines)
-        assert "…" not in text
-        assert all(name in text for name in COMPARED[:5])
-        assert "gd-stable-" in text
-        assert "proximate" in text
-    assert any(line.startswith("paper's mean") and "12.6" in line for line in lines_of(summary))
-
-
-def lines_of(summary: dict[str, object]) -> list[str]:
-    return printed(error_grid(summary).for_terminal())
-
-
-def test_the_papers_worth_of_edges_stands_beside_ours() -> None:
-    told = {"none": {"interactions": {"sweepFloor": 1.25, "wave": -3.0}, "mean": -0.9}}
-    lines = worth_grid("edges", told).for_markdown().splitlines()
-    assert "| sweepFloor | +1.2 | -4.3 |" in lines
-    assert "| wave | -3.0 | – |" in lines
-    assert lines[-1] == "| **mean** | **-0.9** | **+2.1** |"
