@@ -42,6 +42,15 @@ STANDING = np.array(
 )
 STANDING_HEIGHT = (0.728 + 0.88) / 0.896
 
+# The kinematic tree by the numbers of Kinect's joints: (parent, child), one a part.
+KINECT_TREE = [
+    (0, 1), (1, 2), (2, 3),
+    (2, 4), (4, 5), (5, 6), (6, 7),
+    (2, 8), (8, 9), (9, 10), (10, 11),
+    (0, 12), (12, 13), (13, 14), (14, 15),
+    (0, 16), (16, 17), (17, 18), (18, 19),
+]  # fmt: skip
+
 ELBOW, WRIST, HAND = 9, 10, 11
 RIGHT_ARM = [WRIST, HAND]
 

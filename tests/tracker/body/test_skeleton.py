@@ -8,6 +8,7 @@ from hypothesis.extra.numpy import arrays
 from inhand_schemas.joints import JOINT_NAMES
 from inhand_tracker.body import skeleton as body
 from people import (
+    KINECT_TREE,
     STANDING,
     STANDING_HEIGHT,
     move,
@@ -20,15 +21,6 @@ from scipy.spatial.transform import Rotation
 
 rotation_vectors = arrays(float, 3, elements=st.floats(-1.7, 1.7))
 shifts = arrays(float, 3, elements=st.floats(-5, 5))
-
-# The kinematic tree by the numbers of Kinect's joints: (parent, child), one a part.
-KINECT_TREE = [
-    (0, 1), (1, 2), (2, 3),
-    (2, 4), (4, 5), (5, 6), (6, 7),
-    (2, 8), (8, 9), (9, 10), (10, 11),
-    (0, 12), (12, 13), (13, 14), (14, 15),
-    (0, 16), (16, 17), (17, 18), (18, 19),
-]  # fmt: skip
 
 
 def bases_of(joints: np.ndarray) -> tuple[body.Bases, body.Bases]:

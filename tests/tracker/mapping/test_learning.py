@@ -8,17 +8,11 @@ import pytest
 from inhand_tracker.mapping.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
 from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.mapping.parameters import DEFAULT_MAPPING
+from people import KINECT_TREE as TREE
 from people import STANDING, held, move, quaternion_of, same_rotation, sequence, waving
 from scipy.spatial.transform import Rotation
 
 NORMAL = np.array([0.6, 0.0, 0.8])
-TREE = [
-    (0, 1), (1, 2), (2, 3),
-    (2, 4), (4, 5), (5, 6), (6, 7),
-    (2, 8), (8, 9), (9, 10), (10, 11),
-    (0, 12), (12, 13), (13, 14), (14, 15),
-    (0, 16), (16, 17), (17, 18), (18, 19),
-]  # fmt: skip
 OTHER_SIDE = [0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 16, 17, 18, 19, 12, 13, 14, 15]
 
 

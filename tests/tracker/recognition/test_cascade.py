@@ -146,6 +146,11 @@ def test_a_tracker_that_is_not_sure_of_its_object_does_not_say_where_one_is(scri
     assert run(cascade, 1)[0].box[0] == 100.0
 
 
+def support_all(trackers: list[AtPixel], support: Support | None) -> None:
+    for tracker in trackers:
+        tracker.support = support
+
+
 def test_another_object_that_is_known_takes_the_place_of_the_last(script) -> None:
     script += [[0.9, 0.0, 0.0, 0.0], [0.0, 0.9, 0.0, 0.0], [0.0, 0.0, 0.1, 0.0]]
     cascade, trackers = new_cascade()
@@ -195,8 +200,7 @@ def test_an_object_that_becomes_known_has_its_pose_in_that_frame(script) -> None
 def test_the_supports_of_the_objects_looked_for_reach_the_recogniser(script, told) -> None:
     script += [[0.9, 0.0, 0.0, 0.0]] * 2
     cascade, trackers = new_cascade()
-    for tracker in trackers:
-        tracker.support = Support(0.0, 0.0, 0.0, 100.0)
+    support_all(trackers, Support(0.0, 0.0, 0.0, 100.0))
     look(cascade, 1)
     assert told[0][0] > 0.0
     assert told[0][-1] == 0.0
@@ -206,10 +210,8 @@ def test_the_supports_of_the_objects_looked_for_reach_the_recogniser(script, tol
 def test_a_second_without_images_is_told_as_no_image(script, told) -> None:
     script += [[0.9, 0.0, 0.0, 0.0]] * 40
     cascade, trackers = new_cascade()
-    for tracker in trackers:
-        tracker.support = Support(0.0, 0.0, 0.0, 100.0)
+    support_all(trackers, Support(0.0, 0.0, 0.0, 100.0))
     look(cascade, 1)
-    for tracker in trackers:
-        tracker.support = None
+    support_all(trackers, None)
     run(cascade, 39, first=1)
     assert [one is None for one in told] == [False] * 31 + [True] * 9

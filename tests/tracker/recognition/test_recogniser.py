@@ -21,14 +21,13 @@ def features_of(pose: np.ndarray) -> np.ndarray:
 
 
 def classes() -> MovementClasses:
-    """Two actions, and nothing in use half-way; a direction between them counts alone."""
+    """Two actions, and nothing in use half-way: only the way between the actions counts."""
     first, second = features_of(FIRST), features_of(SECOND)
-    between = (second - first) / np.linalg.norm(second - first)
-    way = 6.0 / np.linalg.norm(second - first)
+    way = second - first
     return MovementClasses(
         means=first,
-        whitening=way * np.eye(len(first)),
-        directions=between[:, None],
+        whitening=6.0 * way[:, None] / (way @ way),
+        directions=np.eye(1),
         centres=np.array([[0.0], [6.0], [3.0]]),
         log_shares=np.log(np.full(3, 1.0 / 3.0)),
         says=np.array([[2.5, 0.2, 0.3], [0.2, 2.5, 0.3], [0.3, 0.3, 2.4]]),

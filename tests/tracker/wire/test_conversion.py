@@ -35,17 +35,8 @@ def test_inferred_joints_are_used() -> None:
     assert np.isfinite(joints_of(guessed)).all()
 
 
-INFO = CameraInfo(
-    sequence=0,
-    time_ns=0,
-    width=64,
-    height=48,
-    fx=50.0,
-    fy=50.0,
-    cx=31.5,
-    cy=23.5,
-    depth_scale=0.0005,
-)
+VIEW = {"width": 64, "height": 48, "fx": 50.0, "fy": 50.0, "cx": 31.5, "cy": 23.5}
+INFO = CameraInfo(sequence=0, time_ns=0, depth_scale=0.0005, **VIEW)
 COLOUR = encode_colour(np.full((48, 64, 3), 90, np.uint8))
 DEPTH = encode_depth(np.full((24, 32), 3000, np.uint16))
 FRAME = RgbdFrame(sequence=0, time_ns=0, colour=COLOUR, depth=DEPTH)

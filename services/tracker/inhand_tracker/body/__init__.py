@@ -1,1 +1,1 @@
-"""The skeleton: its basis, parts, height, and its last moments."""
+"""The body: reading its joints, its bases and anchors, its height, and its last moments."""

@@ -1,1 +1,1 @@
-"""Who is seen: each person is followed, identified and given a watcher of objects."""
+"""People in view: each is followed, identified, and watched with the objects they use."""

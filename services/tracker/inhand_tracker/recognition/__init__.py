@@ -1,1 +1,1 @@
-"""Which object is in use, when nobody says."""
+"""Recognition of the object that a person uses, where nobody says which it is."""

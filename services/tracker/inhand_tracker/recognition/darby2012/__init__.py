@@ -1,1 +1,1 @@
-"""The published cascade of Darby et al. 2012, to compare with."""
+"""The published cascade of Darby et al. 2012, which ours is compared with."""
