@@ -8,16 +8,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class BodyParameters:
-    """How a person's joints are read, and what of their last moments is kept."""
+    """Decides how a person's joints are read, and what of their last moments is kept."""
 
-    # What a window keeps (window). Priors are learned with lags and memories: with others, train
-    # again.
-    lags_s: tuple[float, ...] = (0.13, 0.33)
-    """Seconds back to the poses that the present one is compared with."""
-    memories_s: tuple[float, ...] = (1.0, 3.0)
-    """Time constants, in seconds, of the means of where hands and head have been."""
-    gap_ns: int = 500_000_000
-    """Nanoseconds between frames beyond which nothing of before counts."""
+    # What anchors rest on (anchors).
+    straight_arm: float = 0.15
+    """Length, in metres, of the trunk's upwards direction beside that of the upper arm, where they
+    give a forearm's plane: a straight arm shows none."""
 
     # How joints are read (reader, skeleton).
     farthest_joint_m: float = 1000.0
@@ -30,10 +26,14 @@ class BodyParameters:
     learned_poses: int = 1000
     """Number of body poses, about, that the usual proportions come from."""
 
-    # What anchors rest on (anchors).
-    straight_arm: float = 0.15
-    """Length, in metres, of the trunk's upwards direction beside that of the upper arm, where they
-    give a forearm's plane: a straight arm shows none."""
+    # What a window keeps (window). Priors are learned with lags and memories: with others, train
+    # again.
+    lags_s: tuple[float, ...] = (0.13, 0.33)
+    """Seconds back to the poses that the present one is compared with."""
+    memories_s: tuple[float, ...] = (1.0, 3.0)
+    """Time constants, in seconds, of the means of where hands and head have been."""
+    gap_ns: int = 500_000_000
+    """Nanoseconds between frames beyond which nothing of before counts."""
 
 
 DEFAULT_BODY = BodyParameters()

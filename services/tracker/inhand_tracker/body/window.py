@@ -1,5 +1,6 @@
-"""The last moments of a body, which the prior is learned from: its pose, where it goes, where it
-has been.
+"""Keeps and describes the last moments of a body: its pose, where it goes, where it has been.
+
+Priors are learned from these descriptions.
 
 A brush on its way up and one on its way down meet the same body pose, and arms that hang do not
 show whether glasses are worn or lie on a table: what the hands did before does.

@@ -13,7 +13,7 @@ NEAREST_M = 0.05
 
 @dataclass(frozen=True)
 class Intrinsics:
-    """How a camera projects: focal lengths and principal point, in pixels of an image of a size."""
+    """Projects as a camera does: focal lengths, principal point and image size in pixels."""
 
     fx: float
     fy: float

@@ -1,4 +1,4 @@
-"""An image of one frame, prepared once for all the objects that are tracked in it."""
+"""Keeps an image of one frame, prepared once for all the objects that are tracked in it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ Prepared = TypeVar("Prepared")
 
 @dataclass(frozen=True)
 class Image:
-    """What of a frame was decoded, and the camera that took it.
+    """Holds what of a frame was decoded, and the camera that took it.
 
     ``grey`` (H, W) is the luminance, ``colour`` (H, W, 3) RGB, ``depth`` (h, w) the depth of the
     same view in metres, 0 where nothing was measured.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class AgeingParameters:
-    """How fast an estimate gets old while the person is out of view.
+    """Decides how fast an estimate ages while the person is out of view.
 
     All three were set by hand; no measurement stands behind them.
     """

@@ -26,7 +26,7 @@ def multiply(first: Array, second: Array) -> Array:
 
 
 def conjugate(quaternion: Array) -> Array:
-    """The inverse rotation, (..., 4)."""
+    """Invert rotations, (..., 4)."""
     return quaternion * np.array([1.0, -1.0, -1.0, -1.0])
 
 
@@ -100,7 +100,7 @@ def to_vector(quaternion: Array) -> Array:
 
 
 def normalise(quaternion: Array) -> Array:
-    """The unit quaternion of the same direction, (..., 4)."""
+    """Scale quaternions (..., 4) to unit length."""
     return quaternion / np.linalg.norm(quaternion, axis=-1, keepdims=True)
 
 
@@ -111,12 +111,12 @@ def separation(first: Array, second: Array) -> Array:
 
 
 def angle_between(first: Array, second: Array) -> Array:
-    """The angle (radians, 0 to π) of the rotation that takes one to the other."""
+    """Angle, in radians from 0 to π, of the rotation that takes one to the other."""
     return 2.0 * separation(first, second)
 
 
 def mean(quaternion: Array, weights: Array) -> Array:
-    """The weighted mean rotation over the last axis but one (Markley et al. 2007).
+    """Average rotations by weights, over the last axis but one (Markley et al. 2007).
 
     ``quaternion`` is (..., N, 4) and ``weights`` broadcasts to (..., N); the result (..., 4) does
     not depend on the quaternions' signs.
@@ -126,6 +126,6 @@ def mean(quaternion: Array, weights: Array) -> Array:
 
 
 def principal(scatter: Array) -> Array:
-    """The mean rotations (..., 4) of scatter matrices Σ w q qᵀ, (..., 4, 4)."""
+    """Find the mean rotations (..., 4) of scatter matrices Σ w q qᵀ, (..., 4, 4)."""
     _, vectors = np.linalg.eigh(scatter)
     return vectors[..., -1]

@@ -1,4 +1,4 @@
-"""Whose objects are followed when several people are in view."""
+"""Chooses whose objects are followed when several people are in view."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
@@ -108,8 +108,10 @@ class PeopleWatched:
 def worth_publishing(
     objects: Mapping[int | None, Sequence[WatchedObject]],
 ) -> Iterator[tuple[int | None, WatchedObject]]:
-    """What of people's objects is worth a message: every pose; and of an object that nobody uses,
-    once that it is lost, with the probabilities of whoever most probably uses it."""
+    """Choose what of people's objects is worth a message: every pose, and every lost object once.
+
+    An object that nobody uses is lost with the probabilities of whoever most probably uses it.
+    """
     everything = [(person, thing) for person, theirs in objects.items() for thing in theirs]
     for name in dict.fromkeys(thing.name for _, thing in everything):
         same = [(person, thing) for person, thing in everything if thing.name == name]

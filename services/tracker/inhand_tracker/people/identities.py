@@ -1,4 +1,4 @@
-"""Who is who among several people, when the camera's ids may be exchanged.
+"""Identifies several people over time, when the camera's ids may be exchanged.
 
 People are told apart by where they go and by the lengths of their bones. A camera's own id counts
 as well, but less than both: two people who cross often leave with each other's.

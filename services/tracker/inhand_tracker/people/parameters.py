@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PeopleParameters:
-    """How long people are waited for, and what makes somebody who is seen a person of before.
+    """Decides how long people are waited for, and who is taken for a person of before.
 
     `pytest tests/lab/world/test_crossing.py` shows what they do: of two people who cross, nobody
     may be taken for the other. Where nothing else is said a number was set by hand.
@@ -18,7 +18,8 @@ class PeopleParameters:
     farthest_m: float = 0.6
     """Metres from where somebody was expected beyond which it is another person."""
     drift_m_s: float = 0.5
-    """Metres that both distances grow by for each second out of view."""
+    """Metres by which ``farthest_m`` and ``position_sigma_m`` grow with each second that somebody
+    is out of view."""
     position_sigma_m: float = 0.08
     """Standard deviation, in metres, of a person's place from where it was expected."""
     length_sigma: float = 0.06
@@ -27,7 +28,8 @@ class PeopleParameters:
     """Negative log-probability that the camera calls the same person by another id."""
 
     velocity_time_s: float = 0.15
-    """Time constant, in seconds, of the smoothing of a person's velocity."""
+    """Time constant, in seconds, of the smoothing of a person's velocity, by which the next place
+    is expected."""
     length_frames: int = 60
     """Number of frames, about, that bone lengths are averaged over."""
 

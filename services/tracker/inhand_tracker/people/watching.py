@@ -1,4 +1,4 @@
-"""What one person uses, frame by frame: objects that are given, or whichever is recognised."""
+"""Watches what one person uses: objects that are given, or whichever is recognised."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence

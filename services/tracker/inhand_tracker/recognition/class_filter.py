@@ -1,4 +1,4 @@
-"""Which action goes on, or none, from evidence that comes frame by frame: a forward filter."""
+"""Filters evidence that comes frame by frame: which action goes on, or none."""
 
 import numpy as np
 

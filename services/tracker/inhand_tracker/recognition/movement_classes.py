@@ -1,4 +1,4 @@
-"""Which action a movement is, and whether it is one that was trained at all.
+"""Judges which action a movement is, and whether it was trained at all.
 
 Mixture discriminant analysis (Hastie and Tibshirani 1996): each action is a few Gaussians with one
 covariance for all, shrunk. What a Gaussian says about the action is what it said of people left out

@@ -1,4 +1,4 @@
-"""What recognition reads of a person's movement: the body now, and over the last three seconds."""
+"""Describes a person's movement for recognition: the body now, and over the last three seconds."""
 
 from collections import deque
 

@@ -1,4 +1,4 @@
-"""What recognisers of objects do alike: read the body, and keep the last answer."""
+"""Holds what all recognisers of objects do: read the body, and keep the last answer."""
 
 from abc import ABC, abstractmethod
 
@@ -54,4 +54,4 @@ class ObjectRecogniser(ABC):
 
     @abstractmethod
     def _without_body(self, time_ns: int) -> Recognition:
-        """What stands of the last recognition while the body is not seen."""
+        """Give what stands of the last recognition while the body is not seen."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class RecognitionParameters:
-    """How movement and images make an action recognised, and which objects are tracked."""
+    """Decides when movement and images make an action recognised, and which objects are tracked."""
 
     recognised_probability: float = 0.5
     """Probability from which an action is recognised (Darby et al. 2012, section 5)."""
@@ -33,7 +33,8 @@ class RecognitionParameters:
     caution_without_image: float = 2.0
     """Log evidence for no action, beside ``caution``, in every frame without an image."""
     strangeness: float = 8.0
-    """Log evidence against every action of a movement at e times the limits of all movements."""
+    """Log evidence against every action of a movement that is e times as far from all classes as
+    people's movements are."""
     doubt_with_image: float = 10.0
     """Log evidence against an action of a movement at e times its reach, with an image."""
     doubt_without_image: float = 20.0
@@ -82,20 +83,20 @@ class RecognitionParameters:
     """Seconds after which what was seen of an object says a third as much."""
 
     # Which objects are tracked (cascade).
+    unseen_ns: int = 1_000_000_000
+    """Nanoseconds without a look at any object after which movement alone decides, and has to say
+    more."""
     followed: int = 2
     """Number of actions, likeliest first, whose objects are tracked at the most, beside the one
     that was used last; cost grows with it."""
     worth_following: float = 0.2
     """Share of the probability of all actions from which a second action's object is tracked."""
     turn_frames: int = 3
-    """Number of successive frames in which another object is looked for, beside the followed
-    ones."""
+    """Number of successive frames that another object is looked for, beside the followed ones."""
     sure_probability: float = 0.9
     """Probability from which an action is sure, and other objects are looked for less often."""
     sure_turns: int = 8
-    """While an action is sure, others are looked for in one of this number of turns."""
-    unseen_ns: int = 1_000_000_000
-    """Nanoseconds without a look at an object after which movement alone decides."""
+    """Number of turns of which one is used to look for others, while an action is sure."""
 
 
 DEFAULT_RECOGNITION = RecognitionParameters()

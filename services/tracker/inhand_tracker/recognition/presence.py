@@ -1,8 +1,8 @@
-"""Whether an object is there at all: what an image's support for it says.
+"""Judges whether an object is there at all, by what an image's support for it says.
 
 A tracker looks for its object whether it is there or not, and always finds something that resembles
-it. How well it resembles differs between a broom and glasses, and between a broom alone and beside
-a golf club. So support is compared with that in images of each thing that was taught, by normal
+it. How well depends on the object, and on what is there instead: a golf club resembles a broom more
+than glasses do. So support is compared with that in images of each thing that was taught, by normal
 distributions of one variance (linear discriminant analysis). A thing that nobody taught is as
 likely to resemble the object as each of the things that were, the object itself among them.
 
@@ -24,7 +24,7 @@ from inhand_tracker.sight.support import INTERIOR, PARTS, Support
 
 @dataclass(frozen=True)
 class Presence:
-    """What images say of K objects, learned from images of each of them.
+    """Keeps what images say of K objects, learned from images of each of them.
 
     ``supports`` (K, K) are the mean supports of each object (row) in images of each one, on the
     diagonal of itself; ``spread`` (K,) their standard deviations. ``parts`` (K, 4) are the means of

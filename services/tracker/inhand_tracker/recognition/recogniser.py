@@ -1,4 +1,4 @@
-"""A learned recogniser of actions, and what it makes of one person's movement."""
+"""Recognises actions by one person's movement, and keeps what was learned to do it."""
 
 from dataclasses import dataclass
 from typing import Protocol

@@ -1,4 +1,4 @@
-"""What is recognised in a frame: which action goes on, how surely, and where its object is."""
+"""Says what is recognised in a frame: which action, how surely, and where its object is."""
 
 from dataclasses import dataclass
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PairingParameters:
-    """How long a skeleton waits for its pixels. All three were set by hand, for 15 to 30 Hz."""
+    """Decides how long a skeleton waits for its pixels. All were set by hand."""
 
     flowing_s: float = 1.0
     """Seconds since the last frame during which pixels are taken to flow, and are waited for."""

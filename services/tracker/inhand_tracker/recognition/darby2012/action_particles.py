@@ -28,7 +28,7 @@ class ActionParticles:
 
 @dataclass(frozen=True)
 class TrainingPoses:
-    """The body poses (N, 60) of one action, compared in single precision."""
+    """Compares the body poses (N, 60) of one action with others, in single precision."""
 
     poses: Singles
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Darby2012Parameters:
-    """How particles over actions are drawn (sections 4 and 5)."""
+    """Decides how particles over actions are drawn (sections 4 and 5)."""
 
     stays: float = 0.997
     """Probability A_ii that a particle keeps its action in the next frame (section 5)."""
