@@ -90,7 +90,8 @@ def image_normal(
     y: Real,
     z: Real,
 ) -> tuple[Real, Real]:
-    """Project a normal of the outline at (x, y, z), or at any point of its ray; of any length."""
+    """Return the direction, of any length, in which the pixel of (x, y, z) moves when that point,
+    or another one of its ray, moves along its normal."""
     along = normal[2] / z
     return lens[0] * (normal[0] - along * x), lens[1] * (normal[1] - along * y)
 
