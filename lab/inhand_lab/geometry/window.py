@@ -8,7 +8,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
 
-from inhand_lab.geometry.rasteriser import NEAREST, Canvas
+from inhand_lab.geometry.canvas import NEAREST_PAINTED_M, Canvas
 
 MARGIN = 1
 """Pixels around what is looked for."""
@@ -33,7 +33,7 @@ def window_around(intrinsics: Intrinsics, points: Array) -> Window:
 
     It is the whole image where a point is too near to be projected.
     """
-    if points[:, 2].min() < NEAREST:
+    if points[:, 2].min() < NEAREST_PAINTED_M:
         return _window(intrinsics, 0, intrinsics.width, 0, intrinsics.height)
     u = intrinsics.fx * points[:, 0] / points[:, 2] + intrinsics.cx
     v = intrinsics.fy * points[:, 1] / points[:, 2] + intrinsics.cy

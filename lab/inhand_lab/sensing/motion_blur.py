@@ -14,7 +14,7 @@ from inhand_tracker.geometry.arrays import Array, Bytes, Flags, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
 
-from inhand_lab.geometry.rasteriser import Canvas, draw_triangles
+from inhand_lab.geometry.canvas import Canvas, draw_triangles
 from inhand_lab.geometry.surfaces import Surface, lit
 from inhand_lab.geometry.window import window_around
 from inhand_lab.sensing.moving_scene import MovingScene

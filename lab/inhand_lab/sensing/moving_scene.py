@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from inhand_tracker.geometry.camera import Intrinsics
 
-from inhand_lab.geometry.rasteriser import Canvas
+from inhand_lab.geometry.canvas import Canvas
 from inhand_lab.geometry.surfaces import Surface
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.people.body_motion import BodyMotion

@@ -8,7 +8,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Flags
 from inhand_tracker.geometry.camera import Intrinsics
 
-from inhand_lab.geometry.rasteriser import Canvas, draw_triangles
+from inhand_lab.geometry.canvas import Canvas, draw_triangles
 from inhand_lab.geometry.surfaces import Surface, from_mesh, lit
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.geometry.window import Window, window_around

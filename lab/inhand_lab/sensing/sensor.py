@@ -9,7 +9,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array, Bytes, Singles
 from numpy.typing import NDArray
 
-from inhand_lab.geometry.rasteriser import Canvas
+from inhand_lab.geometry.canvas import Canvas
 from inhand_lab.motions.timeline import drift
 from inhand_lab.sensing.cameras import Camera
 from inhand_lab.sensing.depth_scene import DepthScene

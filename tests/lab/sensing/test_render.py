@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 import pytest
-from inhand_lab.geometry.rasteriser import Canvas, draw_triangles
+from inhand_lab.geometry.canvas import Canvas, draw_triangles
 from inhand_lab.geometry.surfaces import Surface, ellipsoid, limb
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.sensing.cameras import CAMERAS

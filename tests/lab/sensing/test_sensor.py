@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from inhand_lab.geometry.rasteriser import Canvas, draw_triangles
+from inhand_lab.geometry.canvas import Canvas, draw_triangles
 from inhand_lab.geometry.surfaces import block, lit
 from inhand_lab.objects.model import RETURN_NO_DEPTH
 from inhand_lab.sensing.cameras import CAMERAS, KINECT, OAK_D, Camera

@@ -1,4 +1,11 @@
-"""Triangles to pixels: a z-buffer in numba."""
+"""Painting shaded triangles as a camera sees them, nearest first, on a canvas.
+
+The tracker draws as well (``inhand_tracker.shape.raster``), but something else: every side of a
+mesh, whichever way it faces, with lines along its edges so that the thinnest rod is whole, and
+depths that are exact between the corners as seen from far away. A picture wants what a camera
+sees: perspective, faces turned to it, colours, and many pictures a second, in float32. One kernel
+would be two behind one name.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +17,9 @@ from inhand_tracker.geometry.arrays import Bytes, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
 
-NEAREST = 0.10
-"""Triangles with a corner nearer than this, in metres, are left out."""
+NEAREST_PAINTED_M = 0.10
+"""Distance, in metres, below which a corner leaves its whole triangle out: no simulated camera
+measures so near."""
 
 
 @dataclass(frozen=True)
@@ -27,14 +35,14 @@ class Canvas:
 
     @classmethod
     def blank(cls, intrinsics: Intrinsics) -> Canvas:
-        """Nothing drawn yet."""
+        """Return a canvas on which nothing was drawn yet."""
         shape = (intrinsics.height, intrinsics.width)
         return cls(
             np.zeros((*shape, 3), np.uint8), np.zeros(shape, np.float32), np.zeros(shape, np.uint8)
         )
 
     def copy(self) -> Canvas:
-        """A canvas of its own to draw on."""
+        """Return a copy to draw on."""
         return Canvas(self.colour.copy(), self.inverse_depth.copy(), self.labels.copy())
 
     def depth_in_millimetres(self) -> NDArray[np.uint16]:
@@ -52,8 +60,8 @@ def draw_triangles(
 ) -> None:
     """Draw the triangles that face the camera and are nearer than what is there.
 
-    vertices (V, 3) in the camera frame in metres, faces (F, 3) counter-clockwise from outside,
-    shades (V, 3) RGB from 0 to 255.
+    ``vertices`` (V, 3) in the camera frame in metres, ``faces`` (F, 3) counter-clockwise from
+    outside, ``shades`` (V, 3) RGB from 0 to 255.
     """
     _draw(
         vertices,
@@ -74,7 +82,7 @@ def _draw(vertices, faces, shades, lens, label, colour, inverse_depth, labels): 
     for face in range(faces.shape[0]):
         a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
         za, zb, zc = vertices[a, 2], vertices[b, 2], vertices[c, 2]
-        if min(za, zb, zc) < NEAREST:
+        if min(za, zb, zc) < NEAREST_PAINTED_M:
             continue
         wa, wb, wc = 1.0 / za, 1.0 / zb, 1.0 / zc
         ua, va = fx * vertices[a, 0] * wa + cx, fy * vertices[a, 1] * wa + cy
