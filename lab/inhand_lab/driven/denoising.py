@@ -17,7 +17,8 @@ from inhand_schemas.joints import MIRRORED_JOINTS, PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array
 from scipy.linalg import solveh_banded
 
-from inhand_lab.people.kinematics import FLEXION_LIMIT
+from inhand_lab.people.parameters import DEFAULT_LIMITS
+from inhand_lab.people.two_bones import span
 
 CUT_OFF = 5.0
 """Frequency in Hz at which half of a movement is kept: arms move at will below it."""
@@ -106,7 +107,7 @@ def _keep_bones(joints: Array, lengths: Array) -> Array:
         for child, parent, length in zip(CHILDREN, ROOTS, lengths, strict=True):
             _pull(kept, parent, child, length, length)
         for shoulder, elbow, wrist in ARMS:
-            reach = _span(lengths[elbow - 1], lengths[wrist - 1], FLEXION_LIMIT)
+            reach = span(lengths[elbow - 1], lengths[wrist - 1], DEFAULT_LIMITS.flexion)
             _pull(kept, shoulder, wrist, reach, np.inf)
     return _hang_from_hips(kept, lengths)
 
@@ -138,9 +139,5 @@ def _limited(upper: Array, lower: Array) -> Array:
     cosine = np.sum(upper * lower, axis=1, keepdims=True)
     aside = lower - cosine * upper
     aside /= np.maximum(np.linalg.norm(aside, axis=1, keepdims=True), 1e-6)
-    bend = np.minimum(np.arccos(np.clip(cosine, -1.0, 1.0)), np.pi - FLEXION_LIMIT)
+    bend = np.minimum(np.arccos(np.clip(cosine, -1.0, 1.0)), np.pi - DEFAULT_LIMITS.flexion)
     return np.asarray(np.cos(bend) * upper + np.sin(bend) * aside)
-
-
-def _span(upper: float, lower: float, angle: float) -> float:
-    return float(np.sqrt(upper**2 + lower**2 - 2.0 * upper * lower * np.cos(angle)))
