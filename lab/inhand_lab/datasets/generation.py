@@ -19,7 +19,8 @@ from inhand_lab.world.messages import (
 from inhand_lab.world.random_streams import GENERATOR_VERSION
 from inhand_lab.world.simulation import Simulation, simulate
 
-FRAME_RATE = 30
+GENERATED_RATE = 30
+"""Frames a second of generated datasets."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ def generate(
 
     ``on_progress`` is called once a recording. Raises DatasetError or RecordingError.
     """
-    camera = replace(settings.camera, frame_rate=FRAME_RATE)
+    camera = replace(settings.camera, frame_rate=GENERATED_RATE)
     takes = (
         Take(
             f"{interaction}_p{participant:02}",

@@ -17,19 +17,9 @@ from inhand_schemas.joints import MIRRORED_JOINTS, PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array
 from scipy.linalg import solveh_banded
 
+from inhand_lab.driven.parameters import DEFAULT_DENOISING, DenoisingParameters
 from inhand_lab.people.parameters import DEFAULT_LIMITS
 from inhand_lab.people.two_bones import span
-
-CUT_OFF = 5.0
-"""Frequency in Hz at which half of a movement is kept: arms move at will below it."""
-PATH_DEVIATION = 0.03
-"""Distance in metres from its path at which a joint counts half."""
-BONE_DEVIATION = 0.25
-"""Change of a bone's length, as a share of it, at which the joint at its end counts half."""
-REWEIGHTINGS = 6
-FLOOR = 1e-6
-"""Keeps the smoother's equations regular where hardly anything was seen."""
-RELAXATIONS = 30
 
 CHILDREN = list(range(1, len(PARENTS)))
 ROOTS = list(PARENTS[1:])
@@ -39,13 +29,16 @@ ARMS = (
 )
 
 
-def denoise(joints: Array, frame_rate: float) -> Array:
+def denoise(
+    joints: Array, frame_rate: float, parameters: DenoisingParameters = DEFAULT_DENOISING
+) -> Array:
     """Plausible true joints (T, 20, 3) of measured ones (T, 20, 3), NaN where one is missing.
 
     Every joint must have been seen at least once.
     """
-    smooth = _smooth_paths(joints, _trust_in_bones(joints), frame_rate)
-    return _keep_bones(smooth, bone_lengths(smooth))
+    trust = _trust_in_bones(joints, parameters)
+    smooth = _smooth_paths(joints, trust, frame_rate, parameters)
+    return _keep_bones(smooth, bone_lengths(smooth), parameters.relaxations)
 
 
 def bone_lengths(joints: Array) -> Array:
@@ -59,51 +52,57 @@ def _lengths(joints: Array) -> Array:
     return np.asarray(np.linalg.norm(joints[:, CHILDREN] - joints[:, ROOTS], axis=2))
 
 
-def _trust_in_bones(joints: Array) -> Array:
-    """Weights (T, 20): little for a joint too near to or too far from its parent, 0 if missing."""
+def _trust_in_bones(joints: Array, parameters: DenoisingParameters) -> Array:
+    """Weights (T, 20), small for a joint too near to or far from its parent, 0 if missing."""
     weights = np.isfinite(joints).all(axis=2).astype(float)
     usual = bone_lengths(joints)
     with np.errstate(invalid="ignore"):
-        strange = (_lengths(joints) / usual - 1.0) / BONE_DEVIATION
+        strange = (_lengths(joints) / usual - 1.0) / parameters.bone_deviation
     weights[:, 1:] /= 1.0 + np.nan_to_num(strange) ** 2
     return weights
 
 
-def _smooth_paths(joints: Array, trust: Array, frame_rate: float) -> Array:
+def _smooth_paths(
+    joints: Array, trust: Array, frame_rate: float, parameters: DenoisingParameters
+) -> Array:
+    """Paths (T, 20, 3) smoothed again and again, with less weight for what is far from them."""
     observed = np.nan_to_num(joints)
     smooth = np.empty_like(observed)
     for joint in range(observed.shape[1]):
         weights = trust[:, joint]
-        for _ in range(REWEIGHTINGS):
-            smooth[:, joint] = smooth_path(observed[:, joint], weights, frame_rate)
+        for _ in range(parameters.reweightings):
+            smooth[:, joint] = smooth_path(
+                observed[:, joint], weights, parameters.cut_off / frame_rate
+            )
             away = np.linalg.norm(observed[:, joint] - smooth[:, joint], axis=1)
-            weights = trust[:, joint] / (1.0 + (away / PATH_DEVIATION) ** 2)
+            weights = trust[:, joint] / (1.0 + (away / parameters.path_deviation) ** 2)
     return smooth
 
 
-def smooth_path(path: Array, weights: Array, frame_rate: float, cut_off: float = CUT_OFF) -> Array:
+def smooth_path(path: Array, weights: Array, cut_off: float) -> Array:
     """The path (T, K) that minimises weighted squared distances plus squared third differences.
 
-    Half of a movement is kept at the cut-off, in Hz. weights (T,) are from 0 to 1, not all 0.
+    Half of a movement is kept at the cut-off, a share of the frame rate. ``weights`` (T,) are from
+    0 to 1, not all 0.
     """
     count = len(path)
     if count < 4:
         return np.tile(np.average(path, axis=0, weights=weights), (count, 1))
-    stiffness = (2.0 * np.sin(np.pi * min(cut_off / frame_rate, 0.5))) ** -6.0
+    stiffness = (2.0 * np.sin(np.pi * min(cut_off, 0.5))) ** -6.0
     difference = np.diff(np.eye(4), 3, axis=0)[0]
     banded = np.zeros((4, count))
     for first in range(4):
         for second in range(first, 4):
             product = stiffness * difference[first] * difference[second]
             banded[second - first, first : count - 3 + first] += product
-    banded[0] += weights + FLOOR
+    banded[0] += weights + DEFAULT_DENOISING.least_weight
     return np.asarray(solveh_banded(banded, weights[:, None] * path, lower=True))
 
 
-def _keep_bones(joints: Array, lengths: Array) -> Array:
+def _keep_bones(joints: Array, lengths: Array, relaxations: int) -> Array:
     """Joints (T, 20, 3) moved as little as it takes to give each bone its length (19,)."""
     kept = joints.copy()
-    for _ in range(RELAXATIONS):
+    for _ in range(relaxations):
         for child, parent, length in zip(CHILDREN, ROOTS, lengths, strict=True):
             _pull(kept, parent, child, length, length)
         for shoulder, elbow, wrist in ARMS:
@@ -123,7 +122,7 @@ def _pull(joints: Array, one: int, other: int, least: float, most: float) -> Non
 
 
 def _hang_from_hips(joints: Array, lengths: Array) -> Array:
-    """The last remainder: bones of exact length in the directions they have, no elbow too bent."""
+    """Joints (T, 20, 3) on bones of exact length in the directions they have, no elbow too bent."""
     exact = joints.copy()
     directions = joints[:, CHILDREN] - joints[:, ROOTS]
     directions /= np.maximum(np.linalg.norm(directions, axis=2, keepdims=True), 1e-6)

@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 from inhand_tracker.geometry.arrays import Array, Bytes
 
+from inhand_lab.driven.parameters import DEFAULT_HOLD
 from inhand_lab.driven.seen_frames import SeenFrames, seen_frames
 from inhand_lab.geometry.transforms import Transform, mean_rotation, rotation_about
 from inhand_lab.motions.grips import DRIFT_PERIOD, SLIDE_DRIFT, TURN_DRIFT
@@ -25,21 +26,18 @@ from inhand_lab.world.interactions import INTERACTIONS
 
 Carrier = Literal["right_hand", "left_hand", "head", "right_foot", "left_foot"]
 
-FRAME_RATE = 30.0
-REHEARSAL = np.arange(360) / FRAME_RATE
-"""Times in seconds of the performance that shows the hold."""
-LEVER = 0.10
-"""Hands this far apart, on the object and in the air, count as much as one hand's turn."""
-UNSURE = 0.20
-"""Distance of the palms, metres, below which the way between them says little: it is noise."""
+REHEARSAL_RATE = 30.0
+"""Frames a second of the performance that shows the hold."""
+REHEARSAL = np.arange(360) / REHEARSAL_RATE
+"""Times of that performance, seconds."""
 
 
 @dataclass(frozen=True)
 class Hold:
     """A right-handed person's hold of an object.
 
-    carrier_from_object is what carries it, steady. right_wrist and left_wrist (3, 3) turn the hand
-    that a skeleton shows into the one that holds. between_palms (3,) leads from the carrier's palm
+    ``carrier_from_object`` is steady. ``right_wrist`` and ``left_wrist`` (3, 3) turn the hand that
+    a skeleton shows into the one that holds. ``between_palms`` (3,) leads from the carrier's palm
     to the other one in the object's frame, where both hold it.
     """
 
@@ -59,7 +57,7 @@ def rehearse(interaction: str, person: SimulatedPerson, seed: int) -> Hold:
     body = place_body(person, done.posture, done.right_hand, done.left_hand)
     contact = _usual(done.contact)
     held = done.contact == contact
-    seen, world_from_object = seen_frames(body.joints, FRAME_RATE), done.world_from_object
+    seen, world_from_object = seen_frames(body.joints, REHEARSAL_RATE), done.world_from_object
     carriers = _carriers(body, seen)
     steadiness = {
         carrier: _unsteadiness(carriers[carrier][held], world_from_object[held])
@@ -97,8 +95,8 @@ def attach(
         return placed
     way = body.from_left_hand.translation - body.from_right_hand.translation
     square = np.sum(way**2, axis=1, keepdims=True)
-    surely = way * square / (square + UNSURE**2)
-    pull = surely[:, :, None] * (hold.between_palms / LEVER**2)
+    surely = way * square / (square + DEFAULT_HOLD.unsure**2)
+    pull = surely[:, :, None] * (hold.between_palms / DEFAULT_HOLD.lever**2)
     rotation = _nearest_rotation(placed.rotation + pull)
     palm_in_object = grip.inverse().translation
     palm = body.from_right_hand.translation
@@ -131,7 +129,7 @@ def _usual(contact: Bytes) -> ContactKind:
 
 
 def _unsteadiness(world_from_carrier: Transform, world_from_object: Transform) -> float:
-    """How far the object strays in the carrier's frame, metres."""
+    """Deviation of the object's place in the carrier's frame, metres."""
     places = (world_from_carrier.inverse() @ world_from_object).translation
     return float(np.linalg.norm(places.std(axis=0)))
 

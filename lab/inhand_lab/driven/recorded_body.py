@@ -18,6 +18,7 @@ from inhand_tracker.geometry.arrays import Array, Bytes
 
 from inhand_lab.driven.denoising import bone_lengths, denoise
 from inhand_lab.driven.holds import attach, rehearse
+from inhand_lab.driven.parameters import DEFAULT_HOLD
 from inhand_lab.driven.seen_frames import SeenFrames, seen_frames
 from inhand_lab.geometry.transforms import (
     MIRROR,
@@ -37,18 +38,14 @@ from inhand_lab.world.random_streams import PEOPLE_VERSION
 from inhand_lab.world.simulation import Simulation
 from inhand_lab.world.viewpoint import facing_of
 
-UNSEEN_TWIST, TWIST_PERIOD = 0.25, 2.0
-"""Deviation in radians and period in seconds of the forearm's twist that no joint shows."""
-UNSEEN_LOOK, LOOK_PERIOD = 0.20, 3.0
-"""The same of the head's turn."""
-
 
 @dataclass(frozen=True)
 class RecordedBody:
     """What a tracker saw of one person over T frames, in the camera's frame.
 
-    joints (T, 20, 3) in metres, NaN where one is missing, states (T, 20) as in Simulation,
-    confidences (T, 20); participant is the person's number, recording tells one's takes apart.
+    ``joints`` (T, 20, 3) are in metres, NaN where one is missing, ``states`` (T, 20) as in
+    Simulation, ``confidences`` (T, 20); ``participant`` is the person's number, ``recording`` that
+    of one of the person's takes.
     """
 
     joints: Array
@@ -63,7 +60,7 @@ class RecordedBody:
 def drive(
     recorded: RecordedBody, interaction: str, seed: int, camera: Camera = KINECT
 ) -> Simulation:
-    """The recorded movement with the interaction's object held, or worn, from first to last."""
+    """Simulate an interaction's object, held or worn all the time, in a recorded movement."""
     camera_joints = denoise(recorded.joints, recorded.frame_rate)
     camera_from_world = _world_of(camera_joints)
     joints = camera_from_world.inverse().apply(camera_joints)
@@ -164,7 +161,9 @@ def _turn_unseen(
     """The body with its hands and head turned by what no skeleton shows."""
 
     def turned(hand: Transform, wrist: Array, joint: Joint) -> Transform:
-        twist = rotation_about("y", drift(times, random, UNSEEN_TWIST, TWIST_PERIOD))
+        twist = rotation_about(
+            "y", drift(times, random, DEFAULT_HOLD.unseen_twist, DEFAULT_HOLD.twist_period)
+        )
         rotation = hand.rotation @ twist @ wrist
         root = joints[:, joint]
         palm = np.linalg.norm(hand.translation - root, axis=1, keepdims=True)
@@ -172,7 +171,9 @@ def _turn_unseen(
 
     right_hand = turned(seen.right_hand, right_wrist, Joint.WRIST_RIGHT)
     left_hand = turned(seen.left_hand, left_wrist, Joint.WRIST_LEFT)
-    look = rotation_about("z", drift(times, random, UNSEEN_LOOK, LOOK_PERIOD))
+    look = rotation_about(
+        "z", drift(times, random, DEFAULT_HOLD.unseen_look, DEFAULT_HOLD.look_period)
+    )
     moved = joints.copy()
     moved[:, Joint.HAND_RIGHT] = right_hand.translation
     moved[:, Joint.HAND_LEFT] = left_hand.translation

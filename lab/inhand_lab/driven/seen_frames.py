@@ -15,6 +15,7 @@ from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.driven.denoising import smooth_path
+from inhand_lab.driven.parameters import DEFAULT_SEEN_FRAMES
 from inhand_lab.geometry.transforms import (
     MIRROR,
     Transform,
@@ -23,13 +24,6 @@ from inhand_lab.geometry.transforms import (
     rotation_from_axes,
     rotation_from_vector,
 )
-
-STRAIGHT = 0.15
-"""An elbow bent by this sine shows as much of the arm's plane as is known of it anyway."""
-HAND_SHARE = 0.5
-"""How much the way from wrist to hand counts beside the forearm's: the hand is seen the worst."""
-ROLL_CUT_OFF = 2.5
-"""Frequency in Hz at which half of a thumb's turn about its fingers is kept."""
 
 
 @dataclass(frozen=True)
@@ -81,8 +75,12 @@ def _hand(arm: Array, aside: Array, frame_rate: float) -> Transform:
     never turns faster about the fingers than forearms do.
     """
     shoulder, elbow, wrist, hand = np.moveaxis(arm, 1, 0)
-    fingers = normalised(normalised(wrist - elbow) + HAND_SHARE * normalised(hand - wrist))
-    thumb = normalised(shoulder - elbow) + STRAIGHT * np.cross(normalised(aside), fingers)
+    fingers = normalised(
+        normalised(wrist - elbow) + DEFAULT_SEEN_FRAMES.hand_share * normalised(hand - wrist)
+    )
+    thumb = normalised(shoulder - elbow) + DEFAULT_SEEN_FRAMES.straight * np.cross(
+        normalised(aside), fingers
+    )
     palm = np.linalg.norm(hand - wrist, axis=1, keepdims=True)
     rotation = _rolled(_carried(fingers, thumb[0]), thumb, frame_rate)
     return Transform(wrist + palm * fingers, rotation)
@@ -105,7 +103,8 @@ def _rolled(frames: Array, thumb: Array, frame_rate: float) -> Array:
     """Frames (T, 3, 3) turned about y until z leans towards the thumb (T, 3), but smoothly."""
     x, z = (np.sum(frames[:, :, axis] * thumb, axis=1) for axis in (0, 2))
     roll = np.unwrap(np.arctan2(x, z))[:, None]
-    smooth = smooth_path(roll, np.minimum(x**2 + z**2, 1.0), frame_rate, ROLL_CUT_OFF)
+    cut_off = DEFAULT_SEEN_FRAMES.roll_cut_off / frame_rate
+    smooth = smooth_path(roll, np.minimum(x**2 + z**2, 1.0), cut_off)
     return np.asarray(frames @ rotation_about("y", smooth[:, 0]))
 
 

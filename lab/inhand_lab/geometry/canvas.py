@@ -60,7 +60,7 @@ def draw_triangles(
 ) -> None:
     """Draw the triangles that face the camera and are nearer than what is there.
 
-    ``vertices`` (V, 3) in the camera frame in metres, ``faces`` (F, 3) counter-clockwise from
+    ``vertices`` (V, 3) are in the camera frame in metres, ``faces`` (F, 3) counter-clockwise from
     outside, ``shades`` (V, 3) RGB from 0 to 255.
     """
     _draw(

@@ -1,4 +1,4 @@
-"""Recursive filters along time."""
+"""Recursion along time: sums that leak."""
 
 from __future__ import annotations
 

@@ -12,9 +12,11 @@ from trimesh import creation
 
 from inhand_lab.geometry.transforms import Transform, normalised
 
-Colour = tuple[int, int, int]
+Rgb = tuple[int, int, int]
+"""Red, green and blue, 0 to 255."""
 
 AMBIENT = 0.42
+"""Share of the light that comes from everywhere."""
 LIGHT_IN_CAMERA = normalised([-0.35, -0.75, -0.55])
 """Direction to the light: above, to the left and on the camera's side."""
 
@@ -57,8 +59,8 @@ def join_surfaces(surfaces: list[Surface]) -> Surface:
     )
 
 
-def from_mesh(mesh: trimesh.Trimesh, colours: ArrayLike) -> Surface:
-    """A mesh with sharp edges kept: every triangle has its own corners. colours (V, 3) or (3,)."""
+def surface_of_mesh(mesh: trimesh.Trimesh, colours: ArrayLike) -> Surface:
+    """A mesh of colours (V, 3) or (3,) with sharp edges: every triangle has its own corners."""
     corners = np.asarray(mesh.faces, np.int32).ravel()
     painted = np.broadcast_to(np.asarray(colours, np.float32), (len(mesh.vertices), 3))
     return Surface(
@@ -69,8 +71,8 @@ def from_mesh(mesh: trimesh.Trimesh, colours: ArrayLike) -> Surface:
     )
 
 
-def ellipsoid(centre: ArrayLike, radii: ArrayLike, colour: Colour, detail: int = 2) -> Surface:
-    """An ellipsoid along the axes, radii (3,)."""
+def ellipsoid(centre: ArrayLike, radii: ArrayLike, colour: Rgb, detail: int = 2) -> Surface:
+    """An ellipsoid along the axes, of radii (3,) in metres."""
     sphere = creation.icosphere(subdivisions=detail)
     unit = np.asarray(sphere.vertices, np.float64)
     stretch = np.asarray(radii, np.float64)
@@ -82,7 +84,7 @@ def ellipsoid(centre: ArrayLike, radii: ArrayLike, colour: Colour, detail: int =
     )
 
 
-def limb(length: float, root_radius: float, tip_radius: float, colour: Colour) -> Surface:
+def limb(length: float, root_radius: float, tip_radius: float, colour: Rgb) -> Surface:
     """A round limb from the origin along z, tapering, with rounded ends."""
     sections, rings = 14, 5
     angles = 2.0 * np.pi * np.arange(sections) / sections
@@ -113,8 +115,8 @@ def limb(length: float, root_radius: float, tip_radius: float, colour: Colour) -
     )
 
 
-def block(centre: ArrayLike, size: ArrayLike, colour: Colour) -> Surface:
-    """A box along the axes, size (3,)."""
+def block(centre: ArrayLike, size: ArrayLike, colour: Rgb) -> Surface:
+    """A box along the axes, of a size (3,) in metres."""
     mesh = creation.box(extents=np.asarray(size, np.float64))
     mesh.apply_translation(np.asarray(centre, np.float64))
-    return from_mesh(mesh, colour)
+    return surface_of_mesh(mesh, colour)

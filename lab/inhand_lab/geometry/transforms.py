@@ -21,23 +21,23 @@ MIRROR = np.array([-1.0, 1.0, 1.0])
 class Transform:
     """A rigid transform a_from_b, or a series of them.
 
-    translation (..., 3) in metres and rotation (..., 3, 3); leading axes broadcast.
+    ``translation`` (..., 3) is in metres, ``rotation`` (..., 3, 3); leading axes broadcast.
     """
 
     translation: Array
     rotation: Array
 
     def __matmul__(self, other: Transform) -> Transform:
-        """a_from_b @ b_from_c = a_from_c."""
+        """The chain a_from_b @ b_from_c = a_from_c."""
         return Transform(self.apply(other.translation), self.rotation @ other.rotation)
 
     def apply(self, points: ArrayLike) -> Array:
-        """Points (..., 3) in b, one for each transform, to points in a."""
+        """Points (..., 3) of b, one for each transform, as points of a."""
         rotated = np.einsum("...ij,...j->...i", self.rotation, np.asarray(points, float))
         return np.asarray(rotated + self.translation)
 
     def inverse(self) -> Transform:
-        """b_from_a."""
+        """The inverse b_from_a."""
         transposed = np.swapaxes(self.rotation, -1, -2)
         return Transform(-np.einsum("...ij,...j->...i", transposed, self.translation), transposed)
 
@@ -57,7 +57,7 @@ class Transform:
 
 
 def rotation_about(axes: str, *angles: ArrayLike) -> Array:
-    """Rotations (..., 3, 3) from extrinsic Euler angles in radians, named as scipy names them."""
+    """Rotations (..., 3, 3) by extrinsic Euler angles in radians, about axes named as scipy's."""
     stacked = np.stack(np.broadcast_arrays(*[np.asarray(angle, float) for angle in angles]), -1)
     matrices = Rotation.from_euler(axes, stacked.reshape(-1, len(axes))).as_matrix()
     return np.asarray(matrices.reshape(*stacked.shape[:-1], 3, 3))
@@ -70,7 +70,7 @@ def rotation_from_vector(vectors: ArrayLike) -> Array:
     return np.asarray(matrices.reshape(*array.shape, 3))
 
 
-def turned(points: Array, vectors: Array) -> Array:
+def turn_points(points: Array, vectors: Array) -> Array:
     """Points (N, 3), each turned about the origin by a rotation vector (N, 3) in radians."""
     return np.asarray(Rotation.from_rotvec(vectors).apply(points))
 
@@ -87,7 +87,7 @@ def normalised(vectors: ArrayLike) -> Array:
 
 
 def rotation_from_axes(y: ArrayLike, towards_z: ArrayLike) -> Array:
-    """Rotations (..., 3, 3) whose y axis is y and whose z axis leans towards towards_z.
+    """Rotations (..., 3, 3) whose y axis is ``y`` and whose z axis leans to ``towards_z``.
 
     Both arguments are (..., 3), of any length but zero, and not parallel.
     """

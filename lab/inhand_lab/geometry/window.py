@@ -10,8 +10,8 @@ from inhand_tracker.geometry.camera import Intrinsics
 
 from inhand_lab.geometry.canvas import NEAREST_PAINTED_M, Canvas
 
-MARGIN = 1
-"""Pixels around what is looked for."""
+WINDOW_MARGIN = 1
+"""Width of the frame around what is looked for, pixels."""
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ def window_around(intrinsics: Intrinsics, points: Array) -> Window:
 
 
 def _span(pixels: Array, size: int) -> tuple[int, int]:
-    first = int(np.clip(np.floor(pixels.min()) - MARGIN, 0, size))
-    return first, int(np.clip(np.ceil(pixels.max()) + MARGIN + 1, first, size))
+    first = int(np.clip(np.floor(pixels.min()) - WINDOW_MARGIN, 0, size))
+    return first, int(np.clip(np.ceil(pixels.max()) + WINDOW_MARGIN + 1, first, size))
 
 
 def _window(intrinsics: Intrinsics, left: int, right: int, top: int, bottom: int) -> Window:

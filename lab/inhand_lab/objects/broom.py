@@ -11,7 +11,7 @@ from trimesh import creation
 from inhand_lab.objects.model import ObjectModel, build_model
 
 BROOM_LENGTH = 1.38
-"""Bristle tips to the end of the handle."""
+"""Length from the tips of the bristles to the end of the handle."""
 BROOM_HALF_LENGTH = BROOM_LENGTH / 2.0
 HANDLE_RADIUS = 0.0125
 

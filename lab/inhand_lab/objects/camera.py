@@ -16,7 +16,7 @@ CAMERA_DEPTH = 0.046
 LENS_RADIUS = 0.034
 LENS_LENGTH = 0.065
 GRIP_OFFSET = CAMERA_WIDTH / 2.0 - 0.008
-"""The middle of the side that a hand holds, from the camera's middle."""
+"""Distance from the camera's middle to the middle of the side that a hand holds."""
 BODY_COLOUR, LENS_COLOUR, GLASS_COLOUR = (44, 44, 48), (30, 30, 32), (84, 92, 128)
 SCREEN_COLOUR = (70, 80, 92)
 FORWARD = np.array([[1.0, 0, 0, 0], [0, 0, 1.0, 0], [0, -1.0, 0, 0], [0, 0, 0, 1.0]])

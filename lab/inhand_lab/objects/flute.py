@@ -13,12 +13,12 @@ from inhand_lab.objects.model import ObjectModel, build_model, reflected
 FLUTE_HALF_LENGTH = 0.335
 TUBE_RADIUS = 0.0095
 EMBOUCHURE = -0.268
-"""Where along the tube it is blown."""
+"""Place along the tube at which it is blown."""
 KEYS = (
     *(-0.128, -0.105, -0.083, -0.061, -0.039, -0.017, 0.022, 0.044, 0.066),
     *(0.089, 0.112, 0.136, 0.160, 0.205, 0.230, 0.256),
 )
-"""Where along the tube the key cups are."""
+"""Places of the key cups along the tube."""
 SILVER, SHADE, HOLE = (206, 208, 214), (168, 170, 178), (40, 40, 44)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 from trimesh import creation
 
-from inhand_lab.objects.model import ObjectModel, build_model, reflected, tube
+from inhand_lab.objects.model import Z_TO_MINUS_Y, ObjectModel, build_model, reflected, tube
 
 LENS_CENTRE = 0.033
 LENS_HALF_SIZE = (0.026, 0.021)
@@ -17,8 +17,6 @@ TEMPLE_LENGTH = 0.14
 EAR_DROP = 0.025
 FRAME_COLOUR = (30, 28, 32)
 LENS_COLOUR = (70, 82, 96)
-UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
-"""Homogeneous transform that lays the z axis along -y."""
 
 
 @cache
@@ -29,7 +27,7 @@ def glasses() -> ObjectModel:
     lens = creation.cylinder(radius=1.0, height=0.0016, sections=28)
     lens.apply_scale([LENS_HALF_SIZE[0], LENS_HALF_SIZE[1], 1.0])
     for part in (rim, lens):
-        part.apply_transform(UPRIGHT)
+        part.apply_transform(Z_TO_MINUS_Y)
         part.apply_translation([LENS_CENTRE, 0.0, 0.0])
     hinge = LENS_CENTRE + 0.95 * LENS_HALF_SIZE[0]
     temple = tube(

@@ -11,10 +11,10 @@ from trimesh import creation
 from inhand_lab.objects.model import ObjectModel, build_model
 
 CLUB_LENGTH = 0.95
-"""Sole of the head to the end of the grip: a seven iron's."""
+"""Length from the sole of the head to the end of the grip: a seven iron's."""
 GRIP_LENGTH = 0.27
 HANDS_BELOW_END = 0.115
-"""The origin, between the two hands, below the end of the grip."""
+"""Distance of the origin, which is between the two hands, below the end of the grip."""
 SOLE = HANDS_BELOW_END - CLUB_LENGTH
 LOFT = np.radians(30.0)
 GRIP_RADIUS, SHAFT_RADIUS = 0.0125, 0.0055

@@ -13,9 +13,9 @@ from inhand_lab.objects.model import ObjectModel, build_model
 HAMMER_LENGTH = 0.33
 HAMMER_HALF_LENGTH = HAMMER_LENGTH / 2.0
 HEAD_HEIGHT = HAMMER_HALF_LENGTH - 0.016
-"""The striking face's axis along the handle."""
+"""Height of the striking face's axis along the handle."""
 FACE_REACH = 0.062
-"""The handle's axis to the striking face."""
+"""Distance from the handle's axis to the striking face."""
 FACE_RADIUS = 0.0135
 HANDLE_HALF_SIZE = (0.011, 0.016)
 STEEL, RUBBER, ASH = (122, 126, 134), (34, 36, 40), (202, 164, 104)

@@ -16,11 +16,11 @@ JUG_BELLY = 0.037
 JUG_RIM = 0.031
 JUG_WALL = 0.003
 JUG_HANDLE_REACH = 0.030
-"""Jug's belly to the middle of its handle's bar."""
+"""Distance from the jug's belly to the middle of its handle's bar."""
 SPOUT_REACH = 0.017
-"""The spout beyond the rim."""
+"""Length of the spout beyond the rim."""
 SPOUT = np.array([0.0, JUG_RIM + SPOUT_REACH, JUG_HEIGHT / 2.0 + 0.004])
-"""The spout's tip in the jug's frame."""
+"""Tip of the spout in the jug's frame."""
 CREAM = (238, 232, 214)
 
 

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
 from inhand_tracker.shape.shape import Symmetry
 from trimesh import creation
 
-from inhand_lab.objects.model import ObjectModel, build_model
+from inhand_lab.objects.model import Z_TO_MINUS_Y, ObjectModel, build_model
 
 LENS_RADIUS = 0.045
 RIM_RADIUS = 0.005
 HANDLE_RADIUS = 0.009
 HANDLE_TOP, HANDLE_END = -0.062, -0.168
-"""Where the handle begins and ends along z."""
+"""Places along z at which the handle begins and ends."""
 RIM_COLOUR, LENS_COLOUR, HANDLE_COLOUR = (168, 140, 70), (196, 212, 220), (70, 40, 26)
-UPRIGHT = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
-"""Homogeneous transform that lays the z axis along -y."""
 
 
 @cache
@@ -29,7 +26,7 @@ def magnifier() -> ObjectModel:
     rim = creation.torus(LENS_RADIUS, RIM_RADIUS, major_sections=40, minor_sections=8)
     lens = creation.cylinder(radius=LENS_RADIUS, height=0.005, sections=40)
     for part in (rim, lens):
-        part.apply_transform(UPRIGHT)
+        part.apply_transform(Z_TO_MINUS_Y)
     neck = creation.cylinder(
         radius=0.005, segment=[(0.0, 0.0, -LENS_RADIUS), (0.0, 0.0, HANDLE_TOP)], sections=12
     )

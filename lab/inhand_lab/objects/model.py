@@ -1,4 +1,4 @@
-"""What an object of the simulated world is, and how meshes are put together."""
+"""Objects of the simulated world, and how their meshes are put together."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ from inhand_tracker.shape.shape import Symmetry
 from inhand_lab.geometry.transforms import MIRROR, normalised
 
 TUBE_SECTIONS = 10
+"""Number of corners of a tube's cross section."""
+Z_TO_MINUS_Y = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
+"""Homogeneous transform that lays the z axis along -y."""
 
 RETURN_NO_DEPTH = frozenset(
     {
@@ -34,11 +37,11 @@ glossy black, or finer than the pattern that is projected or matched.
 
 @dataclass(frozen=True)
 class ObjectModel:
-    """An object: mesh in metres in the object's frame, and what tracking needs to know of it.
+    """An object: its mesh in metres in the object's frame, and what tracking needs of it.
 
-    marked_vertices (M, 3) are vertices of the mesh for the error score. symmetries lists the
-    turns that leave the object looking the same. colour (3,) and vertex_colours (V, 3) are RGB,
-    0 to 255. returns_depth is false for what a depth sensor does not see.
+    ``marked_vertices`` (M, 3) are vertices of the mesh for the error score. ``symmetries`` are the
+    turns that leave the object looking the same. ``colour`` (3,) and ``vertex_colours`` (V, 3) are
+    RGB, 0 to 255. ``returns_depth`` is false for what a depth sensor does not see.
     """
 
     name: str
@@ -52,12 +55,12 @@ class ObjectModel:
 
     @property
     def vertices(self) -> Array:
-        """(V, 3) metres."""
+        """Vertices (V, 3) of the mesh, metres."""
         return np.asarray(self.mesh.vertices, float)
 
     @property
     def faces(self) -> Indices:
-        """(F, 3) indices of vertices, counter-clockwise from outside."""
+        """Indices (F, 3) of each face's vertices, counter-clockwise from outside."""
         return np.asarray(self.mesh.faces, np.int64)
 
 

@@ -13,7 +13,7 @@ MUG_HEIGHT = 0.096
 MUG_RADIUS = 0.041
 MUG_WALL = 0.004
 MUG_HANDLE_REACH = 0.033
-"""Mug's wall to the middle of its handle's bar."""
+"""Distance from the mug's wall to the middle of its handle's bar."""
 
 
 @cache

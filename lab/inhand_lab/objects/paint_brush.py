@@ -12,9 +12,9 @@ from trimesh import creation
 from inhand_lab.objects.model import ObjectModel, build_model
 
 BRISTLES_BELOW = 0.085
-"""Tips of the bristles below the origin, which is the middle of the ferrule."""
+"""Distance of the bristles' tips below the origin, which is the middle of the ferrule."""
 HANDLE_ABOVE = 0.165
-"""End of the handle above the origin."""
+"""Height of the handle's end above the origin."""
 HALF_WIDTH = 0.0375
 FERRULE_HALF_THICKNESS = 0.011
 

@@ -15,12 +15,12 @@ from inhand_lab.objects.model import ObjectModel, build_model, reflected, tube
 RACKET_LENGTH = 0.685
 HANDLE_LENGTH = 0.20
 GRIP_ABOVE_END = 0.075
-"""The origin, where the hand is, above the end of the handle."""
+"""Height of the origin, where the hand is, above the end of the handle."""
 TIP = RACKET_LENGTH - GRIP_ABOVE_END
 HEAD_HALF_SIZE = (0.125, 0.165)
 HEAD_CENTRE = TIP - HEAD_HALF_SIZE[1]
 STRING_GAP, STRING_RADIUS = 0.024, 0.0014
-"""Half as many strings as a real racket has, each twice as thick."""
+"""Distance and radius of the strings: half as many as a real racket has, twice as thick."""
 HANDLE_RADIUS = 0.017
 
 

@@ -13,11 +13,11 @@ from inhand_lab.objects.model import ObjectModel, build_model
 
 SHOE_LENGTH = 0.29
 HEEL_BEHIND = 0.078
-"""End of the heel behind the origin, which is on the sole under the ankle."""
+"""Distance of the heel's end behind the origin, which is on the sole under the ankle."""
 SOLE_THICKNESS = 0.024
 COLLAR_HEIGHT = 0.086
 TAB_HEIGHT = 0.100
-"""Top of the tab at the heel by which the shoe is held."""
+"""Height of the tab at the heel by which the shoe is held."""
 TOE = SHOE_LENGTH - HEEL_BEHIND
 
 LAST = np.array(
@@ -36,15 +36,16 @@ LAST = np.array(
 )
 """Cross sections from heel to toe: place along y, half width, height; metres."""
 OPEN = 3
-"""The sections from the heel's end to this one are open above; the others close over the foot."""
+"""Index of the last section that is open above; from there to the toe they close over the foot."""
 AROUND = 17
+"""Number of vertices around a section."""
 
 
 @cache
 def shoe() -> ObjectModel:
     """A shoe on the floor: y to the toe, z up, the origin on the sole under the ankle.
 
-    Taken as its own mirror image, so that a shoe for the left foot is this one.
+    It is taken as its own mirror image, so that a shoe for the left foot is this one.
     """
     outline = LAST[:, :2] * (1.0, 1.06)
     edge = [(side * half, y) for y, half in outline for side in (-1.0, 1.0)]

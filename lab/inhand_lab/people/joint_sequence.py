@@ -7,8 +7,10 @@ from inhand_tracker.geometry.arrays import Array, Indices
 
 @dataclass(frozen=True)
 class JointSequence:
-    """One recording of one person: joints (T, 20, 3) in the camera frame, NaN where missing, at
-    ``times_ns`` (T,)."""
+    """The joints (T, 20, 3) of one person at ``times_ns`` (T,), in the camera frame.
+
+    They are in metres, NaN where missing.
+    """
 
     action: str
     participant: str

@@ -1,4 +1,4 @@
-"""How far a simulated person's joints go, and what is comfortable for an arm."""
+"""How simulated people differ in manner, how far their joints go, and what is easy for an arm."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class JointLimits:
 class ArmComfort:
     """What an arm does with ease: squared ratios to these are what a position costs.
 
-    They were chosen by eye, so that arms keep out of the body and people look natural (`inhand
-    simulate --sheet FILE`); tests hold the first.
+    How they were chosen is not recorded. `inhand simulate --sheet FILE` shows what they make, and
+    tests/lab/world/test_world_physics.py holds that arms keep out of the body.
     """
 
     swivel: float = 0.35
@@ -57,6 +57,42 @@ class ArmComfort:
     """Number of swivels that are compared."""
 
 
+Spread = tuple[float, float]
+"""Mean and deviation of a normal distribution, which is cut at two deviations."""
+
+
+@dataclass(frozen=True)
+class MannerSpread:
+    """How people differ in manner: the spreads of Manner's fields, in its units.
+
+    How they were chosen is not recorded; `inhand simulate --realism` compares the movement that
+    comes of them with recorded people's.
+    """
+
+    tempo: Spread = (0.0, 0.13)
+    """Spread of the tempo's logarithm."""
+    amplitude: Spread = (0.0, 0.12)
+    """Spread of the amplitude's logarithm."""
+    stoop: Spread = (0.04, 0.03)
+    """Spread of the lean of the trunk, radians."""
+    head_pitch: Spread = (-0.05, 0.06)
+    """Spread of the pitch of the head, radians."""
+    elbow_flare: Spread = (0.45, 0.15)
+    """Spread of the elbow's preferred swivel, radians."""
+    sway: Spread = (0.010, 0.003)
+    """Spread of the deviation of postural sway, metres."""
+    restlessness: Spread = (0.0, 0.25)
+    """Spread of the restlessness's logarithm."""
+    grip_slide: Spread = (0.0, 0.45)
+    """Spread of where along a handle the hand takes hold."""
+    grip_turn: Spread = (0.0, 0.25)
+    """Spread of the turn of an object about its handle, radians."""
+    grip_tilt: Spread = (0.12, 0.07)
+    """Spread of the angle of a handle across the palm, radians."""
+
+
+DEFAULT_MANNERS = MannerSpread()
+"""How participants differ."""
 DEFAULT_LIMITS = JointLimits()
 """Limits of every simulated person."""
 DEFAULT_COMFORT = ArmComfort()

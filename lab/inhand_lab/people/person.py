@@ -15,10 +15,16 @@ from typing import Literal
 
 import numpy as np
 
+from inhand_lab.people.parameters import DEFAULT_MANNERS, MannerSpread, Spread
+
 HEIGHT_MEAN_AND_DEVIATION = {"female": (1.628, 0.064), "male": (1.756, 0.069)}
+"""Mean and deviation of statures, metres."""
 HEIGHT_RANGE = (1.50, 1.95)
+"""Statures that occur, metres."""
 LEFT_HANDED_SHARE = 0.1
+"""Share of people who are left-handed."""
 SEGMENT_DEVIATION = 0.035
+"""Deviation of a segment's length from its fraction of stature, as a share of it."""
 HEAD_REFERENCE, HEAD_CONSTANCY = 1.70, 0.7
 """Heads differ less than statures: their fractions hold at 1.70 m and fall with taller people."""
 
@@ -124,21 +130,22 @@ def _sample_proportions(height: float, random: np.random.Generator) -> Proportio
     return Proportions(**{name: fraction * scale for name, fraction in varied.items()})
 
 
-def _sample_manner(random: np.random.Generator) -> Manner:
-    def around(mean: float, deviation: float) -> float:
+def _sample_manner(random: np.random.Generator, spread: MannerSpread = DEFAULT_MANNERS) -> Manner:
+    def around(mean_and_deviation: Spread) -> float:
+        mean, deviation = mean_and_deviation
         return mean + deviation * float(np.clip(random.normal(), -2.0, 2.0))
 
     return Manner(
-        tempo=math.exp(around(0.0, 0.13)),
-        amplitude=math.exp(around(0.0, 0.12)),
-        stoop=around(0.04, 0.03),
-        head_pitch=around(-0.05, 0.06),
-        elbow_flare=around(0.45, 0.15),
-        sway=abs(around(0.010, 0.003)),
-        restlessness=math.exp(around(0.0, 0.25)),
-        grip_slide=around(0.0, 0.45),
-        grip_turn=around(0.0, 0.25),
-        grip_tilt=around(0.12, 0.07),
+        tempo=math.exp(around(spread.tempo)),
+        amplitude=math.exp(around(spread.amplitude)),
+        stoop=around(spread.stoop),
+        head_pitch=around(spread.head_pitch),
+        elbow_flare=around(spread.elbow_flare),
+        sway=abs(around(spread.sway)),
+        restlessness=math.exp(around(spread.restlessness)),
+        grip_slide=around(spread.grip_slide),
+        grip_turn=around(spread.grip_turn),
+        grip_tilt=around(spread.grip_tilt),
     )
 
 

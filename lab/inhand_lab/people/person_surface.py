@@ -11,7 +11,7 @@ import numpy as np
 from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array, Indices
 
-from inhand_lab.geometry.surfaces import Colour, Surface, ellipsoid, join_surfaces, limb
+from inhand_lab.geometry.surfaces import Rgb, Surface, ellipsoid, join_surfaces, limb
 from inhand_lab.geometry.transforms import MIRROR, Transform, normalised
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.person import SimulatedPerson
@@ -21,27 +21,37 @@ SKIN = ((236, 196, 170), (214, 166, 132), (176, 124, 88), (124, 84, 60), (88, 58
 EYE = (40, 34, 32)
 HAIR = ((36, 28, 24), (78, 52, 34), (120, 88, 52), (164, 150, 130))
 
-LIMB_SOLIDS: tuple[tuple[Joint, Joint, float, float, str], ...] = (
-    (Joint.SHOULDER_RIGHT, Joint.ELBOW_RIGHT, 0.029, 0.025, "shirt"),
-    (Joint.ELBOW_RIGHT, Joint.WRIST_RIGHT, 0.024, 0.016, "skin"),
-    (Joint.SHOULDER_LEFT, Joint.ELBOW_LEFT, 0.029, 0.025, "shirt"),
-    (Joint.ELBOW_LEFT, Joint.WRIST_LEFT, 0.024, 0.016, "skin"),
-    (Joint.HIP_RIGHT, Joint.KNEE_RIGHT, 0.047, 0.034, "trousers"),
-    (Joint.KNEE_RIGHT, Joint.ANKLE_RIGHT, 0.033, 0.023, "trousers"),
-    (Joint.HIP_LEFT, Joint.KNEE_LEFT, 0.047, 0.034, "trousers"),
-    (Joint.KNEE_LEFT, Joint.ANKLE_LEFT, 0.033, 0.023, "trousers"),
-    (Joint.ANKLE_RIGHT, Joint.FOOT_RIGHT, 0.022, 0.017, "shoes"),
-    (Joint.ANKLE_LEFT, Joint.FOOT_LEFT, 0.022, 0.017, "shoes"),
+LimbSolid = tuple[Joint, Joint, float, float, str]
+"""Parent and child joint, radii at both as fractions of stature, and what covers the limb."""
+
+
+def _both_sides(*limbs: tuple[str, str, float, float, str]) -> list[LimbSolid]:
+    """Limbs of the right side, then those of the left."""
+    return [
+        (Joint[f"{parent}_{side}"], Joint[f"{child}_{side}"], root, tip, cover)
+        for side in ("RIGHT", "LEFT")
+        for parent, child, root, tip, cover in limbs
+    ]
+
+
+LIMB_SOLIDS: tuple[LimbSolid, ...] = (
+    *_both_sides(
+        ("SHOULDER", "ELBOW", 0.029, 0.025, "shirt"), ("ELBOW", "WRIST", 0.024, 0.016, "skin")
+    ),
+    *_both_sides(
+        ("HIP", "KNEE", 0.047, 0.034, "trousers"), ("KNEE", "ANKLE", 0.033, 0.023, "trousers")
+    ),
+    *_both_sides(("ANKLE", "FOOT", 0.022, 0.017, "shoes")),
     (Joint.SHOULDER_CENTER, Joint.SHOULDER_RIGHT, 0.034, 0.031, "shirt"),
     (Joint.SHOULDER_CENTER, Joint.SHOULDER_LEFT, 0.034, 0.031, "shirt"),
     (Joint.SHOULDER_CENTER, Joint.HEAD, 0.034, 0.031, "skin"),
 )
-"""Parent and child joint, radii at both as fractions of stature, and what covers the limb."""
+"""The limbs, which are drawn and which hide joints."""
 
 
 @dataclass(frozen=True)
 class PersonSurface:
-    """A person's surface; part (V,) tells which of the part frames moves each vertex."""
+    """A person's surface; ``part`` (V,) is the index of the part that moves each vertex."""
 
     surface: Surface
     part: Indices
@@ -108,10 +118,10 @@ def _part_frames(body: BodyMotion, frame: int) -> Transform:
     )
 
 
-def _palette(person: SimulatedPerson) -> dict[str, Colour]:
+def _palette(person: SimulatedPerson) -> dict[str, Rgb]:
     random = np.random.default_rng(person.appearance)
 
-    def cloth() -> Colour:
+    def cloth() -> Rgb:
         dye = random.uniform(40.0, 190.0) + random.normal(0.0, 35.0, 3)
         red, green, blue = (int(value) for value in np.clip(dye, 20.0, 230.0))
         return red, green, blue
@@ -125,7 +135,7 @@ def _palette(person: SimulatedPerson) -> dict[str, Colour]:
     }
 
 
-def _head(person: SimulatedPerson, skin: Colour, hair: Colour) -> Surface:
+def _head(person: SimulatedPerson, skin: Rgb, hair: Rgb) -> Surface:
     wide, deep, high = radii = head_radii(person)
     cap = ellipsoid((0.0, -0.18 * deep, 0.20 * high), radii * (1.07, 0.95, 0.87), hair)
     nose = ellipsoid((0.0, deep, -0.12 * high), (0.012, 0.016, 0.020), skin, detail=1)
@@ -136,7 +146,7 @@ def _head(person: SimulatedPerson, skin: Colour, hair: Colour) -> Surface:
     return join_surfaces([ellipsoid((0.0, 0.0, 0.0), radii, skin), cap, nose, *eyes])
 
 
-def _right_hand(person: SimulatedPerson, colour: Colour) -> Surface:
+def _right_hand(person: SimulatedPerson, colour: Rgb) -> Surface:
     """Half closed: the back of the hand, the fingers bent over the palm, the thumb."""
     size = person.height / 1.75
     back = ellipsoid((0.002, -0.005, 0.0), np.array([0.018, 0.070, 0.042]) * size, colour)

@@ -18,7 +18,7 @@ from inhand_lab.sensing.skeleton_noise_parameters import SkeletonNoise
 class ColourNoise:
     """How a colour camera's levels, 0 to 255, differ from the scene's.
 
-    The sizes are assumed, as of an uncooled sensor in the light of a living room.
+    How the sizes were chosen is not recorded; tests/lab/sensing/test_sensor.py bounds them.
     """
 
     read_noise: float = 1.6

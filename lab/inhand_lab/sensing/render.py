@@ -9,7 +9,7 @@ from inhand_tracker.geometry.arrays import Flags
 from inhand_tracker.geometry.camera import Intrinsics
 
 from inhand_lab.geometry.canvas import Canvas, draw_triangles
-from inhand_lab.geometry.surfaces import Surface, from_mesh, lit
+from inhand_lab.geometry.surfaces import Surface, lit, surface_of_mesh
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.geometry.window import Window, window_around
 from inhand_lab.objects.model import ObjectModel
@@ -65,7 +65,7 @@ def visible_fraction(scene: MovingScene, frame: int) -> float:
 
 def object_surface(model: ObjectModel) -> Surface:
     """The object's surface in the object's frame, ready to be moved and drawn."""
-    return from_mesh(model.mesh, model.vertex_colours)
+    return surface_of_mesh(model.mesh, model.vertex_colours)
 
 
 def _draw_surface(canvas: Canvas, intrinsics: Intrinsics, surface: Surface, label: int) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array, Indices
 
-from inhand_lab.geometry.transforms import turned
+from inhand_lab.geometry.transforms import turn_points
 from inhand_lab.sensing.skeleton_errors import HANDS
 from inhand_lab.sensing.skeleton_noise_parameters import ErrorEpisodes
 
@@ -33,7 +33,7 @@ def misread_ends(
         stretch = np.exp(kind.stretch * random.normal(size=(len(joints), 1)))
         wrong = begun >= 0
         root = joints[wrong, PARENTS[end]]
-        bone = turned(joints[wrong, end] - root, turns[begun[wrong]])
+        bone = turn_points(joints[wrong, end] - root, turns[begun[wrong]])
         misread[wrong, end] = root + stretch[begun[wrong]] * bone
     return misread
 

@@ -1,4 +1,4 @@
-"""A simulation told in messages."""
+"""Messages of a simulation: its camera, pixels, skeletons and true poses."""
 
 import numpy as np
 from inhand_runtime.pixels import encode_colour, encode_depth
@@ -21,11 +21,11 @@ from inhand_lab.world.simulation import SensedFrame, Simulation
 
 JOINT_STATES: tuple[JointState, ...] = ("missing", "inferred", "tracked")
 CONTACTS: tuple[Contact, ...] = ("resting", "right_hand", "left_hand", "both_hands", "worn")
-"""In the order of the world's numbers."""
+"""The message's words for contacts, in the order of ContactKind."""
 
 
 def camera_info(intrinsics: Intrinsics, frame_rate: float, time_ns: int = 0) -> CameraInfo:
-    """How the simulated camera sees."""
+    """The simulated camera's description."""
     return CameraInfo(
         sequence=0,
         time_ns=time_ns,
@@ -41,7 +41,7 @@ def camera_info(intrinsics: Intrinsics, frame_rate: float, time_ns: int = 0) -> 
 
 
 def person_message(simulation: Simulation, frame: int) -> Person:
-    """What the simulated skeleton tracker says of one frame."""
+    """The simulated skeleton tracker's person in one frame."""
     states = tuple(JOINT_STATES[state] for state in simulation.joint_states[frame])
     return Person(
         id=0,
@@ -75,7 +75,7 @@ def label_message(
     camera: str,
     visible_fraction: float | None = None,
 ) -> ObjectPose:
-    """The truth of one frame; how much of the object is visible is for the caller to find out."""
+    """The true pose in one frame; the caller finds out how much of the object is visible."""
     return ObjectPose(
         sequence=sequence,
         time_ns=time_ns,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from inhand_lab.geometry.surfaces import Colour, Surface, block, join_surfaces
+from inhand_lab.geometry.surfaces import Rgb, Surface, block, join_surfaces
 from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.furniture import Furniture
 
@@ -84,7 +84,7 @@ def _clutter(random: np.random.Generator, wall: float) -> list[Surface]:
     return pieces
 
 
-def _colour(random: np.random.Generator) -> Colour:
+def _colour(random: np.random.Generator) -> Rgb:
     """Of a muted paint or fabric."""
     shade = random.uniform(40.0, 210.0) + random.normal(0.0, 22.0, 3)
     red, green, blue = (int(value) for value in np.clip(shade, 15.0, 240.0))

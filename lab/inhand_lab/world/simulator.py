@@ -19,14 +19,15 @@ from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.messages import camera_info, label_message, person_message
 from inhand_lab.world.simulation import SensedFrame, Simulation, simulate
 
-CAMERA = "simulator"
-"""Until capture puts its own name in its place."""
+UNNAMED_CAMERA = "simulator"
+"""Name of the camera in labels, until capture puts its own in its place."""
 
 LONGEST_DELAY_S = 0.5
-"""A source that is later than this lets the world stand still instead of hurrying after it."""
+"""Delay beyond which the world stands still instead of hurrying after its time, seconds."""
 
 PREPARED_AHEAD_S = 4.0
-"""How long before it is shown the next performance is prepared: memory holds two from then on."""
+"""Time before its first frame at which the next performance is prepared, seconds: memory holds two
+from then on."""
 
 
 def _known(interaction: str) -> str:
@@ -125,7 +126,7 @@ def _captured(
         frame,
         sequence=0,
         time_ns=time_ns,
-        camera=CAMERA,
+        camera=UNNAMED_CAMERA,
         visible_fraction=ready.visible_fraction if ready else None,
     )
     return Captured(time_ns, 0, pixels, (person_message(simulation, frame),), (label,))
