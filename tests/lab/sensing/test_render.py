@@ -1,11 +1,7 @@
-"""Pictures: what is drawn where."""
+"""Pictures of a scene: what hides what, and how far it is."""
 
-import cv2
 import numpy as np
 import pytest
-from inhand_lab.geometry.canvas import Canvas, draw_triangles
-from inhand_lab.geometry.surfaces import Surface, ellipsoid, limb
-from inhand_lab.geometry.transforms import Transform
 from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.sensing.render import OBJECT, PERSON, Drawing
 from inhand_lab.world.interactions import INTERACTIONS
@@ -13,51 +9,6 @@ from inhand_lab.world.simulation import simulate
 from silhouettes import silhouette
 
 KINECT = CAMERAS["kinect"].intrinsics
-
-RED, BLUE = (200, 0, 0), (0, 0, 200)
-
-
-def drawn(*surfaces: Surface) -> Canvas:
-    canvas = Canvas.blank(KINECT)
-    for label, surface in enumerate(surfaces, start=1):
-        vertices = surface.vertices.astype(np.float32)
-        draw_triangles(canvas, KINECT, vertices, surface.faces, surface.colours, label)
-    return canvas
-
-
-def test_depth_is_the_distance_along_the_optical_axis() -> None:
-    ball = ellipsoid((0.5, 0.2, 2.0), (0.2, 0.2, 0.2), RED, detail=4)
-    depth = drawn(ball).depth_in_millimetres()
-    column, row = 525 * 0.5 / 2.0 + 319.5, 525 * 0.2 / 2.0 + 239.5
-    ray = np.array([(round(column) - 319.5) / 525, (round(row) - 239.5) / 525, 1.0])
-    along = np.dot(ray, (0.5, 0.2, 2.0))
-    expected = (along - np.sqrt(along**2 - ray @ ray * (4.29 - 0.04))) / (ray @ ray)
-    assert depth[round(row), round(column)] == pytest.approx(1000 * expected, abs=1.0)
-    assert depth[0, 0] == 0
-
-
-@pytest.mark.parametrize("order", [1, -1])
-def test_the_nearer_surface_hides_the_further_in_any_order(order: int) -> None:
-    near = ellipsoid((0.0, 0.0, 1.5), (0.1, 0.1, 0.1), RED)
-    far = ellipsoid((0.0, 0.0, 2.5), (0.4, 0.4, 0.1), BLUE)
-    colour = drawn(*[near, far][::order]).colour
-    assert tuple(colour[240, 320]) == RED
-    assert tuple(colour[240, 365]) == BLUE
-
-
-def test_what_is_behind_or_beside_the_camera_leaves_no_trace() -> None:
-    behind = ellipsoid((0.0, 0.0, -2.0), (0.3, 0.3, 0.3), RED)
-    beside = ellipsoid((9.0, 0.0, 2.0), (0.3, 0.3, 0.3), RED)
-    above = ellipsoid((0.0, -9.0, 2.0), (0.3, 0.3, 0.3), RED)
-    assert not drawn(behind, beside, above).labels.any()
-
-
-def test_solids_are_drawn_without_holes() -> None:
-    turned = Transform(np.array([-0.4, 0.0, 2.0]), np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]]))
-    mask = drawn(limb(0.8, 0.1, 0.05, RED).moved(turned)).labels > 0
-    outline, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-    assert len(outline) == 1
-    assert mask[240].sum() == pytest.approx(525 * 0.95 / 2.0, rel=0.03)
 
 
 @pytest.mark.parametrize("interaction", INTERACTIONS)

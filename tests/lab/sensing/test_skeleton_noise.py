@@ -6,8 +6,6 @@ from functools import cache
 import numpy as np
 import pytest
 from inhand_lab.realism.skeletons import hand_bends
-from inhand_lab.sensing.skeleton_errors import wander
-from inhand_lab.sensing.skeleton_filter import smooth
 from inhand_lab.sensing.skeleton_noise import (
     INFERRED,
     MISSING,
@@ -15,14 +13,11 @@ from inhand_lab.sensing.skeleton_noise import (
     SkeletonReading,
     read_skeleton,
 )
-from inhand_lab.sensing.skeleton_noise_parameters import SkeletonFilter, WanderingErrors
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array
 
 FRAME_RATE = 30.0
-NOISE = WanderingErrors()
-FILTER = SkeletonFilter()
 
 
 @cache
@@ -77,17 +72,6 @@ def test_a_resting_body_hardly_trembles_but_is_not_quite_where_it_seems() -> Non
         errors.append(joints[-1] - true[0])
     spread = np.std(np.array(errors)[:, Joint.ELBOW_LEFT], axis=0)
     assert 0.002 < spread.mean() < 0.05
-
-
-def test_errors_wander_with_the_way_and_not_with_the_time() -> None:
-    random = np.random.default_rng(0)
-    still, moving = np.zeros((900, 20)), np.ones((900, 20))
-    within_a_second = [
-        float(np.std(np.diff(wander(random, speed, FRAME_RATE, NOISE)[::30], axis=0)))
-        for speed in (still, moving)
-    ]
-    assert within_a_second[1] > 3.0 * within_a_second[0]
-    assert within_a_second[1] > 0.5e-3 * NOISE.deviations_mm.column.min()
 
 
 def test_the_faster_the_wrist_the_more_often_it_leaves_the_arm() -> None:
@@ -156,23 +140,6 @@ def test_confidence_tells_something_and_not_everything() -> None:
         0, 1
     ]
     assert -0.9 < correlation < -0.3
-
-
-def test_the_filter_follows_a_leap_at_once_and_holds_a_tremble() -> None:
-    leap = np.zeros((20, 1, 3))
-    leap[10:] = 0.5
-    sure = np.zeros((20, 1))
-    assert np.linalg.norm(smooth(leap, sure, FILTER)[10, 0] - leap[10, 0]) < 0.05
-    tremble = 0.003 * np.random.default_rng(0).normal(size=(600, 1, 3))
-    filtered = smooth(tremble, np.zeros((600, 1)), FILTER)
-    assert np.std(np.diff(filtered, axis=0)) < 0.1 * np.std(np.diff(tremble, axis=0))
-
-
-def test_the_filter_lags_behind_a_steady_movement_by_centimetres() -> None:
-    steady = np.linspace(0.0, 1.0, 60)[:, None, None] * np.ones(3)
-    lag = np.linalg.norm(smooth(steady, np.zeros((60, 1)), FILTER) - steady, axis=2)
-    assert lag[30:].max() < 0.04
-    assert lag[30:].min() < 0.03
 
 
 @pytest.mark.parametrize("frame_rate", [15.0, 60.0])
