@@ -15,7 +15,7 @@ from inhand_lab.demonstration.review import Review, review
 from inhand_lab.demonstration.typical_frame import draw_typical_frame
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_runtime.errors import InhandError, SettingsError
-from inhand_schemas.topics import POSE
+from inhand_schemas.topics import POSE, SKELETONS
 from rich.console import Console
 from rich.progress import Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
@@ -139,6 +139,7 @@ def _result(seen: Review, recording: Path, picture: Path, seconds: float) -> dic
             for stream, one in seen.traffic.items()
         },
         "latency_ms": {"p50": p50, "p99": p99},
+        "skipped_frames": seen.skipped_frames,
         "vertex_error_cm": 100.0 * float(seen.vertex_errors_m.mean()),
         "recording": str(recording),
         "picture": str(picture),
@@ -158,7 +159,10 @@ def _table(seen: Review) -> Table:
 
 def _summary(result: dict[str, Any]) -> list[str]:
     latency = result["latency_ms"]
+    frames = result["topics"].get(SKELETONS.stream, {"published": 0})["published"]
     return [
+        f"frames that the tracker left out because newer ones had come: {result['skipped_frames']} "
+        f"of {frames}",
         f"latency, capture to pose: p50 {latency['p50']:.1f} ms, p99 {latency['p99']:.1f} ms",
         f"vertex error for a person never seen before: {result['vertex_error_cm']:.1f} cm "
         f"(bound {ERROR_BOUND_CM:.0f} cm)",

@@ -40,12 +40,24 @@ KEPT = Delivery("every", "drop", "normal", kept=True)
 
 
 class Topic(Generic[T]):
-    """A stream: ``topic.key(site, name)``, ``topic.encode(message)``, ``topic.decode(bytes)``."""
+    """A stream: ``topic.key(site, name)``, ``topic.encode(message)``, ``topic.decode(bytes)``.
 
-    def __init__(self, stream: str, message_type: type[T], delivery: Delivery) -> None:
+    ``gaps_are_losses`` says that a key's messages are numbered one by one. Poses have the numbers of
+    the frames that they are of, and a tracker that is behind leaves some out.
+    """
+
+    def __init__(
+        self,
+        stream: str,
+        message_type: type[T],
+        delivery: Delivery,
+        *,
+        gaps_are_losses: bool = True,
+    ) -> None:
         self.stream = stream
         self.message_type = message_type
         self.delivery = delivery
+        self.gaps_are_losses = gaps_are_losses
         self.encoding = f"application/msgpack;{message_type.__name__}.v1"
         self._decoder = msgspec.msgpack.Decoder(message_type)
 
@@ -92,7 +104,7 @@ INFO = Topic("info", messages.CameraInfo, KEPT)
 RGBD = Topic("rgbd", messages.RgbdFrame, BULK)
 PREVIEW = Topic("preview", messages.Preview, BULK)
 SKELETONS = Topic("skeletons", messages.Skeletons, URGENT)
-POSE = Topic("pose", messages.ObjectPose, URGENT)
+POSE = Topic("pose", messages.ObjectPose, URGENT, gaps_are_losses=False)
 EVENT = Topic("event", messages.Event, RELIABLE)
 LABEL = Topic("label", messages.ObjectPose, RELIABLE)
 HEALTH = Topic("health", messages.Health, URGENT)

@@ -177,7 +177,8 @@ def test_the_demonstration_tracks_a_stranger_and_loses_nothing(tmp_path: Path) -
     assert all(topic["lost"] == 0 for topic in told["topics"].values())
     # A busy machine draws fewer frames in the twelve seconds than thirty a second.
     published = told["topics"]["skeletons"]["published"]
-    assert told["topics"]["pose"]["recorded"] == published > 180
+    assert told["topics"]["pose"]["recorded"] + told["skipped_frames"] == published > 180
+    assert told["topics"]["pose"]["recorded"] > 60
     assert told["vertex_error_cm"] < 12.0
     assert Path(told["picture"]).stat().st_size > 10_000
     assert verify_recording(Path(told["recording"])) == []

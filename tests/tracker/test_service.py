@@ -50,6 +50,7 @@ class Rig:
         self.health = HealthBoard("tracker", "test")
         self.inbox = self
         self.subscribed: list[AnyTopic] = []
+        self._sequence = -1
         self.poses: dict[str, list[ObjectPose]] = {}
         self._samples = [Sample(topic, message) for topic, message in messages]
 
@@ -61,11 +62,17 @@ class Rig:
         assert name == "camera"
         self.subscribed.append(topic)
 
-    def receive(self, _timeout: float) -> Sample | None:
+    def receive(self, timeout_s: float) -> Sample | None:
+        """One frame after the other comes, each only when the service waits for it."""
         if not self._samples:
-            self.stop.set()
+            if timeout_s > 0.0:
+                self.stop.set()
             return None
-        return self._samples.pop(0)
+        if timeout_s == 0.0 and self._samples[0].message.sequence != self._sequence:
+            return None
+        sample = self._samples.pop(0)
+        self._sequence = sample.message.sequence
+        return sample
 
     def decode(self, _topic: AnyTopic, sample: Sample) -> Message:
         return sample.message

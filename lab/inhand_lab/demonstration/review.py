@@ -9,7 +9,7 @@ import numpy as np
 from inhand_runtime.recording import RecordedMessage, read_metadata, read_recording
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import Health, ObjectPose
-from inhand_schemas.topics import HEALTH, LABEL, POSE
+from inhand_schemas.topics import HEALTH, LABEL, POSE, SKELETONS, topic_of
 from inhand_tracker.geometry.arrays import Array, Indices
 
 from inhand_lab.evaluation.vertex_error import vertex_error
@@ -31,7 +31,8 @@ class Review:
 
     ``traffic`` is by stream, without health. ``latencies_ms`` (P,) are from a frame's capture to
     its pose at the recorder. ``sequences`` (S,) are those of the frames with both a pose and a
-    label, ``vertex_errors_m`` (S,) their errors.
+    label, ``vertex_errors_m`` (S,) their errors. ``skipped_frames`` is how many frames the tracker
+    left out because it was behind.
     """
 
     traffic: dict[str, Traffic]
@@ -40,6 +41,7 @@ class Review:
     vertex_errors_m: Array
     poses: dict[int, ObjectPose]
     labels: dict[int, ObjectPose]
+    skipped_frames: int
 
 
 @dataclass
@@ -92,6 +94,18 @@ def review(path: Path, object_name: str, marked_vertices: Array) -> Review:
         np.array(errors),
         poses,
         labels,
+        _skipped(contents.health.values()),
+    )
+
+
+def _skipped(instances: Iterable[Health]) -> int:
+    """How many skeletons trackers left out because newer ones had come meanwhile."""
+    return sum(
+        topic.dropped
+        for one in instances
+        if one.service == "tracker"
+        for key, topic in one.topics.items()
+        if parse_key(key).stream == SKELETONS.stream
     )
 
 
@@ -112,9 +126,15 @@ def _traffic(
             before.published + published,
             before.received + int(noted.get("received", 0)),
             before.recorded + recorded[key],
-            before.lost + max(published - recorded[key], int(noted.get("lost", 0))),
+            before.lost + _lost(key, published - recorded[key], int(noted.get("lost", 0))),
         )
     return streams
+
+
+def _lost(key: str, unrecorded: int, missing_numbers: int) -> int:
+    """How many messages of a key were lost, by what was published and, where it says so, by gaps."""
+    topic, _ = topic_of(key)
+    return max(unrecorded, missing_numbers if topic.gaps_are_losses else 0)
 
 
 def _pose(message: ObjectPose) -> tuple[Array, Array]:

@@ -5,6 +5,7 @@ import time
 from pathlib import Path
 from typing import Annotated
 
+from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.inbox import Received
@@ -16,7 +17,6 @@ from pydantic import AfterValidator, ByteSize, Field
 
 from inhand_recorder.clock import ClockWatch
 from inhand_recorder.gaps import GapTeller
-from inhand_recorder.infos import InfoWatch
 from inhand_recorder.journal import Journal
 from inhand_recorder.recording_file import Limits
 from inhand_recorder.stamps import entry_apart, entry_of
@@ -195,8 +195,10 @@ class _Recorder:
             self._daemon.health.malformed(sample.key, error)
             self._journal.write(entry_apart(sample))
             return
-        self._daemon.health.received(entry.key, entry.sequence)
-        self._gaps.count(entry.key, entry.sequence)
+        counted = entry.sequence if topic.gaps_are_losses else None
+        self._daemon.health.received(entry.key, counted)
+        if counted is not None:
+            self._gaps.count(entry.key, counted)
         self._infos.note(topic.stream, parsed.name, time.monotonic())
         self._journal.write(entry)
 

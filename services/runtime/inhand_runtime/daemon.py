@@ -120,7 +120,7 @@ class Daemon:
         except (MessageError, KeyFormatError) as error:
             self.health.malformed(sample.key, error)
             return None
-        self.health.received(sample.key, message.sequence)
+        self.health.received(sample.key, message.sequence if topic.gaps_are_losses else None)
         return message
 
 

@@ -2,9 +2,11 @@
 
 import logging
 import time
+from collections import Counter
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.inbox import Received
@@ -39,6 +41,7 @@ from inhand_tracker.recognition.cascade import Cascade
 from inhand_tracker.recognition.recogniser_file import load_recogniser
 from inhand_tracker.wire.conversion import image_of
 from inhand_tracker.wire.pairing import Pairing
+from inhand_tracker.wire.pictures import PictureWatch
 from inhand_tracker.wire.poses import SourceFrame, image_box, object_pose_message
 
 log = logging.getLogger(__name__)
@@ -48,6 +51,8 @@ POLL_S = 0.01
 MOST_WAITING = 30
 """Number of skeletons that may wait to be tracked: a second at 30 Hz. Whoever is later than that is
 better off with what comes next."""
+FAILURE_LASTS_S = 5.0
+"""Seconds for which an object that could not be tracked is a trouble of now."""
 
 
 class TrackerSettings(Section):
@@ -84,32 +89,56 @@ class TrackerService:
         self._publishers: dict[str, Publisher[ObjectPose]] = {
             name: daemon.publisher(POSE, name) for name in self._people.names
         }
-        self._failures: dict[str, str] = {}
+        self._unused: Counter[str] = Counter()
+        self._infos = InfoWatch(daemon.health)
+        self._pictures = PictureWatch(daemon.health)
         self._pairing: Pairing[Skeletons, RgbdFrame] = Pairing()
         self._info: CameraInfo | None = None
         daemon.subscribe(INFO, settings.camera)
         daemon.subscribe(SKELETONS, settings.camera, samples=MOST_WAITING)
         if self._needs:
             daemon.subscribe(RGBD, settings.camera)
-        self._keys = {topic: topic.key(daemon.site, settings.camera) for topic in (INFO, RGBD)}
+        self._keys = {
+            topic: topic.key(daemon.site, settings.camera) for topic in (INFO, RGBD, SKELETONS)
+        }
 
     def run(self) -> None:
         """Track until the daemon stops."""
         self._daemon.health.state = "running"
         while not self._daemon.stop.is_set():
-            sample = self._daemon.receive(POLL_S)
-            if sample is not None:
-                self._take(sample)
-            while (pair := self._pairing.pop(time.monotonic())) is not None:
+            self._take_all()
+            pair = self._pairing.pop(time.monotonic())
+            self._count_what_is_unused()
+            if pair is not None:
                 self._track(*pair)
+
+    def _take_all(self) -> None:
+        """Take what has come by now: only then is it known what is the newest."""
+        sample = self._daemon.receive(0.0 if self._pairing.ready(time.monotonic()) else POLL_S)
+        while sample is not None:
+            self._take(sample)
+            sample = self._daemon.receive(0.0)
+
+    def _count_what_is_unused(self) -> None:
+        for topic, count in (
+            (SKELETONS, self._pairing.dropped_skeletons),
+            (RGBD, self._pairing.unused_frames),
+        ):
+            for _ in range(count - self._unused[topic.stream]):
+                self._daemon.health.dropped(self._keys[topic])
+            self._unused[topic.stream] = count
 
     def _take(self, sample: Received) -> None:
         """Keep what a message brings until its frame is tracked."""
         now = time.monotonic()
+        self._infos.check(now)
         if sample.key == self._keys[INFO]:
-            self._info = self._daemon.decode(INFO, sample) or self._info
+            if (info := self._daemon.decode(INFO, sample)) is not None:
+                self._info = info
+                self._infos.note(INFO.stream, self._camera, now)
         elif sample.key == self._keys[RGBD]:
             if (frame := self._daemon.decode(RGBD, sample)) is not None:
+                self._infos.note(RGBD.stream, self._camera, now)
                 self._pairing.add_frame(frame.sequence, frame, now)
         elif (skeletons := self._daemon.decode(SKELETONS, sample)) is not None:
             self._pairing.add_skeleton(skeletons.sequence, skeletons, now)
@@ -117,6 +146,8 @@ class TrackerService:
     def _track(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> None:
         """Track one frame: decode, watch each person, publish."""
         frame = self._decoded(skeletons, pixels)
+        if self._needs:
+            self._pictures.note(frame.image is not None)
         objects = self._people.see(skeletons.people, frame, self._note_failure)
         source = self._source(skeletons)
         for person, thing in worth_publishing(objects):
@@ -158,12 +189,10 @@ class TrackerService:
         self._publishers[thing.name].put(message)
 
     def _note_failure(self, name: str, error: Exception) -> None:
-        """Report a failure, once until the same object fails in another way."""
+        """Report a failure as a trouble while it lasts."""
         text = f"cannot track {name}: {type(error).__name__}: {error}"
-        if self._failures.get(name) != text:
-            self._failures[name] = text
-            self._daemon.health.error(text)
-            log.debug("where it happened", exc_info=error)
+        self._daemon.health.trouble(f"object {name}", text, lasts_s=FAILURE_LASTS_S)
+        log.debug("where it happened", exc_info=error)
 
 
 def run(settings: Settings[TrackerSettings]) -> None:

@@ -1,5 +1,7 @@
 """Skeletons and pixels of one frame find each other, and nobody waits in vain."""
 
+from hypothesis import given
+from hypothesis import strategies as st
 from inhand_tracker.wire.pairing import Pairing
 from inhand_tracker.wire.parameters import DEFAULT_PAIRING
 
@@ -118,3 +120,66 @@ def test_frames_of_before_a_restart_are_not_paired_when_no_skeleton_waits() -> N
     assert pairing.pop(START) is None
     pairing.add_frame(2, "new frame 2", START)
     assert pairing.pop(START) == ("new skeleton 2", "new frame 2")
+
+
+def behind(frames: int) -> Pairing[str, str]:
+    """A pairing whose reader was away while so many frames came."""
+    pairing: Pairing[str, str] = Pairing()
+    for sequence in range(frames):
+        pairing.add_skeleton(sequence, f"skeleton {sequence}", START)
+        pairing.add_frame(sequence, f"frame {sequence}", START)
+    return pairing
+
+
+def test_who_is_behind_goes_on_with_the_newest_skeleton_whose_frame_is_there() -> None:
+    pairing = behind(30)
+    assert pairing.pop(START) == ("skeleton 29", "frame 29")
+    assert pairing.pop(START) is None
+    assert pairing.dropped_skeletons == 29
+
+
+def test_a_newer_skeleton_whose_frame_is_not_there_yet_waits_for_it() -> None:
+    pairing = behind(30)
+    pairing.add_skeleton(30, "skeleton 30", START)
+    assert pairing.pop(START) == ("skeleton 29", "frame 29")
+    assert pairing.pop(START) is None
+    pairing.add_frame(30, "frame 30", START)
+    assert pairing.pop(START) == ("skeleton 30", "frame 30")
+
+
+def test_who_is_behind_by_a_hiccup_drops_nothing() -> None:
+    pairing = behind(DEFAULT_PAIRING.most_waiting)
+    given = [pairing.pop(START) for _ in range(DEFAULT_PAIRING.most_waiting)]
+    assert given == [
+        (f"skeleton {number}", f"frame {number}") for number in range(DEFAULT_PAIRING.most_waiting)
+    ]
+
+
+def test_without_pixels_no_skeleton_is_dropped() -> None:
+    pairing: Pairing[str, str] = Pairing()
+    for sequence in range(30):
+        pairing.add_skeleton(sequence, f"skeleton {sequence}", START)
+    assert [pairing.pop(START) for _ in range(30)] == [
+        (f"skeleton {number}", None) for number in range(30)
+    ]
+    assert pairing.dropped_skeletons == 0
+
+
+@given(st.lists(st.integers(0, 3), max_size=60))
+def test_every_skeleton_and_frame_is_used_or_counted(pops: list[int]) -> None:
+    pairing: Pairing[int, int] = Pairing()
+    given_out = 0
+    with_frame = 0
+    for sequence, times in enumerate(pops):
+        pairing.add_skeleton(sequence, sequence, START)
+        pairing.add_frame(sequence, sequence, START)
+        for _ in range(times):
+            pair = pairing.pop(START)
+            given_out += pair is not None
+            with_frame += pair is not None and pair[1] is not None
+    while (pair := pairing.pop(START)) is not None:
+        given_out += 1
+        with_frame += pair[1] is not None
+    assert given_out + pairing.dropped_skeletons == len(pops)
+    kept = min(len(pops), FRAMES_KEPT)
+    assert len(pops) - kept <= with_frame + pairing.unused_frames <= len(pops)

@@ -5,6 +5,7 @@ from typing import Literal
 
 import numpy as np
 from inhand_runtime.pixels import decode_colour, decode_depth, decode_grey
+from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo, Person, RgbdFrame
 
 from inhand_tracker.body.skeleton import without_impossible
@@ -29,11 +30,17 @@ def joints_of(person: Person) -> Array:
 def image_of(frame: RgbdFrame, info: CameraInfo, needs: Collection[Need]) -> Image | None:
     """Decode what is needed of a frame; None when it holds nothing of that.
 
-    Raises MessageError for damaged pixels.
+    Raises MessageError for damaged pixels, and for more of them than the camera has.
     """
     grey = frame.colour if "edges" in needs else None
     colour = frame.colour if "colour" in needs else None
     depth = frame.depth if "depth" in needs else None
+    for image in (grey, colour, depth):
+        if image is not None and (image.width > info.width or image.height > info.height):
+            raise MessageError(
+                f"a frame of {image.width} × {image.height} pixels comes from a camera of "
+                f"{info.width} × {info.height}"
+            )
     size = grey or colour or depth
     if size is None:
         return None

@@ -1,7 +1,8 @@
-"""Sees that no camera's frames are recorded without its info, which alone makes them usable."""
+"""Sees that no camera's frames are used without its info, which alone makes them usable."""
+
+from inhand_schemas.topics import INFO, RGBD
 
 from inhand_runtime.health import HealthBoard
-from inhand_schemas.topics import INFO, RGBD
 
 PATIENCE_S = 3.0
 """Seconds until missing info is a trouble: kept values come within two."""
