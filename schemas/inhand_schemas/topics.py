@@ -42,8 +42,8 @@ KEPT = Delivery("every", "drop", "normal", kept=True)
 class Topic(Generic[T]):
     """A stream: ``topic.key(site, name)``, ``topic.encode(message)``, ``topic.decode(bytes)``.
 
-    ``gaps_are_losses`` says that a key's messages are numbered one by one. Poses have the numbers of
-    the frames that they are of, and a tracker that is behind leaves some out.
+    ``gaps_are_losses`` says that a key's messages are numbered one by one. Poses have the numbers
+    of the frames that they are of, and a tracker that is behind leaves some out.
     """
 
     def __init__(

@@ -132,7 +132,7 @@ def _traffic(
 
 
 def _lost(key: str, unrecorded: int, missing_numbers: int) -> int:
-    """How many messages of a key were lost, by what was published and, where it says so, by gaps."""
+    """Messages of a key that were lost: by what was published and, where they say it, by gaps."""
     topic, _ = topic_of(key)
     return max(unrecorded, missing_numbers if topic.gaps_are_losses else 0)
 
