@@ -12,6 +12,7 @@ from inhand_lab.people.person import SimulatedPerson
 STRETCH = 0.99
 """Furthest distance of shoulder and wrist as a share of the arm's length."""
 ROUNDS = 8
+"""Number of times that a thing is moved towards one arm and then the other."""
 
 
 def overreach(person: SimulatedPerson, shoulder: Array, hand: Transform) -> Array:
@@ -28,18 +29,14 @@ def within_both_reaches(
     person: SimulatedPerson,
     trunk: Trunk,
     held: Transform,
-    right_grip: Transform,
-    left_grip: Transform,
+    grips: tuple[Transform, Transform],
 ) -> Transform:
     """A thing held with both hands (T), moved no further than both arms need to reach it.
 
-    The grips are object_from_hand (T).
+    The grips, of the right and the left hand, are object_from_hand (T).
     """
     for _ in range(ROUNDS):
-        for shoulder, grip in (
-            (trunk.right_shoulder, right_grip),
-            (trunk.left_shoulder, left_grip),
-        ):
+        for shoulder, grip in zip((trunk.right_shoulder, trunk.left_shoulder), grips, strict=True):
             shift = overreach(person, shoulder, held @ grip)
             held = Transform(held.translation + shift, held.rotation)
     return held

@@ -9,48 +9,24 @@ from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.furniture import Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
 from inhand_lab.motions.performance import (
-    ContactKind,
     Performance,
     Stance,
-    contacts,
-    feet_apart,
     hanging_hands,
     heading_of,
     mouth,
-    stand,
+    upright,
 )
-from inhand_lab.motions.timeline import (
-    Key,
-    Move,
-    Pause,
-    Stage,
-    drift,
-    move_through,
-    schedule,
-    track,
-)
+from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, carried_by
+from inhand_lab.motions.script import Script, To, write_script
+from inhand_lab.motions.timeline import Move, Pause, Plan, Stage
 from inhand_lab.objects.mug import MUG_HANDLE_REACH, MUG_HEIGHT, MUG_RADIUS
-from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.kinematics import Trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (
-    Pause("wait", 0.5),
-    Move("reach", 1.0),
-    Move("grasp", 0.25),
-    Move("lift", 0.9),
-)
-USE = (
-    Pause("hold", 0.6),
-    Move("raise", 0.9),
-    Move("sip", 1.3),
-    Move("lower", 0.9),
-)
-CLOSING = (
-    Pause("hold", 0.6),
-    Move("return", 1.0),
-    Move("release", 0.25),
-    Move("withdraw", 1.0),
-    Pause("wait", 0.5),
+PLAN = Plan(
+    opening=(*TAKE, Move("lift", 0.9)),
+    use=(Pause("hold", 0.6), Move("raise", 0.9), Move("sip", 1.3), Move("lower", 0.9)),
+    closing=(Pause("hold", 0.6), *PUT_BACK),
 )
 
 FIST_TURN = np.radians(135.0)
@@ -62,132 +38,78 @@ FINGERS_AT_TABLE, FINGERS_CARRIED, FINGERS_AT_MOUTH = 0.25, 0.80, 1.40
 
 def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Drinking at these times, in seconds from the start."""
-    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
-    posture = stand(person, times, random, _stance(person, times, random, stages))
-    trunk = place_trunk(person, posture)
-    table, spot = _table(person, random)
-    grip = _grip(person, times, random)
-    carried = _carry(person, times, random, trunk, spot, stages)
-    held = carried @ grip
-    start = {stage.name: stage.start for stage in stages}
-    end = {stage.name: stage.end for stage in stages}
+    script = write_script(person, times, random, PLAN)
+    posture, trunk = script.stand(_stance(script))
+    table, spot = _table(script)
+    grip = _grip(script)
+    carried = _carry(script, trunk, spot)
     rest, left_hand = hanging_hands(person, trunk, random)
-    right_hand = move_through(
-        times,
-        [
-            Key(start["reach"], rest),
-            Key(end["reach"], held, bow=(0.06, -0.05, 0.10)),
-            Key(start["withdraw"], held),
-            Key(end["withdraw"], rest, bow=(0.06, -0.05, 0.08)),
-        ],
-    )
-    contact = contacts(
-        times,
-        [
-            (0.0, ContactKind.RESTING),
-            (end["grasp"], ContactKind.RIGHT_HAND),
-            (start["release"], ContactKind.RESTING),
-        ],
-    )
-    return Performance(posture, right_hand, left_hand, carried, contact, table)
+    reach = To(carried @ grip, bow=(0.06, -0.05, 0.10))
+    right_hand = script.way(rest, {"reach": reach, "withdraw": To(rest, bow=(0.06, -0.05, 0.08))})
+    return Performance(posture, right_hand, left_hand, carried, carried_by(script), table)
 
 
-def _stance(
-    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
-) -> Stance:
+def _stance(script: Script) -> Stance:
     """A look and a twist to the table, and the head back while drinking."""
-    count = len(times)
-    trunk, head = np.zeros((count, 3)), np.zeros((count, 3))
-    for stage in stages:
-        if stage.name in ("reach", "return"):
-            middle, back = stage.end, stage.end + 1.2
-            looked = track(times, [(stage.start, 0.0), (middle, 1.0), (back, 0.0)])
-            head += looked[:, None] * np.array([-0.30, 0.0, -0.35])
-            trunk += looked[:, None] * np.array([0.10, 0.03, -0.15])
-        if stage.name == "sip":
-            top = 0.5 * (stage.start + stage.end)
-            keys = [(stage.start - 0.5, 0.0), (top, 1.0), (stage.end, 0.7), (stage.end + 0.7, 0.0)]
-            head[:, 0] += (0.22 + 0.06 * random.normal()) * track(times, keys)
-    right_foot, left_foot = feet_apart(count)
-    return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
+    looked = attention(script)
+    trunk, head = np.outer(looked, [0.10, 0.03, -0.15]), np.outer(looked, [-0.30, 0.0, -0.35])
+    for sip in script.every("sip"):
+        keys = [(sip.start - 0.5, 0.0), (sip.at(0.5), 1.0), (sip.end, 0.7), (sip.end + 0.7, 0.0)]
+        head[:, 0] += (0.22 + 0.06 * script.random.normal()) * script.track(keys)
+    return script.upright_stance(trunk, head)
 
 
-def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Array]:
+def _table(script: Script) -> tuple[Furniture, Array]:
     """A small table at the right hand, of a height that suits, and the mug's place on it (3,)."""
-    size = person.height / 1.75
-    x, y = np.array([0.31, 0.30]) * size + random.normal(0.0, 0.015, 2)
-    top = 0.525 * person.height + random.normal(0.0, 0.015)
-    spot = np.array([x, y, top + MUG_HEIGHT / 2.0])
-    return side_table(x + 0.08, y + 0.10, top), spot
+    x, y = script.place(0.31, 0.30)
+    top = script.table_top(0.525)
+    return side_table(x + 0.08, y + 0.10, top), np.array([x, y, top + MUG_HEIGHT / 2.0])
 
 
-def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
+def _grip(script: Script) -> Transform:
     """A fist around the handle, the cup ahead of it and to its left: object_from_hand (T)."""
     handle = np.array([0.0, MUG_RADIUS + MUG_HANDLE_REACH, 0.0])
-    square = rotation_about("z", FIST_TURN + person.manner.grip_turn)
-    return hold_bar(person, times, random, handle, square)
+    return hold_bar(script, handle, rotation_about("z", FIST_TURN + script.person.manner.grip_turn))
 
 
-def _carry(
-    person: SimulatedPerson,
-    times: Array,
-    random: np.random.Generator,
-    trunk: Trunk,
-    spot: Array,
-    stages: list[Stage],
-) -> Transform:
+def _carry(script: Script, trunk: Trunk, spot: Array) -> Transform:
     """The mug's way, world_from_object (T).
 
     Its turn about the vertical is chosen for the hand: fingers ahead at the table, to the left at
     the mouth.
     """
-    count = len(times)
-    fist = FIST_TURN + person.manner.grip_turn
+    manner, random = script.person.manner, script.random
 
     def turned(fingers_to_left: float) -> Array:
-        return rotation_about("z", fingers_to_left - fist)
+        return rotation_about("z", fingers_to_left - FIST_TURN - manner.grip_turn)
 
-    on_table = Transform(spot, turned(FINGERS_AT_TABLE + random.normal(0.0, 0.1))).repeated(count)
-    at_mouth = _sipping(person, times, random, trunk, stages, turned(FINGERS_AT_MOUTH))
-    upright = rotation_about("z", heading_of(trunk.world_from_chest))
+    on_table = Transform(spot, turned(FINGERS_AT_TABLE + random.normal(0.0, 0.1)))
+    on_table = script.still(on_table)
+    at_mouth = _sip(script, trunk, turned(FINGERS_AT_MOUTH))
+    chest = upright(trunk.world_from_chest)
 
-    def held_before_chest() -> Transform:
-        offset = np.array([0.13, 0.30, -0.27]) * person.manner.amplitude
-        offset = offset + random.normal(0.0, 0.02, 3)
-        wander = np.stack([drift(times, random, 0.008, 3.0) for _ in range(3)], axis=1)
-        place = trunk.world_from_chest.translation + upright @ offset + wander
-        return Transform(place, upright @ turned(FINGERS_CARRIED + random.normal(0.0, 0.1)))
+    def before_chest(_: Stage) -> Transform:
+        offset = np.array([0.13, 0.30, -0.27]) * manner.amplitude + random.normal(0.0, 0.02, 3)
+        wander = script.drifts(0.008, 3.0)
+        held = Transform(offset, turned(FINGERS_CARRIED + random.normal(0.0, 0.1)))
+        return Transform(wander, np.eye(3)) @ chest @ held
 
-    keys = [Key(0.0, on_table)]
-    for stage in stages:
-        if stage.name in ("lift", "lower"):
-            here = held_before_chest()
-            keys += [Key(stage.start, keys[-1].pose), Key(stage.end, here, bow=(0.0, 0.03, 0.02))]
-        if stage.name == "raise":
-            keys += [Key(stage.start, keys[-1].pose), Key(stage.end, at_mouth, bow=(0, 0.05, 0))]
-        if stage.name == "return":
-            lowered = (0.0, -0.02, 0.05)
-            keys += [Key(stage.start, keys[-1].pose), Key(stage.end, on_table, bow=lowered)]
-    return move_through(times, keys)
+    goals = {
+        "lift": To(before_chest, bow=(0.0, 0.03, 0.02)),
+        "raise": To(at_mouth, bow=(0.0, 0.05, 0.0)),
+        "lower": To(before_chest, bow=(0.0, 0.03, 0.02)),
+        "return": To(on_table, bow=(0.0, -0.02, 0.05)),
+    }
+    return script.way(on_table, goals)
 
 
-def _sipping(
-    person: SimulatedPerson,
-    times: Array,
-    random: np.random.Generator,
-    trunk: Trunk,
-    stages: list[Stage],
-    turn: Array,
-) -> Transform:
+def _sip(script: Script, trunk: Trunk, turn: Array) -> Transform:
     """The mug's rim at the lips, world_from_object (T), tilted further as it empties."""
-    tilt = np.full(len(times), 0.2)
-    for stage in stages:
-        if stage.name == "sip":
-            deepest = min(0.55 + 0.15 * stage.repetition + 0.08 * random.normal(), 1.1)
-            top = stage.start + 0.45 * (stage.end - stage.start)
-            keys = [(stage.start, 0.0), (top, 1.0), (stage.end - 0.2, 0.9), (stage.end + 0.3, 0.0)]
-            tilt += deepest * track(times, keys)
-    upright = rotation_about("z", heading_of(trunk.world_from_head))
-    tilted = upright @ rotation_about("x", tilt)
+    tilt = np.full(len(script.times), 0.2)
+    for sip in script.every("sip"):
+        deepest = min(0.55 + 0.15 * sip.repetition + 0.08 * script.random.normal(), 1.1)
+        keys = [(sip.start, 0.0), (sip.at(0.45), 1.0), (sip.end - 0.2, 0.9), (sip.end + 0.3, 0.0)]
+        tilt += deepest * script.track(keys)
+    tilted = rotation_about("z", heading_of(trunk.world_from_head)) @ rotation_about("x", tilt)
     near_rim = np.array([0.0, -MUG_RADIUS, MUG_HEIGHT / 2.0])
-    return Transform(mouth(person, trunk) - tilted @ near_rim, tilted @ turn)
+    return Transform(mouth(script.person, trunk) - tilted @ near_rim, tilted @ turn)

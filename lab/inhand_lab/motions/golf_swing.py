@@ -25,8 +25,8 @@ from dataclasses import dataclass
 import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.motions.timeline import Stage, flow
-from inhand_lab.people.person import SimulatedPerson
+from inhand_lab.motions.script import Script
+from inhand_lab.motions.timeline import Stage
 
 DOWNSWING = (-0.267, 0.14)
 DOWNSWING_RATE = (0.95, 1.4)
@@ -89,32 +89,26 @@ class Swing:
     gaze: Array
 
 
-def plan_swings(
-    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
-) -> Swing:
+def plan_swings(script: Script) -> Swing:
     """The stages "reach", "take", "waggle", "swing", "recover", "return" and "withdraw"."""
-    wrist = 1.0 + 0.2 * person.manner.grip_slide
+    wrist = 1.0 + 0.2 * script.person.manner.grip_slide
     knots = [(0.0, UPRIGHT)]
     address = MOMENTS[0, 1:]
-    for stage in stages:
-        span = stage.end - stage.start
+    for stage in script.stages:
         if stage.name in ("reach", "return"):
             knots.append((stage.end, TAKING))
         if stage.name == "take":
             knots += [(stage.start, TAKING), (stage.end, address)]
         if stage.name == "waggle":
-            knots += _waggle(stage, address, random)
+            knots += _waggle(stage, address, script.random)
         if stage.name == "swing":
-            knots += _swing(person, stage, wrist, random)
+            knots += _swing(script, stage, wrist)
         if stage.name == "recover":
-            knots += [
-                (stage.start, knots[-1][1]),
-                (stage.start + 0.5 * span, RETURNING),
-                (stage.end, address),
-            ]
+            finish = knots[-1][1]
+            knots += [(stage.start, finish), (stage.at(0.5), RETURNING), (stage.end, address)]
         if stage.name == "withdraw":
             knots += [(stage.start, TAKING), (stage.end, UPRIGHT)]
-    values = flow(times, _apart(knots))
+    values = script.flow(_apart(knots))
     values[:, [0, 1, 2, 3, 6, 8]] = np.radians(values[:, [0, 1, 2, 3, 6, 8]])
     values[:, 3] += values[:, 2]
     return Swing(*values.T)
@@ -135,15 +129,14 @@ def _waggle(stage: Stage, address: Array, random: np.random.Generator) -> list[t
         lifted = address.copy()
         if round(at * 2 * swings) % 2 == 1:
             lifted[[2, 3]] += (random.uniform(0.0, 5.0), random.uniform(10.0, 30.0))
-        knots.append((stage.start + at * (stage.end - stage.start), lifted))
+        knots.append((stage.at(at), lifted))
     return [*knots, (stage.end, address)]
 
 
-def _swing(
-    person: SimulatedPerson, stage: Stage, wrist: float, random: np.random.Generator
-) -> list[tuple[float, Array]]:
+def _swing(script: Script, stage: Stage, wrist: float) -> list[tuple[float, Array]]:
     """One swing; its size, its wrist and its backswing are the person's and vary a little."""
-    size = np.clip(person.manner.amplitude * (1.0 + 0.03 * random.normal()), 0.75, 1.05)
+    random = script.random
+    size = np.clip(script.person.manner.amplitude * (1.0 + 0.03 * random.normal()), 0.75, 1.05)
     cock = wrist + 0.06 * random.normal()
     knots = []
     for time, (_, *figures) in zip(_moments(stage, random), MOMENTS, strict=True):
@@ -158,7 +151,7 @@ def _moments(stage: Stage, random: np.random.Generator) -> list[float]:
     """The times of MOMENTS in this swing: people's downswings differ less than the rest of it."""
     spans = np.diff(MOMENTS[:, 0])
     fast = (MOMENTS[:-1, 0] >= DOWNSWING[0]) & (MOMENTS[:-1, 0] < DOWNSWING[1])
-    whole = stage.end - stage.start
+    whole = stage.seconds
     rate = np.clip(whole / spans.sum() + 0.1 + 0.03 * random.normal(), *DOWNSWING_RATE)
     slow_rate = (whole - rate * spans[fast].sum()) / spans[~fast].sum()
     return list(stage.start + np.cumsum([0.0, *(spans * np.where(fast, rate, slow_rate))]))

@@ -10,8 +10,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.transforms import Transform, normalised, rotation_about
-from inhand_lab.motions.timeline import drift
-from inhand_lab.people.person import SimulatedPerson
+from inhand_lab.motions.script import Script
 
 BAR_IN_PALM = np.array([-0.022, 0.018, 0.0])
 """Where a gripped bar passes through the fist, in the hand's frame; the bar runs along z."""
@@ -19,18 +18,12 @@ BAR_IN_PALM = np.array([-0.022, 0.018, 0.0])
 PINCH = np.array([-0.030, 0.078, 0.022])
 """Where thumb and fingertips meet, in the hand's frame."""
 
-TURN_DRIFT = 0.05
-SLIDE_DRIFT = 0.004
-DRIFT_PERIOD = 6.0
+TURN_DRIFT, SLIDE_DRIFT, DRIFT_PERIOD = 0.05, 0.004, 6.0
+"""Slow drift of a grip: radians about an axis, metres along a bar, and its period in seconds."""
 
 
 def hold_bar(
-    person: SimulatedPerson,
-    times: Array,
-    random: np.random.Generator,
-    point: Array,
-    object_from_bar: Array,
-    in_hand: Array = BAR_IN_PALM,
+    script: Script, point: Array, object_from_bar: Array, in_hand: Array = BAR_IN_PALM
 ) -> Transform:
     """A fist around a bar, object_from_hand (T).
 
@@ -39,20 +32,18 @@ def hold_bar(
     and, as its second, where the fingers point in a grip square to the bar. The person's
     obliqueness and the drift are added to it.
     """
-    turn = drift(times, random, TURN_DRIFT, DRIFT_PERIOD)
-    tilt = person.manner.grip_tilt + drift(times, random, TURN_DRIFT, DRIFT_PERIOD)
-    slide = drift(times, random, SLIDE_DRIFT, DRIFT_PERIOD)
+    turn = script.drift(TURN_DRIFT, DRIFT_PERIOD)
+    tilt = script.person.manner.grip_tilt + script.drift(TURN_DRIFT, DRIFT_PERIOD)
+    slide = script.drift(SLIDE_DRIFT, DRIFT_PERIOD)
     rotation = object_from_bar @ rotation_about("xz", tilt, turn)
     along = slide[:, None] * object_from_bar[:, 2]
     return Transform(point + along - rotation @ in_hand, rotation)
 
 
-def pinch(
-    times: Array, random: np.random.Generator, point: Array, object_from_hand: Array
-) -> Transform:
+def pinch(script: Script, point: Array, object_from_hand: Array) -> Transform:
     """Thumb and fingertips about a point (3,) of the object, object_from_hand (T)."""
-    wobble = [drift(times, random, TURN_DRIFT, DRIFT_PERIOD) for _ in range(3)]
-    rotation = object_from_hand @ rotation_about("xyz", *wobble)
+    wobble = script.drifts(TURN_DRIFT, DRIFT_PERIOD)
+    rotation = object_from_hand @ rotation_about("xyz", *wobble.T)
     return Transform(point - rotation @ PINCH, rotation)
 
 

@@ -11,44 +11,19 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_lab.geometry.transforms import MIRROR, Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import hold_bar, pinch
-from inhand_lab.motions.performance import (
-    Performance,
-    Stance,
-    feet_apart,
-    hanging_hands,
-    heading_of,
-    stand,
-)
-from inhand_lab.motions.reaching import (
-    PUT_BACK,
-    TAKE,
-    held_by_right_hand,
-    named,
-    reaching_hand,
-)
-from inhand_lab.motions.timeline import (
-    Key,
-    Move,
-    Pause,
-    Stage,
-    drift,
-    minimum_jerk,
-    move_through,
-    schedule,
-    track,
-)
+from inhand_lab.motions.performance import Performance, Stance, hanging_hands, upright
+from inhand_lab.motions.reaching import PUT_BACK, TAKE, carried_by, reaching_hand
+from inhand_lab.motions.script import Script, To, write_script
+from inhand_lab.motions.timeline import Move, Pause, Plan, minimum_jerk
 from inhand_lab.objects.hammer import FACE_REACH, HAMMER_HALF_LENGTH, HEAD_HEIGHT
-from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.kinematics import Trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (
-    *TAKE,
-    Move("lift", 0.85),
-    Move("tap", 1.2),
-    Move("let go", 0.5),
+PLAN = Plan(
+    opening=(*TAKE, Move("lift", 0.85), Move("tap", 1.2), Move("let go", 0.5)),
+    use=(Move("strike", 1.75), Pause("look", 0.4)),
+    closing=PUT_BACK,
 )
-USE = (Move("strike", 1.75), Pause("look", 0.4))
-CLOSING = PUT_BACK
 
 STROKES = {"tap": 3, "strike": 3}
 SWING = {"tap": 0.45, "strike": 1.0}
@@ -79,7 +54,8 @@ LEANING = rotation_from_axes([-0.25, 0.95, -0.25], [-1.0, -0.25, 0.0])
 LEANING_AT = np.array([-0.19, -0.19, 0.05])
 """Where it leans, from the foot of the block."""
 AROUND_BENCH = (-0.06, -0.14, 0.16)
-"""How its way to the bench and back swings out."""
+AROUND_NAIL = (-0.02, -0.03, 0.05)
+"""How its ways to the bench and to the nail, and back, swing out, metres."""
 BLOCK_SIZE = (0.12, 0.12, 0.06)
 PINE = (216, 182, 126)
 
@@ -105,62 +81,43 @@ class Bench:
 
 def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Hammering at these times, in seconds from the start."""
-    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
-    strokes = list(_strokes(person, random, stages))
-    swung = _swung(times, random, stages, strokes)
-    posture = stand(person, times, random, _stance(times, stages, swung))
-    trunk = place_trunk(person, posture)
-    bench = _bench(person, random)
-    nail = bench.base + np.outer(_standing(times, strokes), [0.0, 0.0, 1.0])
-    striking = _strike(person, times, random, trunk, nail, swung)
-    first, last = (_lying(random, bench.spot).repeated(len(times)) for _ in range(2))
-    lift, back = named(stages, "lift"), named(stages, "return")
-    carried = move_through(
-        times,
-        [
-            Key(lift.start, first),
-            Key(lift.end, striking, bow=(0.04, -0.02, 0.10)),
-            Key(back.start, striking),
-            Key(back.end, last, bow=(0.04, -0.02, 0.10)),
-        ],
-    )
+    script = write_script(person, times, random, PLAN)
+    strokes = list(_strokes(script))
+    swung = _swung(script, strokes)
+    posture, trunk = script.stand(_stance(script, swung))
+    bench = _bench(script)
+    nail = bench.base + np.outer(_standing(script, strokes), [0.0, 0.0, 1.0])
+    striking = _strike(script, trunk, nail, swung)
+    first, last = (script.still(_lying(random, bench.spot)) for _ in range(2))
+    lift, back = To(striking, bow=(0.04, -0.02, 0.10)), To(last, bow=(0.04, -0.02, 0.10))
+    carried = script.way(first, {"lift": lift, "return": back})
     right_rest, left_rest = hanging_hands(person, trunk, random)
-    held = carried @ _grip(person, times, random)
-    return Performance(
-        posture,
-        reaching_hand(times, stages, right_rest, held, bow=(0.05, -0.14, 0.16)),
-        _hold_nail(times, random, left_rest, bench.base, stages),
-        carried,
-        held_by_right_hand(times, stages),
-        bench.furniture,
-    )
+    held = carried @ _grip(script)
+    right_hand = reaching_hand(script, right_rest, held, bow=(0.05, -0.14, 0.16))
+    left_hand = _hold_nail(script, left_rest, bench.base)
+    contact = carried_by(script)
+    return Performance(posture, right_hand, left_hand, carried, contact, bench.furniture)
 
 
-def _strokes(
-    person: SimulatedPerson, random: np.random.Generator, stages: list[Stage]
-) -> Iterator[Stroke]:
+def _strokes(script: Script) -> Iterator[Stroke]:
     """The strokes of every burst in order of time."""
-    for stage in stages:
-        if stage.name in STROKES:
-            count = STROKES[stage.name]
-            beat = (stage.end - stage.start) / count
-            for start in stage.start + beat * np.arange(count):
-                back = BACKSWING * float(np.exp(random.normal(0.0, 0.06)))
-                swing = SWING[stage.name] * person.manner.amplitude
-                swing = min(swing * float(np.exp(random.normal(0.0, 0.10))), WIDEST_SWING)
-                yield Stroke(float(start), float(start + back * beat), float(start + beat), swing)
+    random = script.random
+    for stage in script.every(*STROKES):
+        count = STROKES[stage.name]
+        beat = stage.seconds / count
+        for start in stage.start + beat * np.arange(count):
+            back = BACKSWING * float(np.exp(random.normal(0.0, 0.06)))
+            swing = SWING[stage.name] * script.person.manner.amplitude
+            swing = min(swing * float(np.exp(random.normal(0.0, 0.10))), WIDEST_SWING)
+            yield Stroke(float(start), float(start + back * beat), float(start + beat), swing)
 
 
-def _swung(
-    times: Array, random: np.random.Generator, stages: list[Stage], strokes: list[Stroke]
-) -> Array:
+def _swung(script: Script, strokes: list[Stroke]) -> Array:
     """How far (T,) the hammer is swung back from the nail, radians."""
-    swung = HOVERING * (1.0 + drift(times, random, 0.2, 2.0))
-    for name in STROKES:
-        for stage in stages:
-            if stage.name == name:
-                keys = [(stage.start - 0.25, 1.0), (stage.start, 0.0), (stage.end, 0.0)]
-                swung *= track(times, [*keys, (stage.end + 0.25, 1.0)])
+    times = script.times
+    swung = HOVERING * (1.0 + script.drift(0.2, 2.0))
+    for stage in script.every(*STROKES):
+        swung *= 1.0 - script.around(stage, 0.25, 0.25)
     for stroke in strokes:
         risen = minimum_jerk((times - stroke.start) / (stroke.top - stroke.start))
         fallen = np.clip((times - stroke.top) / (stroke.impact - stroke.top), 0.0, 1.0) ** 2
@@ -168,63 +125,40 @@ def _swung(
     return np.asarray(swung)
 
 
-def _standing(times: Array, strokes: list[Stroke]) -> Array:
+def _standing(script: Script, strokes: list[Stroke]) -> Array:
     """Height (T,) of the nail's head above the block: each stroke drives it as far as it swings."""
     work = np.cumsum([stroke.swing for stroke in strokes])
     depths = NAIL_STANDING + (NAIL_DRIVEN - NAIL_STANDING) * work / work[-1]
     keys = [(0.0, NAIL_STANDING)]
     for stroke, depth in zip(strokes, depths, strict=True):
         keys += [(stroke.top, keys[-1][1]), (stroke.impact, float(depth))]
-    return track(times, keys)
+    return script.track(keys)
 
 
-def _stance(times: Array, stages: list[Stage], swung: Array) -> Stance:
+def _stance(script: Script, swung: Array) -> Stance:
     """Leaning over the nail, most to hold it, and the trunk going a little with the strokes."""
-    count = len(times)
-    lift, back = named(stages, "lift"), named(stages, "return")
-    keys = [(lift.start, 0.0), (lift.end, 1.0), (back.start, 1.0), (back.end, 0.0)]
-    worked = track(times, keys)[:, None]
-    looked = _bending(times, stages)[:, None]
-    leave = named(stages, "let go")
-    keys = [(lift.start, 0.0), (lift.end, 1.0), (leave.start, 1.0), (leave.end, 0.0)]
-    holding = track(times, keys)[:, None]
-    trunk = looked * np.array([0.60, 0.06, -0.18]) + worked * np.array([0.24, 0.0, -0.16])
-    trunk += holding * np.array([0.14, 0.0, -0.04])
-    trunk -= worked * swung[:, None] * np.array([0.05, -0.02, 0.08])
-    head = looked * np.array([-0.25, 0.0, -0.25]) + worked * np.array([-0.38, 0.0, 0.0])
-    right_foot, left_foot = feet_apart(count, half_width=0.12)
-    return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
+    worked = script.level(0.0, {"lift": 1.0, "return": 0.0})
+    holding = script.level(0.0, {"lift": 1.0, "let go": 0.0})
+    late = (0.3, 1.0)
+    bending = {"reach": 1.0, "lift": 0.0, "return": 1.0, "withdraw": 0.0}
+    bent = script.level(0.0, bending, parts={"lift": late, "withdraw": late})
+    trunk = np.outer(bent, [0.60, 0.06, -0.18]) + np.outer(worked, [0.24, 0.0, -0.16])
+    trunk += np.outer(holding, [0.14, 0.0, -0.04])
+    trunk -= np.outer(worked * swung, [0.05, -0.02, 0.08])
+    head = np.outer(bent, [-0.25, 0.0, -0.25]) + np.outer(worked, [-0.38, 0.0, 0.0])
+    return script.upright_stance(trunk, head, half_width=0.12)
 
 
-def _bending(times: Array, stages: list[Stage]) -> Array:
-    """How much (T,), 0 to 1, somebody bends over to where the hammer lies."""
-    bent = np.zeros(len(times))
-    for there, away in (("reach", "lift"), ("return", "withdraw")):
-        reaching, leaving = named(stages, there), named(stages, away)
-        late = leaving.start + 0.3 * (leaving.end - leaving.start)
-        bent += track(
-            times,
-            [
-                (reaching.start, 0.0),
-                (reaching.end, 1.0),
-                (late, 1.0),
-                (leaving.end, 0.0),
-            ],
-        )
-    return bent
-
-
-def _bench(person: SimulatedPerson, random: np.random.Generator) -> Bench:
+def _bench(script: Script) -> Bench:
     """A bench ahead, of the height of a dining table."""
-    size = person.height / 1.75
-    top = 0.45 * person.height + float(random.normal(0.0, 0.015))
-    x, y = np.array([0.06, 0.55]) * size + random.normal(0.0, 0.012, 2)
+    top = script.table_top(0.45)
+    x, y = script.place(0.06, 0.55, spread=0.012)
     wide, deep, high = BLOCK_SIZE
     block = Cuboid((x, y, top + high / 2.0), (wide, deep, high), PINE)
-    across, ahead = np.array([x + 0.24, 0.40 * size]) + random.normal(0.0, 0.012, 2)
+    beside = np.array([x + 0.24, 0.40 * script.size]) + script.random.normal(0.0, 0.012, 2)
     return Bench(
         (*side_table(x + 0.10, y + 0.01, top, width=0.80), block),
-        np.array([across, ahead, top + 0.018]),
+        np.array([*beside, top + 0.018]),
         np.array([x, y, top + high]),
     )
 
@@ -237,32 +171,25 @@ def _lying(random: np.random.Generator, spot: Array) -> Transform:
     return Transform(spot + aside, turned @ on_side)
 
 
-def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
+def _grip(script: Script) -> Transform:
     """A fist near the handle's end, object_from_hand (T)."""
-    point = np.array([0.0, 0.0, GRIP_HEIGHT + 0.03 * max(person.manner.grip_slide, -0.3)])
-    turned = rotation_about("xz", OBLIQUE, 0.4 * person.manner.grip_turn)
-    return hold_bar(person, times, random, point, turned)
+    manner = script.person.manner
+    point = np.array([0.0, 0.0, GRIP_HEIGHT + 0.03 * max(manner.grip_slide, -0.3)])
+    return hold_bar(script, point, rotation_about("xz", OBLIQUE, 0.4 * manner.grip_turn))
 
 
-def _strike(
-    person: SimulatedPerson,
-    times: Array,
-    random: np.random.Generator,
-    trunk: Trunk,
-    nail: Array,
-    swung: Array,
-) -> Transform:
+def _strike(script: Script, trunk: Trunk, nail: Array, swung: Array) -> Transform:
     """The hammer's way, world_from_object (T): swung about the elbow and, further, the wrist."""
-    sideways = rotation_about("z", HANDLE_TO_LEFT + drift(times, random, 0.04, 3.0))
-    missed = np.stack([drift(times, random, 0.003, 1.5) for _ in range(3)], axis=1)
-    rising = 0.4 * person.manner.grip_tilt + drift(times, random, 0.03, 2.0)
+    sideways = rotation_about("z", HANDLE_TO_LEFT + script.drift(0.04, 3.0))
+    missed = script.drifts(0.003, 1.5)
+    rising = 0.4 * script.person.manner.grip_tilt + script.drift(0.03, 2.0)
     level = rotation_from_axes([0.0, 0.0, -1.0], [0.0, 1.0, 0.0])
     at_impact = sideways @ rotation_about("x", rising) @ level
     hit = nail + missed * [1.0, 1.0, 0.0]
     hand = np.array([0.0, 0.0, GRIP_HEIGHT])
     grasped = hit + at_impact @ (hand - FACE)
-    upright = rotation_about("z", heading_of(trunk.world_from_chest))
-    elbow = trunk.right_shoulder + upright @ (ELBOW * person.height / 1.75)
+    chest = upright(trunk.world_from_chest)
+    elbow = trunk.right_shoulder + chest.rotation @ (ELBOW * script.size)
     by_elbow = sideways @ rotation_about("x", ELBOW_SHARE * swung) @ np.swapaxes(sideways, 1, 2)
     by_both = sideways @ rotation_about("x", swung) @ np.swapaxes(sideways, 1, 2)
     shrugged = np.outer(swung, [0.02, -0.03, 0.04])
@@ -271,31 +198,16 @@ def _strike(
     return Transform(swinging - rotation @ hand, rotation)
 
 
-def _hold_nail(
-    times: Array,
-    random: np.random.Generator,
-    rest: Transform,
-    base: Array,
-    stages: list[Stage],
-) -> Transform:
+def _hold_nail(script: Script, rest: Transform, base: Array) -> Transform:
     """The left hand, world_from_hand (T): on the bench, but at the nail until that stands."""
     held = (base + np.array([0.0, 0.0, HELD_AT])) * MIRROR
-    holding = Transform(held, np.eye(3)) @ pinch(times, random, np.zeros(3), HOLDING)
-    own = np.append(random.normal(0.0, 0.015, 2), -BLOCK_SIZE[2])
-    leaning = Transform((base + LEANING_AT + own) * MIRROR, LEANING).repeated(len(times))
-    reach, lift, leave, away = (
-        named(stages, name) for name in ("reach", "lift", "let go", "withdraw")
-    )
-    return move_through(
-        times,
-        [
-            Key(reach.start, rest),
-            Key(reach.end, leaning.mirrored(), bow=AROUND_BENCH),
-            Key(lift.start, leaning.mirrored()),
-            Key(lift.end, holding.mirrored(), bow=(-0.02, -0.03, 0.05)),
-            Key(leave.start, holding.mirrored()),
-            Key(leave.end, leaning.mirrored(), bow=(-0.02, -0.03, 0.05)),
-            Key(away.start, leaning.mirrored()),
-            Key(away.end, rest, bow=AROUND_BENCH),
-        ],
-    )
+    holding = Transform(held, np.eye(3)) @ pinch(script, np.zeros(3), HOLDING)
+    own = np.append(script.random.normal(0.0, 0.015, 2), -BLOCK_SIZE[2])
+    leaning = script.still(Transform((base + LEANING_AT + own) * MIRROR, LEANING)).mirrored()
+    goals = {
+        "reach": To(leaning, bow=AROUND_BENCH),
+        "lift": To(holding.mirrored(), bow=AROUND_NAIL),
+        "let go": To(leaning, bow=AROUND_NAIL),
+        "withdraw": To(rest, bow=AROUND_BENCH),
+    }
+    return script.way(rest, goals)

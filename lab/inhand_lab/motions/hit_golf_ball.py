@@ -13,40 +13,24 @@ from inhand_lab.motions.arms import within_both_reaches
 from inhand_lab.motions.furniture import WOOD, Cuboid, Furniture
 from inhand_lab.motions.golf_swing import Swing, plan_swings
 from inhand_lab.motions.grips import hold_bar
-from inhand_lab.motions.performance import (
-    TOES_OUT,
-    ContactKind,
-    Performance,
-    Stance,
-    contacts,
-    feet_apart,
-    hanging_hands,
-    stand,
-)
-from inhand_lab.motions.reaching import named
-from inhand_lab.motions.timeline import Key, Move, Pause, drift, move_through, schedule
+from inhand_lab.motions.performance import TOES_OUT, ContactKind, Performance, hanging_hands
+from inhand_lab.motions.reaching import carried_by, reaching_hand
+from inhand_lab.motions.script import Script, To, write_script
+from inhand_lab.motions.timeline import Move, Pause, Plan
 from inhand_lab.objects.golf_club import SOLE, golf_club
 from inhand_lab.people.kinematics import BALL_HEIGHT, Posture, Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (
-    Pause("wait", 0.3),
-    Move("reach", 0.8),
-    Move("grasp", 0.2),
-    Move("take", 1.0),
-)
-USE = (
-    Move("waggle", 0.65),
-    Pause("settle", 0.35),
-    Move("swing", 1.65),
-    Pause("finish", 0.5),
-    Move("recover", 0.80),
-)
-CLOSING = (
-    Move("return", 0.90),
-    Move("release", 0.2),
-    Move("withdraw", 0.8),
-    Pause("wait", 0.3),
+PLAN = Plan(
+    opening=(Pause("wait", 0.3), Move("reach", 0.8), Move("grasp", 0.2), Move("take", 1.0)),
+    use=(
+        Move("waggle", 0.65),
+        Pause("settle", 0.35),
+        Move("swing", 1.65),
+        Pause("finish", 0.5),
+        Move("recover", 0.80),
+    ),
+    closing=(Move("return", 0.90), Move("release", 0.2), Move("withdraw", 0.8), Pause("wait", 0.3)),
 )
 
 HALF_STANCE = 0.12
@@ -65,6 +49,10 @@ SQUARE = 0.3
 """How much the face is square to the swing's plane, beside what the left arm makes of it."""
 FOOT_TURN = 0.6
 """Turn of the right foot to the left as its heel is lifted, by the lift."""
+JOINED = 0.9
+"""Share of taking the club after which the left hand holds it as well."""
+AROUND_CLUB = (-0.05, 0.12, 0.0)
+"""How the left hand's way to the club and back swings out, metres."""
 
 RACK_PLACE = np.array([0.35, 0.46])
 """Where the sole of the club is, metres."""
@@ -75,76 +63,43 @@ RACK_HEIGHT, RACK_DEPTH = 0.45, 0.11
 
 def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Golf at these times, in seconds from the start; the target is at the left."""
-    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
-    swing = plan_swings(person, times, random, stages)
-    posture = _posture(person, times, random, swing)
+    script = write_script(person, times, random, PLAN)
+    swing = plan_swings(script)
+    posture = _posture(script, swing)
     trunk = place_trunk(person, posture)
     rack, leaning = _lean_on_rack(random)
-    right_grip, left_grip = _grips(person, times, random)
-    waggle = int(np.searchsorted(times, named(stages, "waggle").start))
+    grips = _grips(script)
+    waggle = int(np.searchsorted(times, script.stage("waggle").start))
     swung = _swing_club(person, trunk, swing, address=waggle)
-    swung = _above_floor(within_both_reaches(person, trunk, swung, right_grip, left_grip))
-    rest = leaning.repeated(len(times))
-    take, back = named(stages, "take"), named(stages, "return")
-    carried = move_through(
-        times,
-        [
-            Key(take.start, rest),
-            Key(take.end, swung, bow=(0.0, 0.0, 0.08)),
-            Key(back.start, swung),
-            Key(back.end, rest, bow=(0.0, 0.0, 0.08)),
-        ],
-    )
+    swung = _above_floor(within_both_reaches(person, trunk, swung, grips))
+    rest = script.still(leaning)
+    take, back = To(swung, bow=(0.0, 0.0, 0.08)), To(rest, bow=(0.0, 0.0, 0.08))
+    carried = script.way(rest, {"take": take, "return": back})
     right_rest, left_rest = hanging_hands(person, trunk, random)
-    reach, withdraw = named(stages, "reach"), named(stages, "withdraw")
-    right_held, left_held = carried @ right_grip, carried @ left_grip
-    right_hand = move_through(
-        times,
-        [
-            Key(reach.start, right_rest),
-            Key(reach.end, right_held, bow=(0.06, 0.0, 0.10)),
-            Key(withdraw.start, right_held),
-            Key(withdraw.end, right_rest, bow=(0.06, 0.0, 0.10)),
-        ],
-    )
-    joined = take.start + 0.9 * (take.end - take.start)
-    left_hand = move_through(
-        times,
-        [
-            Key(take.start, left_rest),
-            Key(joined, left_held, bow=(-0.05, 0.12, 0.0)),
-            Key(back.start, left_held),
-            Key(back.start + 0.8 * (back.end - back.start), left_rest, bow=(-0.05, 0.12, 0.0)),
-        ],
-    )
-    changes = [
-        (0.0, ContactKind.RESTING),
-        (named(stages, "grasp").end, ContactKind.RIGHT_HAND),
-        (joined, ContactKind.BOTH_HANDS),
-        (back.start, ContactKind.RIGHT_HAND),
-        (named(stages, "release").start, ContactKind.RESTING),
-    ]
-    return Performance(posture, right_hand, left_hand, carried, contacts(times, changes), rack)
+    right_hand = reaching_hand(script, right_rest, carried @ grips[0], bow=(0.06, 0.0, 0.10))
+    join = To(carried @ grips[1], AROUND_CLUB, part=(0.0, JOINED))
+    leave = To(left_rest, AROUND_CLUB, part=(0.0, 0.8))
+    left_hand = script.way(left_rest, {"take": join, "return": leave})
+    joining = (script.stage("take").at(JOINED), ContactKind.BOTH_HANDS)
+    leaving = (script.stage("return").start, ContactKind.RIGHT_HAND)
+    contact = carried_by(script, joining, leaving)
+    return Performance(posture, right_hand, left_hand, carried, contact, rack)
 
 
-def _posture(
-    person: SimulatedPerson, times: Array, random: np.random.Generator, swing: Swing
-) -> Posture:
+def _posture(script: Script, swing: Swing) -> Posture:
     """Hips and shoulders turning about a spine that leans to the ball; eyes on the ball.
 
     The right heel comes off the floor as the weight goes to the left foot.
     """
-    count = len(times)
-    right_foot, left_foot = feet_apart(count, HALF_STANCE * person.height)
-    pivoted = _pivot(person, right_foot, swing.heel)
+    person, count = script.person, len(script.times)
     shift = np.stack([person.height * swing.slide, np.zeros(count), np.full(count, -0.015)], axis=1)
-    leaning = np.stack([swing.lean, np.zeros(count), np.zeros(count)], axis=1)
-    shift[:, :2] -= 0.5 * (pivoted.translation - right_foot)[:, :2]
-    stance = Stance(
-        pivoted.translation, left_foot, np.zeros(count), shift, leaning, np.zeros((count, 3))
-    )
-    posture = stand(person, times, random, stance)
-    lean = swing.lean + person.manner.stoop + drift(times, random, 0.01, 4.0)
+    leaning = np.outer(swing.lean, [1.0, 0.0, 0.0])
+    half_width = HALF_STANCE * person.height
+    stance = script.upright_stance(leaning, np.zeros((count, 3)), shift, half_width)
+    pivoted = _pivot(person, stance.right_foot, swing.heel)
+    shift[:, :2] -= 0.5 * (pivoted.translation - stance.right_foot)[:, :2]
+    posture, _ = script.stand(replace(stance, right_foot=pivoted.translation))
+    lean = swing.lean + person.manner.stoop + script.drift(0.01, 4.0)
     aside = rotation_about("y", SPINE_ASIDE * swing.lean - HIPS_AHEAD * swing.slide)
     pelvis = rotation_about("zx", swing.pelvis, -0.5 * lean)
     chest = aside @ rotation_about("zx", swing.chest, -lean)
@@ -188,18 +143,11 @@ def _lean_on_rack(random: np.random.Generator) -> tuple[Furniture, Transform]:
     )
 
 
-def _grips(
-    person: SimulatedPerson, times: Array, random: np.random.Generator
-) -> tuple[Transform, Transform]:
+def _grips(script: Script) -> tuple[Transform, Transform]:
     """The right and the left hand, object_from_hand (T): thumbs down the shaft, left hand above."""
+    down = np.diag([1.0, -1.0, -1.0])
     right, left = (
-        hold_bar(
-            person,
-            times,
-            random,
-            np.array([0.0, 0.0, along]),
-            np.diag([1.0, -1.0, -1.0]) @ rotation_about("x", oblique),
-        )
+        hold_bar(script, np.array([0.0, 0.0, along]), down @ rotation_about("x", oblique))
         for along, oblique in zip((-0.5 * HANDS_APART, 0.5 * HANDS_APART), OBLIQUE, strict=True)
     )
     return right, left.mirrored()

@@ -13,30 +13,19 @@ from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_f
 from inhand_lab.motions.arms import overreach
 from inhand_lab.motions.furniture import Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
-from inhand_lab.motions.performance import (
-    Performance,
-    Stance,
-    feet_apart,
-    hanging_hands,
-    stand,
-    step,
-)
-from inhand_lab.motions.reaching import (
-    PUT_BACK,
-    TAKE,
-    attention,
-    held_by_right_hand,
-    named,
-    reaching_hand,
-)
-from inhand_lab.motions.timeline import Key, Move, Pause, Stage, flow, move_through, schedule, track
+from inhand_lab.motions.performance import Performance, Stance, feet_apart, hanging_hands, step
+from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, carried_by, reaching_hand
+from inhand_lab.motions.script import Script, To, write_script
+from inhand_lab.motions.timeline import Move, Pause, Plan, Stage
 from inhand_lab.objects.racket import HANDLE_RADIUS
-from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.kinematics import Trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (*TAKE, Move("lift", 0.9))
-USE = (Pause("ready", 0.4), Move("stroke", 1.35), Move("recover", 0.7))
-CLOSING = (Pause("ready", 0.3), *PUT_BACK)
+PLAN = Plan(
+    opening=(*TAKE, Move("lift", 0.9)),
+    use=(Pause("ready", 0.4), Move("stroke", 1.35), Move("recover", 0.7)),
+    closing=(Pause("ready", 0.3), *PUT_BACK),
+)
 
 READY = np.array((0.06, 0.40, -0.30, 50, 35, 0, 0.0, -0.12, 0.44, -0.24, 4, 12))
 STROKE = (
@@ -69,64 +58,40 @@ STEP = 0.13
 
 def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Tennis at these times, in seconds from the start; the ball comes from ahead."""
-    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
-    figures = _figures(person, times, random, stages)
-    posture = stand(person, times, random, _stance(person, times, random, stages, figures))
-    trunk = place_trunk(person, posture)
-    table, lying = _table(person, random)
-    grip = _grip(person, times, random)
-    played = _play(person, trunk, figures, grip)
-    rest = lying.repeated(len(times))
-    lift, back = named(stages, "lift"), named(stages, "return")
-    carried = move_through(
-        times,
-        [
-            Key(lift.start, rest),
-            Key(lift.end, played, bow=(0.0, 0.0, 0.06)),
-            Key(back.start, played),
-            Key(back.end, rest, bow=(0.0, 0.0, 0.10)),
-        ],
-    )
+    script = write_script(person, times, random, PLAN)
+    figures = _figures(script)
+    posture, trunk = script.stand(_stance(script, figures))
+    table, lying = _table(script)
+    grip = _grip(script)
+    rest, played = script.still(lying), _play(script, trunk, figures, grip)
+    lift, back = To(played, bow=(0.0, 0.0, 0.06)), To(rest, bow=(0.0, 0.0, 0.10))
+    carried = script.way(rest, {"lift": lift, "return": back})
     right_rest, left_rest = hanging_hands(person, trunk, random)
-    right_hand = reaching_hand(times, stages, right_rest, carried @ grip, bow=(0.08, 0.10, 0.10))
-    balancing = _balancing_hand(person, trunk, figures)
-    left_hand = move_through(
-        times,
-        [
-            Key(lift.start, left_rest),
-            Key(lift.end, balancing, bow=(-0.05, 0.05, 0.0)),
-            Key(back.start, balancing),
-            Key(back.end, left_rest, bow=(-0.05, 0.05, 0.0)),
-        ],
-    )
-    contact = held_by_right_hand(times, stages)
-    return Performance(posture, right_hand, left_hand, carried, contact, table)
+    right_hand = reaching_hand(script, right_rest, carried @ grip, bow=(0.08, 0.10, 0.10))
+    balance = To(_balancing_hand(script, trunk, figures), bow=(-0.05, 0.05, 0.0))
+    hang = To(left_rest, bow=(-0.05, 0.05, 0.0))
+    left_hand = script.way(left_rest, {"lift": balance, "return": hang})
+    return Performance(posture, right_hand, left_hand, carried, carried_by(script), table)
 
 
-def _figures(
-    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
-) -> Array:
+def _figures(script: Script) -> Array:
     """The figures of STROKE over time (T, 12), angles in radians, the wrist in the racket's."""
     knots = [(0.0, READY)]
-    for stage in stages:
-        if stage.name == "stroke":
-            knots += _stroke(person, stage, random)
-        if stage.name == "recover":
-            knots.append((stage.end, READY))
-    figures = flow(times, knots)
+    for stage in script.every("stroke", "recover"):
+        knots += _stroke(script, stage) if stage.name == "stroke" else [(stage.end, READY)]
+    figures = script.flow(knots)
     figures[:, DEGREES] = np.radians(figures[:, DEGREES])
     figures[:, RACKET.start] -= figures[:, WRIST]
     return figures
 
 
-def _stroke(
-    person: SimulatedPerson, stage: Stage, random: np.random.Generator
-) -> list[tuple[float, Array]]:
+def _stroke(script: Script, stage: Stage) -> list[tuple[float, Array]]:
     """One stroke, of the person's size and wrist with some variation, at a ball of its own."""
-    usual, range_ = LAID_BACK
-    wrist = usual + range_ * (0.7 * person.manner.grip_slide + 0.3 * random.normal())
+    manner, random = script.person.manner, script.random
+    usual, more = LAID_BACK
+    wrist = usual + more * (0.7 * manner.grip_slide + 0.3 * random.normal())
     wrist = np.clip(wrist, *LEAST_AND_MOST_LAID_BACK)
-    size = np.clip(person.manner.amplitude * (1.0 + 0.05 * random.normal()), 0.75, 1.15)
+    size = np.clip(manner.amplitude * (1.0 + 0.05 * random.normal()), 0.75, 1.15)
     ball = random.normal(0.0, 0.03, 3)
     knots = []
     for share, figures in STROKE:
@@ -134,49 +99,40 @@ def _stroke(
         values[HAND] += 4.0 * share * (1.0 - share) * ball
         values[WRIST] *= wrist
         values[TURN] = READY[TURN] + size * (values[TURN] - READY[TURN])
-        knots.append((stage.start + share * (stage.end - stage.start), values))
+        knots.append((stage.at(share), values))
     return knots
 
 
-def _stance(
-    person: SimulatedPerson,
-    times: Array,
-    random: np.random.Generator,
-    stages: list[Stage],
-    figures: Array,
-) -> Stance:
+def _stance(script: Script, figures: Array) -> Stance:
     """Knees bent, eyes ahead, the left foot stepping into some of the balls and back."""
-    count = len(times)
-    lift, back = named(stages, "lift"), named(stages, "return")
-    keys = [(lift.start, 0.0), (lift.end, 1.0), (back.start, 1.0), (back.end, 0.0)]
-    play, looked = track(times, keys), attention(times, stages)[:, None]
-    right_foot, left_foot = feet_apart(count, half_width=0.085 * person.height)
+    height, times, random = script.person.height, script.times, script.random
+    play, looked = script.level(0.0, {"lift": 1.0, "return": 0.0}), attention(script)
+    right_foot, left_foot = feet_apart(len(times), half_width=0.085 * height)
     stepping = random.random() < 0.8
-    for stage in stages:
-        span = stage.end - stage.start
+    for stage in script.every("stroke", "recover"):
         if stage.name == "stroke":
-            way = stepping * STEP * person.height * random.uniform((-0.1, 0.7), (0.4, 1.2))
-            left_foot += step(times, stage.start + 0.25 * span, stage.start + 0.55 * span, way)
-        if stage.name == "recover":
-            left_foot += step(times, stage.start + 0.3 * span, stage.start + 0.9 * span, -way)
-    shift = np.stack([np.zeros(count), np.zeros(count), -0.025 * play], axis=1)
-    trunk = play[:, None] * np.stack([figures[:, LEAN], np.zeros(count), figures[:, TURN]], axis=1)
-    head = np.stack([0.2 * play, np.zeros(count), -0.8 * trunk[:, 2]], axis=1)
-    trunk += looked * np.array([0.30, -0.04, 0.38])
-    head += looked * np.array([-0.30, 0.0, 0.30])
-    return Stance(right_foot, left_foot, np.zeros(count), shift, trunk, head)
+            way = stepping * STEP * height * random.uniform((-0.1, 0.7), (0.4, 1.2))
+            left_foot += step(times, stage.at(0.25), stage.at(0.55), way)
+        else:
+            left_foot += step(times, stage.at(0.3), stage.at(0.9), -way)
+    still = np.zeros(len(times))
+    trunk = play[:, None] * np.stack([figures[:, LEAN], still, figures[:, TURN]], axis=1)
+    head = np.stack([0.2 * play, still, -0.8 * trunk[:, 2]], axis=1)
+    trunk += np.outer(looked, [0.30, -0.04, 0.38])
+    head += np.outer(looked, [-0.30, 0.0, 0.30])
+    shift = np.outer(play, [0.0, 0.0, -0.025])
+    return Stance(right_foot, left_foot, still, shift, trunk, head)
 
 
-def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Transform]:
+def _table(script: Script) -> tuple[Furniture, Transform]:
     """A table at the left, and the racket on it, its handle to the right, world_from_object."""
-    size = person.height / 1.75
-    x, y = np.array([-0.03, 0.44]) * size + random.normal(0.0, 0.015, 2)
-    top = 0.50 * person.height + random.normal(0.0, 0.01)
-    turn = 1.20 + random.normal(0.0, 0.08)
+    x, y = script.place(-0.03, 0.44)
+    top = script.table_top(0.50, spread=0.01)
+    turn = 1.20 + script.random.normal(0.0, 0.08)
     lying = _pointing(np.array([turn]), np.zeros(1), np.array([-0.5 * np.pi]))[0]
     head = np.array([x, y]) + 0.42 * np.array([-np.sin(turn), np.cos(turn)])
     place = np.array([x, y, top + HANDLE_RADIUS])
-    return side_table(float(head[0]) - 0.02, float(head[1]), float(top)), Transform(place, lying)
+    return side_table(float(head[0]) - 0.02, float(head[1]), top), Transform(place, lying)
 
 
 def _pointing(to_left: Array, up: Array, roll: Array) -> Array:
@@ -184,27 +140,27 @@ def _pointing(to_left: Array, up: Array, roll: Array) -> Array:
     return rotation_about("xz", up, to_left) @ POINTING_AHEAD @ rotation_about("z", roll)
 
 
-def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
+def _grip(script: Script) -> Transform:
     """A fist whose palm is behind the strings, object_from_hand (T)."""
-    square = rotation_about("z", -0.5 * np.pi + 0.5 * person.manner.grip_turn)
-    point = np.array([0.0, 0.0, 0.02 * person.manner.grip_slide])
-    return hold_bar(person, times, random, point, square @ rotation_about("x", OBLIQUE))
+    manner = script.person.manner
+    square = rotation_about("z", -0.5 * np.pi + 0.5 * manner.grip_turn)
+    point = np.array([0.0, 0.0, 0.02 * manner.grip_slide])
+    return hold_bar(script, point, square @ rotation_about("x", OBLIQUE))
 
 
-def _play(person: SimulatedPerson, trunk: Trunk, figures: Array, grip: Transform) -> Transform:
+def _play(script: Script, trunk: Trunk, figures: Array, grip: Transform) -> Transform:
     """The racket at play, world_from_object (T), where the arm can reach."""
-    centre = trunk.world_from_chest.translation
-    hand = centre + figures[:, HAND] * (person.height / 1.75)
+    hand = trunk.world_from_chest.translation + figures[:, HAND] * script.size
     rotation = _pointing(*figures[:, RACKET].T)
     racket = Transform(hand - np.einsum("tij,tj->ti", rotation, grip.translation), rotation)
-    shift = overreach(person, trunk.right_shoulder, racket @ grip)
+    shift = overreach(script.person, trunk.right_shoulder, racket @ grip)
     return Transform(racket.translation + shift, rotation)
 
 
-def _balancing_hand(person: SimulatedPerson, trunk: Trunk, figures: Array) -> Transform:
+def _balancing_hand(script: Script, trunk: Trunk, figures: Array) -> Transform:
     """The left hand, world_from_hand (T): by the racket's throat, ahead, and at the side."""
-    centre = trunk.world_from_chest.translation
-    place = centre + figures[:, LEFT_HAND] * (person.height / 1.75)
+    place = trunk.world_from_chest.translation + figures[:, LEFT_HAND] * script.size
     rotation = rotation_from_axes([0.35, 0.8, 0.15], [0.2, 0.0, 1.0])
     hand = Transform(place, np.tile(rotation, (len(place), 1, 1)))
-    return Transform(place + overreach(person, trunk.left_shoulder, hand), hand.rotation)
+    shift = overreach(script.person, trunk.left_shoulder, hand)
+    return Transform(place + shift, hand.rotation)

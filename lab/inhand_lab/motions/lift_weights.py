@@ -14,49 +14,32 @@ from inhand_lab.motions.performance import (
     ContactKind,
     Performance,
     Stance,
-    contacts,
     feet_apart,
     hanging_hands,
-    heading_of,
     stand,
+    upright,
 )
-from inhand_lab.motions.reaching import named
+from inhand_lab.motions.reaching import carried_by
+from inhand_lab.motions.script import Script, To, write_script
 from inhand_lab.motions.steps import Turn, turn_on_the_spot
-from inhand_lab.motions.timeline import (
-    Key,
-    Move,
-    Pause,
-    Stage,
-    drift,
-    move_through,
-    schedule,
-    track,
-)
+from inhand_lab.motions.timeline import Move, Pause, Plan, Stage
 from inhand_lab.objects.barbell import BAR_RADIUS
 from inhand_lab.people.kinematics import Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (
-    Pause("wait", 0.4),
-    Move("stoop", 1.2),
-    Move("grasp", 0.25),
-    Move("rise", 1.25),
-)
-USE = (
-    Pause("hang", 0.35),
-    Move("curl", 0.7),
-    Pause("squeeze", 0.15),
-    Move("lower", 0.75),
-)
-CLOSING = (
-    Pause("hang", 0.35),
-    Move("return", 1.25),
-    Move("release", 0.2),
-    Move("withdraw", 1.15),
-    Pause("wait", 0.3),
+PLAN = Plan(
+    opening=(Pause("wait", 0.4), Move("stoop", 1.2), Move("grasp", 0.25), Move("rise", 1.25)),
+    use=(Pause("hang", 0.35), Move("curl", 0.7), Pause("squeeze", 0.15), Move("lower", 0.75)),
+    closing=(
+        Pause("hang", 0.35),
+        Move("return", 1.25),
+        Move("release", 0.2),
+        Move("withdraw", 1.15),
+        Pause("wait", 0.3),
+    ),
 )
 
-STANCE_HALF_WIDTH = 0.125
+FEET_HALF_APART = 0.125
 STOOL_SIZE = 0.22
 UNDERHAND = rotation_from_axes([0.0, 0.0, -1.0], [1.0, 0.0, 0.0])
 """The right hand's rotation in the bar's frame: with hanging arms the palm is ahead."""
@@ -71,6 +54,9 @@ HIPS_BACK = 0.10
 """How far the hips go back to keep the balance, metres."""
 STRAIGHT = 0.97
 """Share of their length to which the arms hang with the weight."""
+
+LATE = (0.25, 1.0)
+"""The part of a stoop in which the trunk bends: turning to the stool comes first."""
 
 
 @dataclass(frozen=True)
@@ -106,105 +92,65 @@ class Stool:
 
 def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Lifting weights at these times, in seconds from the start."""
-    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
-    stool = _stool(person, random)
-    curled = _curls(times, random, stages)
-    posture = stand(person, times, random, _stance(person, times, stages, stool, curled))
-    trunk = place_trunk(person, posture)
-    carried = _carry(person, times, random, trunk, stages, stool, curled)
+    script = write_script(person, times, random, PLAN)
+    stool = _stool(script)
+    curled = _curls(script)
+    posture, trunk = script.stand(_stance(script, stool, curled))
+    carried = _carry(script, trunk, stool, curled)
     right_rest, left_rest = hanging_hands(person, trunk, random)
-    right_held = carried @ _grip(person, times, random)
-    left_held = carried @ _grip(person, times, random).mirrored()
-    stoop, withdraw = named(stages, "stoop"), named(stages, "withdraw")
-    reach = stoop.start + 0.3 * (stoop.end - stoop.start)
-
-    def hand(rest: Transform, held: Transform) -> Transform:
-        released = withdraw.start + 0.8 * (withdraw.end - withdraw.start)
-        return move_through(
-            times,
-            [
-                Key(reach, rest),
-                Key(stoop.end, held),
-                Key(withdraw.start, held),
-                Key(released, rest),
-            ],
-        )
-
-    changes = [
-        (0.0, ContactKind.RESTING),
-        (named(stages, "grasp").end, ContactKind.BOTH_HANDS),
-        (named(stages, "release").start, ContactKind.RESTING),
-    ]
-    return Performance(
-        posture,
-        hand(right_rest, right_held),
-        hand(left_rest, left_held),
-        carried,
-        contacts(times, changes),
-        stool.furniture,
-    )
+    right_held = carried @ _grip(script)
+    left_held = carried @ _grip(script).mirrored()
+    right_hand = _take_hold(script, right_rest, right_held)
+    left_hand = _take_hold(script, left_rest, left_held)
+    contact = carried_by(script, taken=ContactKind.BOTH_HANDS)
+    return Performance(posture, right_hand, left_hand, carried, contact, stool.furniture)
 
 
-def _stool(person: SimulatedPerson, random: np.random.Generator) -> Stool:
+def _take_hold(script: Script, rest: Transform, held: Transform) -> Transform:
+    """A hand, world_from_hand (T): on the bar from the end of stooping to it to the last rise."""
+    goals = {"stoop": To(held, part=(0.3, 1.0)), "withdraw": To(rest, part=(0.0, 0.8))}
+    return script.way(rest, goals)
+
+
+def _stool(script: Script) -> Stool:
     """A stool ahead and to the right."""
+    random = script.random
     heading = -float(np.clip(random.normal(0.95, 0.15), 0.65, 1.25))
-    ahead = 0.44 * person.height / 1.75 + float(random.normal(0.0, 0.01))
+    ahead = 0.44 * script.size + float(random.normal(0.0, 0.01))
     return Stool(heading, ahead, float(random.normal(0.50, 0.02)))
 
 
-def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
+def _grip(script: Script) -> Transform:
     """The right fist around the bar from below, object_from_hand (T)."""
+    person, manner = script.person, script.person.manner
     wide = max(person.proportions.shoulder_half_width + 0.035, 0.125 * person.height * person.girth)
-    aside = wide + 0.02 * person.manner.grip_slide
-    turned = rotation_about("x", 0.6 * person.manner.grip_turn) @ UNDERHAND
-    return hold_bar(person, times, random, np.array([aside, 0.0, 0.0]), turned)
+    point = np.array([wide + 0.02 * manner.grip_slide, 0.0, 0.0])
+    return hold_bar(script, point, rotation_about("x", 0.6 * manner.grip_turn) @ UNDERHAND)
 
 
-def _stance(
-    person: SimulatedPerson, times: Array, stages: list[Stage], stool: Stool, curled: Array
-) -> Stance:
+def _stance(script: Script, stool: Stool, curled: Array) -> Stance:
     """Turning and stooping to the stool at both ends; leaning back a little with the weight."""
-    stoop, rise = named(stages, "stoop"), named(stages, "rise")
-    back, withdraw = named(stages, "return"), named(stages, "withdraw")
-
-    def during(stage: Stage, share: float) -> float:
-        return stage.start + share * (stage.end - stage.start)
-
+    stoop, rise = script.stage("stoop"), script.stage("rise")
+    back, withdraw = script.stage("return"), script.stage("withdraw")
     turns = [
-        Turn(stoop.start, during(stoop, 0.6), stool.heading),
-        Turn(during(rise, 0.35), rise.end, 0.0),
-        Turn(back.start, during(back, 0.6), stool.heading),
-        Turn(during(withdraw, 0.4), withdraw.end, 0.0),
+        Turn(stoop.start, stoop.at(0.6), stool.heading),
+        Turn(rise.at(0.35), rise.end, 0.0),
+        Turn(back.start, back.at(0.6), stool.heading),
+        Turn(withdraw.at(0.4), withdraw.end, 0.0),
     ]
-    footing = turn_on_the_spot(times, STANCE_HALF_WIDTH, turns)
-    stooped = track(
-        times,
-        [
-            (during(stoop, 0.25), 0.0),
-            (stoop.end, 1.0),
-            (rise.start, 1.0),
-            (during(rise, 0.75), 0.0),
-            (during(back, 0.25), 0.0),
-            (back.end, 1.0),
-            (withdraw.start, 1.0),
-            (during(withdraw, 0.8), 0.0),
-        ],
+    footing = turn_on_the_spot(script.times, FEET_HALF_APART, turns)
+    stooped = script.level(
+        0.0,
+        {"stoop": 1.0, "rise": 0.0, "return": 1.0, "withdraw": 0.0},
+        parts={"stoop": LATE, "rise": (0.0, 0.75), "return": LATE, "withdraw": (0.0, 0.8)},
     )
-    shift = np.outer(stooped, [0.0, 0.0, -_knees_bent(person, stool)])
+    shift = np.outer(stooped, [0.0, 0.0, -_knees_bent(script.person, stool)])
     shift -= HIPS_BACK * stooped[:, None] * rotation_about("z", footing.heading)[:, :, 1]
     trunk = np.outer(stooped, [LEAN, 0.0, 0.0]) - np.outer(curled, [0.07, 0.0, 0.0])
-    glance = track(
-        times,
-        [
-            (time, value)
-            for stage in (stoop, back)
-            for time, value in (
-                (stage.start - 0.2, 0.0),
-                (during(stage, 0.4), 1.0),
-                (during(stage, 0.9), 0.0),
-            )
-        ],
-    )
+    glance = np.zeros(len(script.times))
+    for stage in (stoop, back):
+        keys = [(stage.start - 0.2, 0.0), (stage.at(0.4), 1.0), (stage.at(0.9), 0.0)]
+        glance += script.track(keys)
     head = np.outer(glance, [-0.15, 0.0, -0.5]) + np.outer(stooped, [0.25, 0.0, 0.0])
     return Stance(
         footing.right_foot,
@@ -219,7 +165,7 @@ def _stance(
 
 def _knees_bent(person: SimulatedPerson, stool: Stool) -> float:
     """How far the hips go down, metres, until the arms reach the bar from a stooping trunk."""
-    right_foot, left_foot = feet_apart(1, STANCE_HALF_WIDTH)
+    right_foot, left_foot = feet_apart(1, FEET_HALF_APART)
     back, stooped = np.array([[0.0, -HIPS_BACK, 0.0]]), np.array([[LEAN, 0.0, 0.0]])
     stance = Stance(right_foot, left_foot, np.zeros(1), back, stooped, np.zeros((1, 3)))
     trunk = place_trunk(person, stand(person, np.zeros(1), np.random.default_rng(0), stance))
@@ -235,29 +181,30 @@ def _arm_length(person: SimulatedPerson) -> float:
     return body.upper_arm + body.forearm + body.palm + float(BAR_IN_PALM[1])
 
 
-def _curls(times: Array, random: np.random.Generator, stages: list[Stage]) -> Array:
+def _curls(script: Script) -> Array:
     """How far (T,) the bar is lifted from hanging, 0, to the chest, about 1."""
-    keys = [(0.0, 0.0)]
-    for stage in stages:
-        if stage.name == "curl":
-            top = 1.0 + 0.05 * float(random.normal())
-            keys += [(stage.start, 0.0), (stage.end, top)]
-        if stage.name == "lower":
-            keys += [(stage.start, keys[-1][1]), (stage.end, 0.0)]
-    return track(times, keys)
+
+    def top(_: Stage) -> float:
+        return 1.0 + 0.05 * float(script.random.normal())
+
+    return script.level(0.0, {"curl": top, "lower": 0.0})
 
 
-def _carry(
-    person: SimulatedPerson,
-    times: Array,
-    random: np.random.Generator,
-    trunk: Trunk,
-    stages: list[Stage],
-    stool: Stool,
-    curled: Array,
-) -> Transform:
-    """The bar's way, world_from_object (T): it turns with the forearms."""
-    body = person.proportions
+def _carry(script: Script, trunk: Trunk, stool: Stool, curled: Array) -> Transform:
+    """The bar's way, world_from_object (T): from the stool to the hanging arms and back."""
+    held = _hang(script, trunk, curled)
+    lying = stool.world_from_bar
+    first, last = (script.still(lying @ _laid(script.random)) for _ in range(2))
+    goals = {
+        "rise": To(held, bow=(0.0, 0.0, 0.04), part=(0.0, 0.6)),
+        "return": To(last, bow=(0.0, 0.0, 0.04), part=(0.5, 1.0)),
+    }
+    return script.way(first, goals)
+
+
+def _hang(script: Script, trunk: Trunk, curled: Array) -> Transform:
+    """The bar in the hands, world_from_object (T): it turns with the forearms."""
+    person, body = script.person, script.person.proportions
     fist = body.forearm + body.palm + float(BAR_IN_PALM[1])
     before_belly = 0.066 * person.height * person.girth + 0.055
     sine = (before_belly - body.upper_arm * np.sin(UPPER_ARM_HANGING)) / fist
@@ -266,22 +213,11 @@ def _carry(
     fore = hanging + (FOREARM_CURLED - hanging) * curled
     ahead = body.upper_arm * np.sin(upper) + fist * np.sin(fore)
     down = body.upper_arm * np.cos(upper) + fist * np.cos(fore)
-    offset = STRAIGHT * np.stack([np.zeros(len(times)), ahead, -down], axis=1)
-    upright = rotation_about("z", heading_of(trunk.world_from_chest))
+    offset = STRAIGHT * np.stack([0.0 * ahead, ahead, -down], axis=1)
     shoulders = 0.5 * (trunk.right_shoulder + trunk.left_shoulder)
-    level = rotation_about("xy", fore, drift(times, random, 0.015, 3.0))
-    held = Transform(shoulders, upright) @ Transform(offset, level)
-    rise, back = named(stages, "rise"), named(stages, "return")
-    first, last = ((stool.world_from_bar @ _laid(random)).repeated(len(times)) for _ in range(2))
-    return move_through(
-        times,
-        [
-            Key(rise.start, first),
-            Key(rise.start + 0.6 * (rise.end - rise.start), held, bow=(0.0, 0.0, 0.04)),
-            Key(back.start + 0.5 * (back.end - back.start), held),
-            Key(back.end, last, bow=(0.0, 0.0, 0.04)),
-        ],
-    )
+    level = rotation_about("xy", fore, script.drift(0.015, 3.0))
+    facing = upright(trunk.world_from_chest).rotation
+    return Transform(shoulders, facing) @ Transform(offset, level)
 
 
 def _laid(random: np.random.Generator) -> Transform:

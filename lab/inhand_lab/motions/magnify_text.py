@@ -8,32 +8,25 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
-from inhand_lab.motions.performance import Performance, Stance, feet_apart, hanging_hands, stand
+from inhand_lab.motions.performance import Performance, Stance, hanging_hands
 from inhand_lab.motions.reaching import (
     PUT_BACK,
     TAKE,
     attention,
-    held_by_right_hand,
+    carried_by,
     helping_hand,
-    named,
     reaching_hand,
 )
-from inhand_lab.motions.timeline import (
-    Key,
-    Move,
-    Pause,
-    Stage,
-    drift,
-    move_through,
-    schedule,
-    track,
-)
+from inhand_lab.motions.script import Script, To, write_script
+from inhand_lab.motions.timeline import Move, Pause, Plan
 from inhand_lab.objects.magnifier import HANDLE_END, HANDLE_TOP, RIM_RADIUS
-from inhand_lab.people.kinematics import place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (*TAKE, Move("lift", 1.0), Pause("focus", 0.4))
-USE = (Move("line", 1.5), Pause("study", 0.4), Move("next line", 0.8), Pause("focus", 0.3))
+PLAN = Plan(
+    opening=(*TAKE, Move("lift", 1.0), Pause("focus", 0.4)),
+    use=(Move("line", 1.5), Pause("study", 0.4), Move("next line", 0.8), Pause("focus", 0.3)),
+    closing=PUT_BACK,
+)
 
 FIST_TURN = np.radians(90.0)
 """Turn of the fist about the handle in the glass's frame: the palm is away from the eyes."""
@@ -54,73 +47,59 @@ LINE_ENDS = (-0.085, 0.085)
 
 def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Reading at these times, in seconds from the start."""
-    stages = schedule(person, random, float(times[-1]), OPENING, USE, PUT_BACK)
-    lens = _read(person, times, random, stages)
-    posture = stand(person, times, random, _stance(times, stages, lens))
-    trunk = place_trunk(person, posture)
-    furniture, page = _desk(person, random)
-    carried = _carry(times, random, page, lens, stages)
-    square = rotation_about("z", FIST_TURN + person.manner.grip_turn)
-    along = 0.5 * (HANDLE_TOP + HANDLE_END) + 0.012 * person.manner.grip_slide
-    grip = hold_bar(person, times, random, np.array([0.0, 0.0, along]), square)
+    script = write_script(person, times, random, PLAN)
+    lens = _read(script)
+    posture, trunk = script.stand(_stance(script, lens))
+    furniture, page = _desk(script)
+    carried = _carry(script, page, lens)
+    held = carried @ _grip(script)
     right_rest, left_rest = hanging_hands(person, trunk, random)
-    return Performance(
-        posture,
-        reaching_hand(times, stages, right_rest, carried @ grip, bow=(0.06, -0.06, 0.16)),
-        _hold_page(times, random, left_rest, page, stages),
-        carried,
-        held_by_right_hand(times, stages),
-        furniture,
-    )
+    right_hand = reaching_hand(script, right_rest, held, bow=(0.06, -0.06, 0.16))
+    left_hand = _hold_page(script, left_rest, page)
+    return Performance(posture, right_hand, left_hand, carried, carried_by(script), furniture)
 
 
-def _read(
-    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
-) -> Array:
+def _read(script: Script) -> Array:
     """The lens (T, 3) from the middle of the page: along a line, up the page and above it."""
+    random = script.random
 
     def height() -> float:
-        return float(random.uniform(NEAREST, FURTHEST)) * person.manner.amplitude
+        return float(random.uniform(NEAREST, FURTHEST)) * script.person.manner.amplitude
 
     begin, end = LINE_ENDS
     place = np.array([begin, 0.3 * PRINTED_LINES * LINE_SPACING, height()])
     keys = [(0.0, place)]
-    for stage in stages:
+    for stage in script.every("line", "next line"):
         if stage.name == "line":
             there = np.array([end, place[1], 0.5 * (place[2] + height())])
-        elif stage.name == "next line":
+        else:
             down = LINE_SPACING * float(random.integers(1, 3))
             there = np.array([begin, place[1] - down, height()])
-        else:
-            continue
         there[0] += random.normal(0.0, 0.01)
         keys += [(stage.start, place), (stage.end, there)]
         place = there
-    return np.stack(
-        [track(times, [(time, float(at[axis])) for time, at in keys]) for axis in range(3)], axis=1
-    )
+    return script.track(keys)
 
 
-def _stance(times: Array, stages: list[Stage], lens: Array) -> Stance:
+def _stance(script: Script, lens: Array) -> Stance:
     """A look at the glass; bent over the page while reading, the head with the line."""
-    count = len(times)
-    looked = attention(times, stages)[:, None]
-    lift, back = named(stages, "lift"), named(stages, "return")
-    keys = [(lift.start - 0.5, 0.0), (lift.end, 1.0), (back.start, 1.0), (back.end + 0.3, 0.0)]
-    bent = track(times, keys)
-    trunk = looked * np.array([0.08, 0.02, -0.08])
+    looked = attention(script)
+    lift, back = script.stage("lift"), script.stage("return")
+    bounds = (lift.start - 0.5, lift.end, back.start, back.end + 0.3)
+    bent = script.track(list(zip(bounds, (0.0, 1.0, 1.0, 0.0), strict=True)))
+    trunk = np.outer(looked, [0.08, 0.02, -0.08])
     trunk[:, 0] += bent * (0.26 - 0.8 * (lens[:, 2] - FURTHEST))
-    head = looked * np.array([-0.20, 0.0, -0.25])
-    head += np.stack([-0.45 * bent, np.zeros(count), -bent * (0.12 + 0.9 * lens[:, 0])], axis=1)
-    right_foot, left_foot = feet_apart(count)
-    return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
+    head = np.outer(looked, [-0.20, 0.0, -0.25])
+    head += np.stack([-0.45 * bent, 0.0 * bent, -bent * (0.12 + 0.9 * lens[:, 0])], axis=1)
+    return script.upright_stance(trunk, head)
 
 
-def _desk(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Array]:
+def _desk(script: Script) -> tuple[Furniture, Array]:
     """A high table with an open book at its right edge, and the middle of its pages (3,)."""
-    ahead = 0.45 * person.height / 1.75 + 0.15 * (person.girth - 1.0) + random.normal(0.0, 0.015)
+    random, stout = script.random, script.person.girth - 1.0
+    ahead = 0.45 * script.size + 0.15 * stout + random.normal(0.0, 0.015)
     across = random.normal(0.09, 0.015)
-    top = 0.56 * person.height + random.normal(0.0, 0.015)
+    top = script.table_top(0.56)
     width, depth, height = BOOK_SIZE
     page = np.array([across, ahead, top + height])
     book = Cuboid((across, ahead, top + height / 2.0), (width, depth, height), PAGE_COLOUR)
@@ -137,40 +116,37 @@ def _desk(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furnitu
     return (*table, book, *lines), page
 
 
-def _carry(
-    times: Array, random: np.random.Generator, page: Array, lens: Array, stages: list[Stage]
-) -> Transform:
+def _carry(script: Script, page: Array, lens: Array) -> Transform:
     """The glass's way, world_from_object (T): its handle overhangs the book where it lies."""
+    random = script.random
 
     def flat() -> Array:
         right = HANDLE_TO_RIGHT + random.normal(0.0, 0.08)
         return rotation_from_axes([0.0, 0.0, 1.0], [-np.sin(right), np.cos(right), 0.0])
 
     edge = np.array([BOOK_SIZE[0] / 2.0 - 0.035, random.normal(-0.02, 0.015), RIM_RADIUS])
-    lying = Transform(page + edge, flat()).repeated(len(times))
-    tilt = TOWARDS_EYES + drift(times, random, 0.06, 3.0)
-    wander = np.stack([drift(times, random, 0.004, 2.0) for _ in range(3)], axis=1)
-    reading = Transform(page + lens + wander, rotation_about("x", tilt) @ flat())
-    lift, back = named(stages, "lift"), named(stages, "return")
-    return move_through(
-        times,
-        [
-            Key(lift.start, lying),
-            Key(lift.end, reading, bow=(0.0, 0.0, 0.02)),
-            Key(back.start, reading),
-            Key(back.end, lying, bow=(0.0, 0.0, 0.03)),
-        ],
-    )
+    lying = script.still(Transform(page + edge, flat()))
+    tilt = TOWARDS_EYES + script.drift(0.06, 3.0)
+    place = page + lens + script.drifts(0.004, 2.0)
+    reading = Transform(place, rotation_about("x", tilt) @ flat())
+    goals = {
+        "lift": To(reading, bow=(0.0, 0.0, 0.02)),
+        "return": To(lying, bow=(0.0, 0.0, 0.03)),
+    }
+    return script.way(lying, goals)
 
 
-def _hold_page(
-    times: Array,
-    random: np.random.Generator,
-    rest: Transform,
-    page: Array,
-    stages: list[Stage],
-) -> Transform:
+def _grip(script: Script) -> Transform:
+    """A fist around the handle, object_from_hand (T)."""
+    manner = script.person.manner
+    along = 0.5 * (HANDLE_TOP + HANDLE_END) + 0.012 * manner.grip_slide
+    square = rotation_about("z", FIST_TURN + manner.grip_turn)
+    return hold_bar(script, np.array([0.0, 0.0, along]), square)
+
+
+def _hold_page(script: Script, rest: Transform, page: Array) -> Transform:
     """The left hand, world_from_hand (T), flat on the book while reading."""
-    palm = page + np.array([-0.175, -0.02, 0.055]) + random.normal(0.0, (0.015, 0.015, 0.002))
+    own = script.random.normal(0.0, (0.015, 0.015, 0.002))
+    palm = page + np.array([-0.175, -0.02, 0.055]) + own
     rotation = rotation_from_axes([0.35, 0.90, -0.12], [0.9, -0.35, 0.10])
-    return helping_hand(times, stages, rest, Transform(palm, rotation))
+    return helping_hand(script, rest, Transform(palm, rotation))

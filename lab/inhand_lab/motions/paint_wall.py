@@ -14,45 +14,25 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import DRIFT_PERIOD, pinch
-from inhand_lab.motions.performance import (
-    Performance,
-    Stance,
-    feet_apart,
-    hanging_hands,
-    stand,
-)
-from inhand_lab.motions.reaching import (
-    PUT_BACK,
-    TAKE,
-    attention,
-    held_by_right_hand,
-    reaching_hand,
-)
-from inhand_lab.motions.timeline import (
-    Key,
-    Move,
-    Pause,
-    Stage,
-    drift,
-    flow,
-    move_through,
-    schedule,
-    track,
-)
+from inhand_lab.motions.performance import Performance, Stance, feet_apart, hanging_hands
+from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, carried_by, reaching_hand
+from inhand_lab.motions.script import Script, To, write_script
+from inhand_lab.motions.timeline import Move, Pause, Plan
 from inhand_lab.objects.paint_brush import BRISTLES_BELOW, FERRULE_HALF_THICKNESS, paint_brush
-from inhand_lab.people.kinematics import place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = TAKE
-USE = (
-    Move("wipe", 0.6),
-    Move("apply", 0.65),
-    Move("strokes", 2.7),
-    Pause("look", 0.3),
-    Move("over", 0.65),
-    Move("dip", 0.45),
+PLAN = Plan(
+    opening=TAKE,
+    use=(
+        Move("wipe", 0.6),
+        Move("apply", 0.65),
+        Move("strokes", 2.7),
+        Pause("look", 0.3),
+        Move("over", 0.65),
+        Move("dip", 0.45),
+    ),
+    closing=PUT_BACK,
 )
-CLOSING = PUT_BACK
 
 HEADING = -0.45
 """Of the feet, a little to the board, radians."""
@@ -87,71 +67,55 @@ TO_THUMB, TO_PALM = 0.20, 0.25
 
 def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Painting at these times, in seconds from the start; the board is at the right."""
-    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
-    size = person.height / 1.75
-    board = BOARD * size + random.normal(0.0, 0.015)
-    path = _path(person, times, random, stages)
-    posture = stand(person, times, random, _stance(person, times, stages, path))
-    trunk = place_trunk(person, posture)
-    table, standing, pot = _table(person, random)
-    carried = _carry(times, stages, _on_board(path, board), standing, pot)
-    held = carried @ _grip(person, times, random)
+    script = write_script(person, times, random, PLAN)
+    board = BOARD * script.size + random.normal(0.0, 0.015)
+    path = _path(script)
+    posture, trunk = script.stand(_stance(script, path))
+    table, standing, pot = _table(script)
+    carried = _carry(script, _on_board(path, board), standing, pot)
+    held = carried @ _grip(script)
     right_rest, left_hand = hanging_hands(person, trunk, random)
-    right_hand = reaching_hand(times, stages, right_rest, held, bow=(0.05, -0.05, 0.10))
-    contact = held_by_right_hand(times, stages)
+    right_hand = reaching_hand(script, right_rest, held, bow=(0.05, -0.05, 0.10))
     furniture = (*table, _board(board))
-    return Performance(posture, right_hand, left_hand, carried, contact, furniture)
+    return Performance(posture, right_hand, left_hand, carried, carried_by(script), furniture)
 
 
-def _path(
-    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
-) -> Array:
+def _path(script: Script) -> Array:
     """The bristles on the board (T, 4): ahead and up, metres, and where they point, radians."""
-    manner = person.manner
+    height, manner, random = script.person.height, script.person.manner, script.random
     usual = PAINTING + np.array([0.4 * manner.grip_tilt, 0.3 * manner.grip_turn])
-    half = HALF_STROKE * person.height * min(manner.amplitude, 1.12)
-    middle = MIDDLE * person.height + random.normal(0.0, 0.02)
+    half = HALF_STROKE * height * min(manner.amplitude, 1.12)
+    middle = MIDDLE * height + random.normal(0.0, 0.02)
     knots = []
-    for stage in stages:
-        if stage.name == "strokes":
-            count = int(random.integers(*STROKES, endpoint=True))
-            bounds = np.linspace(stage.start, stage.end, count + 1)
-            along, way = random.uniform(*ALONG_BOARD), 1.0
-            knots.append((bounds[0], (along, middle + half, *usual)))
-            for start, end in pairwise(bounds):
-                reached = middle - way * half * random.uniform(0.85, 1.0)
-                trailing = (usual[0], usual[1] + way * TRAILING)
-                before = knots[-1][1]
-                between = (along + 0.02, 0.5 * (before[1] + reached), *trailing)
-                along = min(along + random.uniform(0.03, 0.05), FURTHEST * person.height)
-                knots += [(0.5 * (start + end), between), (end, (along, reached, *usual))]
-                way = -way
-    path = flow(times, knots)
-    wobble = [drift(times, random, 0.04, DRIFT_PERIOD) for _ in range(2)]
-    path[:, 2:] += np.stack(wobble, axis=1)
+    for stage in script.every("strokes"):
+        count = int(random.integers(*STROKES, endpoint=True))
+        bounds = np.linspace(stage.start, stage.end, count + 1)
+        along, way = random.uniform(*ALONG_BOARD), 1.0
+        knots.append((bounds[0], (along, middle + half, *usual)))
+        for start, end in pairwise(bounds):
+            reached = middle - way * half * random.uniform(0.85, 1.0)
+            trailing = (usual[0], usual[1] + way * TRAILING)
+            before = knots[-1][1]
+            between = (along + 0.02, 0.5 * (before[1] + reached), *trailing)
+            along = min(along + random.uniform(0.03, 0.05), FURTHEST * height)
+            knots += [(0.5 * (start + end), between), (end, (along, reached, *usual))]
+            way = -way
+    path = script.flow(knots)
+    path[:, 2:] += script.drifts(0.04, DRIFT_PERIOD, count=2)
     return path
 
 
-def _stance(person: SimulatedPerson, times: Array, stages: list[Stage], path: Array) -> Stance:
+def _stance(script: Script, path: Array) -> Stance:
     """Turned to the board, the eyes on the brush."""
-    count = len(times)
-    painting = np.zeros(count)
-    for stage in stages:
-        if stage.name == "strokes":
-            keys = [
-                (stage.start - 0.6, 0.0),
-                (stage.start, 1.0),
-                (stage.end, 1.0),
-                (stage.end + 0.8, 0.0),
-            ]
-            painting += track(times, keys)
-    looked = np.clip(attention(times, stages), 0.0, 1.0)[:, None]
-    up = painting * (path[:, 1] / person.height - MIDDLE)
+    height, count = script.person.height, len(script.times)
+    painting = np.sum([script.around(stage, 0.6, 0.8) for stage in script.every("strokes")], axis=0)
+    looked = np.clip(attention(script), 0.0, 1.0)
+    up = painting * (path[:, 1] / height - MIDDLE)
     trunk = np.stack([0.12 - 0.6 * up, 0.10 * painting, 0.20 - 0.45 * painting], axis=1)
     head = np.stack([-0.25 + 0.25 * painting + 1.2 * up, 0.0 * up, -0.50 * painting], axis=1)
-    trunk += looked * np.array([0.25, 0.0, 0.10])
-    head += looked * np.array([-0.15, 0.0, 0.15])
-    shift = painting[:, None] * np.array([0.03, 0.0, 0.0]) * person.height / 1.75
+    trunk += np.outer(looked, [0.25, 0.0, 0.10])
+    head += np.outer(looked, [-0.15, 0.0, 0.15])
+    shift = np.outer(painting, [0.03 * script.size, 0.0, 0.0])
     turned = rotation_about("z", HEADING)
     right_foot, left_foot = (foot @ turned.T for foot in feet_apart(count, 0.12))
     return Stance(right_foot, left_foot, np.full(count, HEADING), shift, trunk, head)
@@ -163,34 +127,33 @@ def _board(x: float) -> Cuboid:
     return Cuboid((x + 0.5 * deep, 0.10, 0.5 * high), BOARD_SIZE, BOARD_COLOUR)
 
 
-def _table(
-    person: SimulatedPerson, random: np.random.Generator
-) -> tuple[Furniture, Transform, Array]:
+def _table(script: Script) -> tuple[Furniture, Transform, Array]:
     """A table with a pot; the brush in it, world_from_object; the middle of the pot's floor (3,).
 
     The bristles are on the floor of the pot, the handle is on its near edge.
     """
-    size = person.height / 1.75
-    x, y = np.array([0.18, 0.56]) * size + random.normal(0.0, 0.015, 2)
-    top = 0.43 * person.height + random.normal(0.0, 0.015)
+    x, y = script.place(0.18, 0.56)
+    top = script.table_top(0.43)
     pot = np.array([x, y - 0.08, top + 0.006])
-    to_left, up = STANDING[0] + random.normal(0.0, 0.1), STANDING[1]
+    to_left, up = STANDING[0] + script.random.normal(0.0, 0.1), STANDING[1]
     rotation = _pointing(np.array([to_left]), np.array([up]))[0]
     place = -rotation @ [0.0, 0.0, -BRISTLES_BELOW]
     place[1] += POT_HEIGHT / np.tan(-up) - POT_HALF_WIDTH + 1.6 * FERRULE_HALF_THICKNESS
     standing = Transform(pot + place + [0.0, 0.0, 0.004], rotation)
+    return (*side_table(x, y, top), *_pot(x, y - 0.08, top)), standing, pot
+
+
+def _pot(x: float, y: float, top: float) -> list[Cuboid]:
+    """Four walls, and paint on the floor."""
     wide, high, thick = POT_HALF_WIDTH, POT_HEIGHT, POT_WALL
-    walls = [
-        Cuboid((pot[0] + dx * wide, pot[1] + dy * wide, top + 0.5 * high), sides, POT_COLOUR)
-        for dx, dy, sides in (
-            (-1.0, 0.0, (thick, 2.0 * wide, high)),
-            (1.0, 0.0, (thick, 2.0 * wide, high)),
-            (0.0, -1.0, (2.0 * wide, thick, high)),
-            (0.0, 1.0, (2.0 * wide, thick, high)),
-        )
+    middle, across, along = top + 0.5 * high, (2.0 * wide, thick, high), (thick, 2.0 * wide, high)
+    return [
+        Cuboid((x - wide, y, middle), along, POT_COLOUR),
+        Cuboid((x + wide, y, middle), along, POT_COLOUR),
+        Cuboid((x, y - wide, middle), across, POT_COLOUR),
+        Cuboid((x, y + wide, middle), across, POT_COLOUR),
+        Cuboid((x, y, top + 0.003), (2.0 * wide, 2.0 * wide, 0.006), PAINT),
     ]
-    floor = Cuboid((pot[0], pot[1], top + 0.003), (2.0 * wide, 2.0 * wide, 0.006), PAINT)
-    return (*side_table(float(x), float(y), float(top)), *walls, floor), standing, pot
 
 
 def _pointing(to_left: Array, up: Array) -> Array:
@@ -207,39 +170,32 @@ def _on_board(path: Array, board: float) -> Transform:
     return Transform(place, rotation)
 
 
-def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
+def _grip(script: Script) -> Transform:
     """Fingers and thumb on the flat sides above the ferrule, object_from_hand (T)."""
-    leaning = TO_THUMB + person.manner.grip_tilt
-    turned = rotation_about("zx", -TO_PALM + 0.5 * person.manner.grip_turn, leaning)
-    point = np.array([0.0, 0.0, 0.030 + 0.015 * person.manner.grip_slide])
-    return pinch(times, random, point, ALONG_FINGERS @ turned)
+    manner = script.person.manner
+    leaning = TO_THUMB + manner.grip_tilt
+    turned = rotation_about("zx", -TO_PALM + 0.5 * manner.grip_turn, leaning)
+    point = np.array([0.0, 0.0, 0.030 + 0.015 * manner.grip_slide])
+    return pinch(script, point, ALONG_FINGERS @ turned)
 
 
-def _carry(
-    times: Array, stages: list[Stage], painting: Transform, standing: Transform, pot: Array
-) -> Transform:
+def _carry(script: Script, painting: Transform, standing: Transform, pot: Array) -> Transform:
     """The brush's way, world_from_object (T): from the pot to the board and back."""
-    count = len(times)
     rotation = _pointing(DIPPING[:1], DIPPING[1:])[0]
     tips = rotation @ [0.0, 0.0, -BRISTLES_BELOW]
     leaned = np.array([*tips[:2], 0.0]) * 0.6
 
     def above(height: float) -> Transform:
         place = pot + height * np.array([0.0, 0.0, 1.0]) - tips + leaned
-        return Transform(place, rotation).repeated(count)
+        return script.still(Transform(place, rotation))
 
-    rest, over, dipped = standing.repeated(count), above(POT_HEIGHT + 0.05), above(0.015)
+    rest, over, dipped = script.still(standing), above(POT_HEIGHT + 0.05), above(0.015)
     goals = {
-        "over": (over, (0.0, -0.03, 0.03)),
-        "dip": (dipped, (0.0, 0.0, 0.0)),
-        "wipe": (over, (0.0, 0.01, 0.0)),
-        "apply": (painting, (0.02, 0.10, 0.0)),
-        "strokes": (painting, (0.0, 0.0, 0.0)),
-        "return": (rest, (0.0, 0.0, 0.04)),
+        "wipe": To(over, bow=(0.0, 0.01, 0.0)),
+        "apply": To(painting, bow=(0.02, 0.10, 0.0)),
+        "strokes": To(painting),
+        "over": To(over, bow=(0.0, -0.03, 0.03)),
+        "dip": To(dipped),
+        "return": To(rest, bow=(0.0, 0.0, 0.04)),
     }
-    keys = [Key(0.0, rest)]
-    for stage in stages:
-        if stage.name in goals:
-            pose, bow = goals[stage.name]
-            keys += [Key(stage.start, keys[-1].pose), Key(stage.end, pose, bow=bow)]
-    return move_through(times, keys)
+    return script.way(rest, goals)

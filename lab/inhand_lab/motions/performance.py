@@ -161,6 +161,11 @@ def heading_of(frame: Transform) -> Array:
     return np.asarray(np.arctan2(-forward[:, 0], forward[:, 1]))
 
 
+def upright(frame: Transform) -> Transform:
+    """A frame (T) turned to the left as it is, but not leaning."""
+    return Transform(frame.translation, rotation_about("z", heading_of(frame)))
+
+
 def mouth(person: SimulatedPerson, trunk: Trunk) -> Array:
     """The lips (T, 3) in the world."""
     body = person.proportions

@@ -13,41 +13,31 @@ from inhand_lab.geometry.transforms import (
 )
 from inhand_lab.motions.furniture import Furniture, side_table
 from inhand_lab.motions.grips import pinch
-from inhand_lab.motions.performance import (
-    ContactKind,
-    Performance,
-    Stance,
-    contacts,
-    feet_apart,
-    hanging_hands,
-    heading_of,
-    stand,
-)
-from inhand_lab.motions.timeline import Key, Move, Pause, Stage, move_through, schedule, track
+from inhand_lab.motions.performance import ContactKind, Performance, Stance, hanging_hands, upright
+from inhand_lab.motions.reaching import attention, carried_by
+from inhand_lab.motions.script import Script, To, write_script
+from inhand_lab.motions.timeline import Move, Pause, Plan, Stage
 from inhand_lab.objects.glasses import EAR_DROP, TEMPLE_OFFSET
-from inhand_lab.people.kinematics import Trunk, place_trunk
+from inhand_lab.people.kinematics import Trunk
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (
-    Pause("wait", 0.4),
-    Move("reach", 0.9),
-    Move("grasp", 0.25),
-    Move("fetch", 1.0),
-)
-USE = (
-    Pause("inspect", 0.5),
-    Move("put on", 1.3),
-    Move("let go", 0.8),
-    Pause("wear", 1.4),
-    Move("take hold", 0.8),
-    Move("take off", 1.1),
-)
-CLOSING = (
-    Pause("inspect", 0.4),
-    Move("return", 1.0),
-    Move("release", 0.25),
-    Move("withdraw", 0.9),
-    Pause("wait", 0.4),
+PLAN = Plan(
+    opening=(Pause("wait", 0.4), Move("reach", 0.9), Move("grasp", 0.25), Move("fetch", 1.0)),
+    use=(
+        Pause("inspect", 0.5),
+        Move("put on", 1.3),
+        Move("let go", 0.8),
+        Pause("wear", 1.4),
+        Move("take hold", 0.8),
+        Move("take off", 1.1),
+    ),
+    closing=(
+        Pause("inspect", 0.4),
+        Move("return", 1.0),
+        Move("release", 0.25),
+        Move("withdraw", 0.9),
+        Pause("wait", 0.4),
+    ),
 )
 
 FACE_GRIP = rotation_from_axes([-0.20, -0.60, 0.75], [-0.2, -0.75, -0.6])
@@ -62,168 +52,118 @@ RAISED = Transform(
 
 def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Putting on glasses at these times, in seconds from the start."""
-    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
-    posture = stand(person, times, random, _stance(times, random, stages))
-    trunk = place_trunk(person, posture)
-    table, spot = _table(person, random)
-    carried = _carry(person, times, random, trunk, spot, stages)
-    right_held = carried @ _grip(person, times, random, stages)
-    left_held = carried @ _grip(person, times, random, stages).mirrored()
+    script = write_script(person, times, random, PLAN)
+    posture, trunk = script.stand(_stance(script))
+    table, spot = _table(script)
+    carried = _carry(script, trunk, spot)
+    right_held = carried @ _grip(script)
+    left_held = carried @ _grip(script).mirrored()
     right_rest, left_rest = hanging_hands(person, trunk, random)
-    upright = Transform(
-        trunk.world_from_chest.translation, rotation_about("z", heading_of(trunk.world_from_chest))
-    )
-    return Performance(
-        posture,
-        move_through(times, _right_keys(stages, right_rest, right_held, upright @ RAISED)),
-        move_through(times, _left_keys(stages, left_rest, left_held, upright @ RAISED.mirrored())),
-        carried,
-        contacts(times, _changes(stages)),
-        table,
-    )
+    chest = upright(trunk.world_from_chest)
+    right_hand = script.way(right_rest, _fetch(right_rest, right_held, chest @ RAISED))
+    left_hand = script.way(left_rest, _help(left_rest, left_held, chest @ RAISED.mirrored()))
+    contact = carried_by(script, *_changes(script))
+    return Performance(posture, right_hand, left_hand, carried, contact, table)
 
 
-def _right_keys(
-    stages: list[Stage], rest: Transform, held: Transform, raised: Transform
-) -> list[Key]:
+def _fetch(rest: Transform, held: Transform, raised: Transform) -> dict[str, To]:
     """The right hand fetches the glasses and returns them."""
-    keys = []
-    for stage in stages:
-        if stage.name == "reach":
-            keys += [Key(stage.start, rest), Key(stage.end, held, bow=(0.0, -0.06, 0.12))]
-        if stage.name == "let go":
-            keys += [Key(stage.start, held), Key(stage.end, rest, by=raised)]
-        if stage.name == "take hold":
-            keys += [Key(stage.start, rest), Key(stage.end, held, by=raised)]
-        if stage.name == "withdraw":
-            keys += [Key(stage.start, held), Key(stage.end, rest, bow=(0.0, -0.12, 0.12))]
-    return keys
+    return {
+        "reach": To(held, bow=(0.0, -0.06, 0.12)),
+        "let go": To(rest, by=raised),
+        "take hold": To(held, by=raised),
+        "withdraw": To(rest, bow=(0.0, -0.12, 0.12)),
+    }
 
 
-def _left_keys(
-    stages: list[Stage], rest: Transform, held: Transform, raised: Transform
-) -> list[Key]:
+def _help(rest: Transform, held: Transform, raised: Transform) -> dict[str, To]:
     """The left hand joins before the chest and helps at the face."""
-    keys = []
-    for stage in stages:
-        if stage.name == "fetch":
-            late = stage.start + 0.25 * (stage.end - stage.start)
-            keys += [Key(late, rest), Key(stage.end, held, bow=(-0.05, 0.05, 0.0))]
-        if stage.name == "let go":
-            keys += [Key(stage.start, held), Key(stage.end, rest, by=raised)]
-        if stage.name == "take hold":
-            keys += [Key(stage.start, rest), Key(stage.end, held, by=raised)]
-        if stage.name == "return":
-            keys += [Key(stage.start, held), Key(stage.end, rest, bow=(-0.05, 0.05, 0.0))]
-    return keys
+    return {
+        "fetch": To(held, bow=(-0.05, 0.05, 0.0), part=(0.25, 1.0)),
+        "let go": To(rest, by=raised),
+        "take hold": To(held, by=raised),
+        "return": To(rest, bow=(-0.05, 0.05, 0.0)),
+    }
 
 
-def _changes(stages: list[Stage]) -> list[tuple[float, ContactKind]]:
-    """When the glasses pass from the table to a hand, to both, to the head, and back."""
-    changes = [(0.0, ContactKind.RESTING)]
-    for stage in stages:
-        if stage.name == "grasp":
-            changes.append((stage.end, ContactKind.RIGHT_HAND))
-        if stage.name in ("fetch", "take hold"):
-            changes.append((stage.end, ContactKind.BOTH_HANDS))
+def _changes(script: Script) -> list[tuple[float, ContactKind]]:
+    """When the glasses pass from a hand to both, to the head, and back."""
+    changes = []
+    for stage in script.every("fetch", "let go", "take hold", "return"):
         if stage.name == "let go":
             changes.append((stage.start, ContactKind.WORN))
-        if stage.name == "return":
+        elif stage.name == "return":
             changes.append((stage.start, ContactKind.RIGHT_HAND))
-        if stage.name == "release":
-            changes.append((stage.start, ContactKind.RESTING))
+        else:
+            changes.append((stage.end, ContactKind.BOTH_HANDS))
     return changes
 
 
-def _stance(times: Array, random: np.random.Generator, stages: list[Stage]) -> Stance:
+def _stance(script: Script) -> Stance:
     """A look at the table and at the glasses; a look about while wearing them."""
-    count = len(times)
-    trunk, head = np.zeros((count, 3)), np.zeros((count, 3))
-    for stage in stages:
-        before, after = stage.start - 0.5, stage.end + 0.5
-        keys = [(before, 0.0), (stage.start, 1.0), (stage.end, 1.0), (after, 0.0)]
-        if stage.name in ("reach", "return"):
-            keys = [(stage.start, 0.0), (stage.end, 1.0), (stage.end + 1.2, 0.0)]
-            looked = track(times, keys)[:, None]
-            head += looked * np.array([-0.30, 0.0, -0.35])
-            trunk += looked * np.array([0.10, 0.03, -0.15])
-        if stage.name == "inspect":
-            head[:, 0] -= 0.35 * track(times, keys)
-        if stage.name == "wear":
-            aside, up = random.uniform(0.15, 0.45) * random.choice([-1.0, 1.0]), random.normal() / 9
-            third = (stage.end - stage.start) / 3.0
-            turns = [(0.0, 0.0), (third, 1.0), (2.0 * third, -0.7), (3.0 * third, 0.0)]
-            about = track(times, [(stage.start + time, turn) for time, turn in turns])
-            head += about[:, None] * np.array([up, 0.0, aside])
-    right_foot, left_foot = feet_apart(count)
-    return Stance(right_foot, left_foot, np.zeros(count), np.zeros((count, 3)), trunk, head)
+    random = script.random
+    looked = attention(script)
+    trunk, head = np.outer(looked, [0.10, 0.03, -0.15]), np.outer(looked, [-0.30, 0.0, -0.35])
+    for stage in script.every("inspect"):
+        head[:, 0] -= 0.35 * script.around(stage, 0.5, 0.5)
+    for stage in script.every("wear"):
+        aside, up = random.uniform(0.15, 0.45) * random.choice([-1.0, 1.0]), random.normal() / 9
+        turns = ((0.0, 0.0), (1.0 / 3.0, 1.0), (2.0 / 3.0, -0.7), (1.0, 0.0))
+        about = script.track([(stage.at(share), turn) for share, turn in turns])
+        head += np.outer(about, [up, 0.0, aside])
+    return script.upright_stance(trunk, head)
 
 
-def _table(person: SimulatedPerson, random: np.random.Generator) -> tuple[Furniture, Array]:
+def _table(script: Script) -> tuple[Furniture, Array]:
     """A small table at the right hand, and where the glasses' bridge is as they lie on it (3,)."""
-    size = person.height / 1.75
-    x, y = np.array([0.24, 0.37]) * size + random.normal(0.0, 0.015, 2)
-    top = 0.53 * person.height + random.normal(0.0, 0.015)
+    x, y = script.place(0.24, 0.37)
+    top = script.table_top(0.53)
     return side_table(x + 0.15, y + 0.09, top), np.array([x, y, top + EAR_DROP + 0.004])
 
 
-def _grip(
-    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
-) -> Transform:
+def _grip(script: Script) -> Transform:
     """Thumb and fingers at a hinge, object_from_hand (T); they are shifted on the way to the face.
 
     Between the table and the face the hand turns about the pinched temple.
     """
-    back = 0.022 + 0.012 * person.manner.grip_slide
-    point = np.array([TEMPLE_OFFSET, -back, 0.006])
-    turn = rotation_about("y", 0.6 * person.manner.grip_turn)
-    at_table = pinch(times, random, point, turn @ TABLE_GRIP)
-    at_face = pinch(times, random, point, turn @ FACE_GRIP)
-    between = interpolate(at_table, at_face, np.full(len(times), 0.5))
-    keys = [Key(0.0, at_table)]
-    for stage in stages:
-        if stage.name in ("fetch", "put on", "take off", "return"):
-            goal = {"put on": at_face, "return": at_table}.get(stage.name, between)
-            keys += [Key(stage.start, keys[-1].pose), Key(stage.end, goal)]
-    return move_through(times, keys)
+    manner = script.person.manner
+    point = np.array([TEMPLE_OFFSET, -0.022 - 0.012 * manner.grip_slide, 0.006])
+    turn = rotation_about("y", 0.6 * manner.grip_turn)
+    at_table = pinch(script, point, turn @ TABLE_GRIP)
+    at_face = pinch(script, point, turn @ FACE_GRIP)
+    between = interpolate(at_table, at_face, np.full(len(script.times), 0.5))
+    goals = {
+        "fetch": To(between),
+        "put on": To(at_face),
+        "take off": To(between),
+        "return": To(at_table),
+    }
+    return script.way(at_table, goals)
 
 
-def _carry(
-    person: SimulatedPerson,
-    times: Array,
-    random: np.random.Generator,
-    trunk: Trunk,
-    spot: Array,
-    stages: list[Stage],
-) -> Transform:
+def _carry(script: Script, trunk: Trunk, spot: Array) -> Transform:
     """The glasses' way, world_from_object (T)."""
-    body = person.proportions
-    on_table = Transform(spot, rotation_about("z", random.normal(0.1, 0.15))).repeated(len(times))
+    body, random = script.person.proportions, script.random
+    on_table = script.still(Transform(spot, rotation_about("z", random.normal(0.1, 0.15))))
     slipped = rotation_about("x", random.normal(-0.05, 0.03))
     bridge = np.array([0.0, body.head_half_depth + 0.012, 0.12 * body.head_half_height])
+    ahead = bridge + np.array([0.0, 0.14, 0.01])
     worn = trunk.world_from_head @ Transform(bridge, slipped)
-    before_face = trunk.world_from_head @ Transform(
-        bridge + np.array([0.0, 0.14, 0.01]), rotation_about("x", -0.1)
-    )
-    upright = rotation_about("z", heading_of(trunk.world_from_chest))
+    before_face = trunk.world_from_head @ Transform(ahead, rotation_about("x", -0.1))
+    chest = upright(trunk.world_from_chest)
 
-    def before_chest() -> Transform:
-        offset = np.array([0.0, 0.36, -0.16 * person.manner.amplitude])
-        place = upright @ (offset + random.normal(0.0, 0.02, 3))
+    def before_chest(_: Stage) -> Transform:
+        offset = np.array([0.0, 0.36, -0.16 * script.person.manner.amplitude])
+        offset += random.normal(0.0, 0.02, 3)
         tipped = rotation_about("xz", -0.45 + random.normal(0.0, 0.1), random.normal(0.0, 0.1))
-        return Transform(trunk.world_from_chest.translation + place, upright @ tipped)
+        return chest @ Transform(offset, tipped)
 
-    keys = [Key(0.0, on_table)]
-    for stage in stages:
-        near = stage.start + 0.6 * (stage.end - stage.start)
-        far = stage.start + 0.4 * (stage.end - stage.start)
-        here = Key(stage.start, keys[-1].pose)
-        if stage.name == "fetch":
-            keys += [here, Key(stage.end, before_chest(), bow=(0.0, 0.0, 0.05))]
-        if stage.name == "put on":
-            keys += [here, Key(near, before_face, bow=(0.0, 0.03, 0.0)), Key(stage.end, worn)]
-        if stage.name == "take off":
-            keys += [here, Key(far, before_face), Key(stage.end, before_chest())]
-        if stage.name == "return":
-            keys += [here, Key(stage.end, on_table, bow=(0.0, 0.0, 0.05))]
-    return move_through(times, keys)
+    near = To(before_face, bow=(0.0, 0.03, 0.0), part=(0.0, 0.6))
+    away = To(before_face, part=(0.0, 0.4))
+    goals: dict[str, To | tuple[To, ...]] = {
+        "fetch": To(before_chest, bow=(0.0, 0.0, 0.05)),
+        "put on": (near, To(worn, part=(0.6, 1.0))),
+        "take off": (away, To(before_chest, part=(0.4, 1.0))),
+        "return": To(on_table, bow=(0.0, 0.0, 0.05)),
+    }
+    return script.way(on_table, goals)

@@ -12,47 +12,26 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import WOOD, Cuboid
 from inhand_lab.motions.grips import pinch
-from inhand_lab.motions.performance import (
-    STANCE_HALF_WIDTH,
-    TOES_OUT,
-    ContactKind,
-    Performance,
-    contacts,
-)
-from inhand_lab.motions.timeline import (
-    Key,
-    Move,
-    Pause,
-    Stage,
-    drift,
-    flow,
-    move_through,
-    schedule,
-)
+from inhand_lab.motions.performance import STANCE_HALF_WIDTH, TOES_OUT, ContactKind, Performance
+from inhand_lab.motions.reaching import carried_by
+from inhand_lab.motions.script import Script, To, write_script
+from inhand_lab.motions.timeline import Move, Pause, Plan
 from inhand_lab.objects.shoe import HEEL_BEHIND
 from inhand_lab.people.kinematics import Posture
 from inhand_lab.people.person import SimulatedPerson
 
-OPENING = (
-    Pause("wait", 0.4),
-    Move("reach", 0.9),
-    Move("grasp", 0.25),
-    Move("lift", 0.9),
-)
-USE = (
-    Move("put on", 1.2),
-    Move("let go", 0.8),
-    Pause("wear", 0.5),
-    Move("tap", 1.2),
-    Pause("wear", 0.4),
-    Move("take hold", 0.9),
-    Move("take off", 1.0),
-)
-CLOSING = (
-    Move("return", 0.9),
-    Move("release", 0.2),
-    Move("withdraw", 0.9),
-    Pause("wait", 0.4),
+PLAN = Plan(
+    opening=(Pause("wait", 0.4), Move("reach", 0.9), Move("grasp", 0.25), Move("lift", 0.9)),
+    use=(
+        Move("put on", 1.2),
+        Move("let go", 0.8),
+        Pause("wear", 0.5),
+        Move("tap", 1.2),
+        Pause("wear", 0.4),
+        Move("take hold", 0.9),
+        Move("take off", 1.0),
+    ),
+    closing=(Move("return", 0.9), Move("release", 0.2), Move("withdraw", 0.9), Pause("wait", 0.4)),
 )
 
 SEAT, BEHIND = 0.285, 0.12
@@ -83,48 +62,43 @@ BESIDE_SHANK = rotation_from_axes([0.0, 0.25, -1.0], [0.0, 1.0, 0.25])
 
 def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Performance:
     """Putting on a shoe at these times, in seconds from the start."""
-    stages = schedule(person, random, float(times[-1]), OPENING, USE, CLOSING)
-    right_foot = _right_foot(person, times, random, stages)
-    posture = _sit(person, times, random, stages, right_foot)
-    carried = _carry(person, times, random, stages, right_foot)
-    held = carried @ _grip(person, times, random)
-    right_rest, left_rest = _hands_on_knees(person, random, len(times))
-    right_hand = _reaching(times, stages, right_rest, held, RIGHT_BOW)
-    left_hand = _reaching(times, stages, left_rest, _left_hand_on_leg(person, times), LEFT_BOW)
-    contact = contacts(times, _changes(stages))
+    script = write_script(person, times, random, PLAN)
+    right_foot = _right_foot(script)
+    posture = _sit(script, right_foot)
+    carried = _carry(script, right_foot)
+    held = carried @ _grip(script)
+    right_rest, left_rest = _hands_on_knees(script)
+    right_hand = _reaching(script, right_rest, held, RIGHT_BOW)
+    left_hand = _reaching(script, left_rest, _left_hand_on_leg(script), LEFT_BOW)
+    contact = carried_by(script, *_changes(script))
     return Performance(posture, right_hand, left_hand, carried, contact, (_stool(person),))
 
 
-def _changes(stages: list[Stage]) -> list[tuple[float, ContactKind]]:
-    """When the shoe passes from the floor to the hand, to the foot, and back."""
-    changes = [(0.0, ContactKind.RESTING)]
-    for stage in stages:
-        if stage.name in ("grasp", "take hold"):
-            changes.append((stage.end, ContactKind.RIGHT_HAND))
-        if stage.name == "let go":
-            changes.append((stage.start, ContactKind.WORN))
-        if stage.name == "release":
-            changes.append((stage.start, ContactKind.RESTING))
-    return changes
+def _changes(script: Script) -> list[tuple[float, ContactKind]]:
+    """When the shoe passes from the hand to the foot and back."""
+    return [
+        (stage.start, ContactKind.WORN)
+        if stage.name == "let go"
+        else (stage.end, ContactKind.RIGHT_HAND)
+        for stage in script.every("let go", "take hold")
+    ]
 
 
-def _right_foot(
-    person: SimulatedPerson, times: Array, random: np.random.Generator, stages: list[Stage]
-) -> Transform:
+def _right_foot(script: Script) -> Transform:
     """The right foot, world_from_foot (T): raised to the hands; on its heel, the toes tapping."""
+    person, times, random = script.person, script.times, script.random
     raised = [(0.0, (0.0,))]
     tapped = np.zeros(len(times))
-    for stage in stages:
-        span = stage.end - stage.start
+    for stage in script.stages:
         if stage.name in ("lift", "take hold"):
-            raised += [(stage.start + 0.3 * span, (0.0,)), (stage.end, (1.0,))]
+            raised += [(stage.at(0.3), (0.0,)), (stage.end, (1.0,))]
         if stage.name in ("let go", "return"):
-            raised += [(stage.start, (1.0,)), (stage.start + 0.65 * span, (0.0,))]
+            raised += [(stage.start, (1.0,)), (stage.at(0.65), (0.0,))]
         if stage.name == "tap":
             taps = int(random.integers(2, 5))
-            share = np.clip((times - stage.start) / (stage.end - stage.start), 0.0, 1.0)
+            share = np.clip((times - stage.start) / stage.seconds, 0.0, 1.0)
             tapped = TAP * random.uniform(0.6, 1.1) * np.sin(np.pi * taps * share) ** 2
-    up = flow(times, raised)[:, 0]
+    up = script.flow(raised)[:, 0]
     on_floor = np.array([STANCE_HALF_WIDTH, _feet_ahead(person), 0.0])
     heel = np.array([0.0, -HEEL_BEHIND, 0.0])
     flat = rotation_about("z", -TOES_OUT)
@@ -137,40 +111,39 @@ def _feet_ahead(person: SimulatedPerson) -> float:
     return person.proportions.thigh - BEHIND * person.height
 
 
-def _sit(
-    person: SimulatedPerson,
-    times: Array,
-    random: np.random.Generator,
-    stages: list[Stage],
-    right_foot: Transform,
-) -> Posture:
+def _sit(script: Script, right_foot: Transform) -> Posture:
     """A posture on the stool, bent to the floor and to the foot, the left foot on the floor."""
-    lean = [(0.0, (UPRIGHT, 0.0, 0.0))]
-    for stage in stages:
+    person, manner = script.person, script.person.manner
+    trunk = _lean(script) + script.drifts(0.02, 5.0) + [manner.stoop, 0.0, 0.0]
+    pelvis = rotation_about("x", -0.35 * trunk[:, 0])
+    hips = np.array([0.0, -BEHIND, SEAT]) * person.height
+    head = script.drifts(0.05, 3.0) + trunk[:, :1] / BENT_TO_FOOT * [0.25, 0.0, -0.05]
+    head[:, 0] += manner.head_pitch
+    left_foot = np.array([-STANCE_HALF_WIDTH, _feet_ahead(person), 0.0])
+    return Posture(
+        Transform(hips + pelvis[:, :, 2] * person.proportions.hip_drop, pelvis),
+        trunk * (0.65, 1.0, 1.0),
+        head,
+        right_foot,
+        script.still(Transform(left_foot, rotation_about("z", TOES_OUT))),
+    )
+
+
+def _lean(script: Script) -> Array:
+    """How the trunk leans (T, 3), radians, as its angles in Posture."""
+    knots = [(0.0, (UPRIGHT, 0.0, 0.0))]
+    for stage in script.stages:
         goal = {
             "reach": (BENT_TO_FLOOR, 0.15, 0.15),
             "lift": (BENT_TO_FOOT, 0.0, 0.0),
-            "let go": (UPRIGHT + random.uniform(0.0, 0.3), 0.0, 0.0),
+            "let go": (UPRIGHT + script.random.uniform(0.0, 0.3), 0.0, 0.0),
             "take hold": (BENT_TO_FOOT, 0.0, 0.0),
             "return": (BENT_TO_FLOOR, 0.15, 0.15),
             "withdraw": (UPRIGHT, 0.0, 0.0),
         }.get(stage.name)
         if goal is not None:
-            lean += [(stage.start, lean[-1][1]), (stage.end, goal)]
-    wander = np.stack([drift(times, random, 0.02, 5.0) for _ in range(3)], axis=1)
-    trunk = flow(times, lean) + wander + [person.manner.stoop, 0.0, 0.0]
-    pelvis = rotation_about("x", -0.35 * trunk[:, 0])
-    hips = np.array([0.0, -BEHIND, SEAT]) * person.height
-    glances = np.stack([drift(times, random, 0.05, 3.0) for _ in range(3)], axis=1)
-    bent = trunk[:, :1] / BENT_TO_FOOT
-    left_foot = np.array([-STANCE_HALF_WIDTH, _feet_ahead(person), 0.0])
-    return Posture(
-        Transform(hips + pelvis[:, :, 2] * person.proportions.hip_drop, pelvis),
-        trunk * (0.65, 1.0, 1.0),
-        glances + bent * np.array([0.25, 0.0, -0.05]) + [person.manner.head_pitch, 0.0, 0.0],
-        right_foot,
-        Transform(left_foot, rotation_about("z", TOES_OUT)).repeated(len(times)),
-    )
+            knots += [(stage.start, knots[-1][1]), (stage.end, goal)]
+    return script.flow(knots)
 
 
 def _stool(person: SimulatedPerson) -> Cuboid:
@@ -179,74 +152,54 @@ def _stool(person: SimulatedPerson) -> Cuboid:
     return Cuboid((0.0, -BEHIND * person.height - 0.05, 0.5 * high), (STOOL, STOOL, high), WOOD)
 
 
-def _hands_on_knees(
-    person: SimulatedPerson, random: np.random.Generator, count: int
-) -> tuple[Transform, Transform]:
+def _hands_on_knees(script: Script) -> tuple[Transform, Transform]:
     """The right and the left hand, world_from_hand (T), on the thighs near the knees."""
-    body = person.proportions
+    person, body = script.person, script.person.proportions
     above = 0.040 * person.height * person.girth + 0.030
     hands = []
     for _ in range(2):
-        back = random.uniform(0.06, 0.12)
+        back = script.random.uniform(0.06, 0.12)
         place = np.array([STANCE_HALF_WIDTH + 0.04, _feet_ahead(person) - back, 0.0])
         place[2] = body.ankle + body.shank + above
-        hands.append(Transform(place, ON_KNEE).repeated(count))
+        hands.append(script.still(Transform(place, ON_KNEE)))
     return hands[0], hands[1].mirrored()
 
 
-def _left_hand_on_leg(person: SimulatedPerson, times: Array) -> Transform:
+def _left_hand_on_leg(script: Script) -> Transform:
     """The left hand, world_from_hand (T), at the outer side of the left lower leg."""
-    body = person.proportions
+    person, body = script.person, script.person.proportions
     aside = 0.028 * person.height * person.girth + 0.078
     place = [STANCE_HALF_WIDTH + aside, _feet_ahead(person) + 0.02, body.ankle + 0.55 * body.shank]
-    return Transform(np.array(place), BESIDE_SHANK).repeated(len(times)).mirrored()
+    return script.still(Transform(np.array(place), BESIDE_SHANK)).mirrored()
 
 
-def _grip(person: SimulatedPerson, times: Array, random: np.random.Generator) -> Transform:
+def _grip(script: Script) -> Transform:
     """Thumb and fingers on the collar near the heel, object_from_hand (T)."""
-    slid = np.array([0.0, 0.012 * person.manner.grip_slide, 0.0])
-    turned = ON_COLLAR @ rotation_about("x", 0.5 * person.manner.grip_turn)
-    return pinch(times, random, COLLAR_GRIP + slid, turned)
+    manner = script.person.manner
+    slid = np.array([0.0, 0.012 * manner.grip_slide, 0.0])
+    turned = ON_COLLAR @ rotation_about("x", 0.5 * manner.grip_turn)
+    return pinch(script, COLLAR_GRIP + slid, turned)
 
 
 def _reaching(
-    times: Array,
-    stages: list[Stage],
-    rest: Transform,
-    busy: Transform,
-    bow: tuple[float, float, float],
+    script: Script, rest: Transform, busy: Transform, bow: tuple[float, float, float]
 ) -> Transform:
     """A hand, world_from_hand (T), from its knee to where it works while the trunk is bent."""
-    keys = [Key(0.0, rest)]
-    for stage in stages:
-        if stage.name in ("reach", "take hold"):
-            keys += [Key(stage.start, rest), Key(stage.end, busy, bow=bow)]
-        if stage.name in ("let go", "withdraw"):
-            keys += [Key(stage.start, busy), Key(stage.end, rest, bow=bow)]
-    return move_through(times, keys)
+    there, back = To(busy, bow), To(rest, bow)
+    goals = {"reach": there, "let go": back, "take hold": there, "withdraw": back}
+    return script.way(rest, goals)
 
 
-def _carry(
-    person: SimulatedPerson,
-    times: Array,
-    random: np.random.Generator,
-    stages: list[Stage],
-    right_foot: Transform,
-) -> Transform:
+def _carry(script: Script, right_foot: Transform) -> Transform:
     """The shoe's way, world_from_object (T): from the floor to the toes, on, off and back."""
+    person, random = script.person, script.random
     x, ahead = np.array([0.11, 0.035]) * person.height + random.normal(0.0, 0.015, 2)
     place = np.array([x + 0.04, _feet_ahead(person) + ahead, 0.0])
-    turn = rotation_about("z", random.normal(-0.1, 0.12))
-    on_floor = Transform(place, turn).repeated(len(times))
-    keys = [Key(0.0, on_floor)]
-    for stage in stages:
-        here = Key(stage.start, keys[-1].pose)
-        if stage.name == "lift":
-            keys += [here, Key(stage.end, right_foot @ AT_TOES, bow=(0.04, 0.02, 0.06))]
-        if stage.name == "put on":
-            keys += [here, Key(stage.end, right_foot, by=right_foot @ HALF_ON)]
-        if stage.name == "take off":
-            keys += [here, Key(stage.end, right_foot @ AT_TOES, by=right_foot @ HALF_ON)]
-        if stage.name == "return":
-            keys += [here, Key(stage.end, on_floor, bow=(0.04, 0.02, 0.07))]
-    return move_through(times, keys)
+    on_floor = script.still(Transform(place, rotation_about("z", random.normal(-0.1, 0.12))))
+    goals = {
+        "lift": To(right_foot @ AT_TOES, bow=(0.04, 0.02, 0.06)),
+        "put on": To(right_foot, by=right_foot @ HALF_ON),
+        "take off": To(right_foot @ AT_TOES, by=right_foot @ HALF_ON),
+        "return": To(on_floor, bow=(0.04, 0.02, 0.07)),
+    }
+    return script.way(on_floor, goals)

@@ -6,7 +6,7 @@ Move between rests is minimum-jerk (Flash & Hogan, 1985).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -40,6 +40,18 @@ class Pause:
     seconds: float
 
 
+Step = Move | Pause
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The steps of an interaction: how a thing is taken, each round of its use, the way back."""
+
+    opening: Sequence[Step]
+    use: Sequence[Step]
+    closing: Sequence[Step]
+
+
 @dataclass(frozen=True)
 class Stage:
     """A stage with its place in time, in seconds; repetition counts the rounds of use from 0."""
@@ -49,66 +61,69 @@ class Stage:
     start: float
     end: float
 
+    @property
+    def seconds(self) -> float:
+        """Its duration."""
+        return self.end - self.start
 
-Step = Move | Pause
+    def at(self, share: float) -> float:
+        """The time, in seconds, when that share of the stage is over."""
+        return (1.0 - share) * self.start + share * self.end
+
+    def part(self, first: float, last: float) -> Stage:
+        """What is between two shares of it."""
+        return replace(self, start=self.at(first), end=self.at(last))
 
 
 def schedule(
-    person: SimulatedPerson,
-    random: np.random.Generator,
-    duration: float,
-    opening: Sequence[Step],
-    use: Sequence[Step],
-    closing: Sequence[Step],
+    person: SimulatedPerson, random: np.random.Generator, duration: float, plan: Plan
 ) -> list[Stage]:
     """Stages that fill the duration, in seconds: opening, as many uses as fit, closing."""
 
-    def timed(steps: Sequence[Step]) -> list[float]:
-        variation = np.exp(JITTER * random.normal(size=len(steps)))
-        return [
-            step.seconds
-            * float(factor)
-            * (person.manner.restlessness if isinstance(step, Pause) else 1 / person.manner.tempo)
-            for step, factor in zip(steps, variation, strict=True)
-        ]
+    def timed(steps: Sequence[Step]) -> list[Step]:
+        return _timed(person, random, steps)
 
-    def least(steps: Sequence[Step], seconds: list[float]) -> float:
-        return sum(
-            second * (SHORTEST_PAUSE if isinstance(step, Pause) else 1.0)
-            for step, second in zip(steps, seconds, strict=True)
-        )
-
-    first, last = timed(opening), timed(closing)
-    rounds = [timed(use)]
-    used = least(opening, first) + least(closing, last) + least(use, rounds[0])
-    while used + least(use, following := timed(use)) < duration:
+    opening, closing, rounds = timed(plan.opening), timed(plan.closing), [timed(plan.use)]
+    used = _least(opening) + _least(closing) + _least(rounds[0])
+    while used + _least(following := timed(plan.use)) < duration:
         rounds.append(following)
-        used += least(use, following)
-    steps = [*opening, *(step for _ in rounds for step in use), *closing]
-    seconds = [*first, *(second for one in rounds for second in one), *last]
-    repetitions = [
-        *[0] * len(opening),
-        *(number for number in range(len(rounds)) for _ in use),
-        *[len(rounds) - 1] * len(closing),
+        used += _least(following)
+    steps = [
+        *((0, step) for step in opening),
+        *((number, step) for number, steps in enumerate(rounds) for step in steps),
+        *((len(rounds) - 1, step) for step in closing),
     ]
-    filled = _fill(steps, seconds, duration)
-    bounds = [0.0, *(float(end) for end in np.cumsum(filled))]
+    bounds = np.cumsum([0.0, *_fill([step for _, step in steps], duration)])
     return [
-        Stage(step.name, repetition, start, end)
-        for step, repetition, (start, end) in zip(steps, repetitions, pairwise(bounds), strict=True)
+        Stage(step.name, repetition, float(start), float(end))
+        for (repetition, step), (start, end) in zip(steps, pairwise(bounds), strict=True)
     ]
 
 
-def _fill(steps: Sequence[Step], seconds: Sequence[float], duration: float) -> list[float]:
-    """Pauses stretched to fill the duration; where movements alone exceed it, all is hurried."""
-    pauses = sum(s for step, s in zip(steps, seconds, strict=True) if isinstance(step, Pause))
-    movements = sum(seconds) - pauses
-    stretch = max((duration - movements) / pauses, SHORTEST_PAUSE)
-    hurry = duration / (movements + stretch * pauses)
+def _timed(
+    person: SimulatedPerson, random: np.random.Generator, steps: Sequence[Step]
+) -> list[Step]:
+    """The steps with the durations they have this time for this person."""
+    pace = {Pause: person.manner.restlessness, Move: 1 / person.manner.tempo}
+    variation = np.exp(JITTER * random.normal(size=len(steps)))
     return [
-        second * hurry * (stretch if isinstance(step, Pause) else 1.0)
-        for step, second in zip(steps, seconds, strict=True)
+        replace(step, seconds=step.seconds * float(factor) * pace[type(step)])
+        for step, factor in zip(steps, variation, strict=True)
     ]
+
+
+def _least(steps: Sequence[Step]) -> float:
+    """Seconds that the steps take with the shortest pauses."""
+    return sum(s.seconds * (SHORTEST_PAUSE if isinstance(s, Pause) else 1.0) for s in steps)
+
+
+def _fill(steps: Sequence[Step], duration: float) -> list[float]:
+    """Pauses stretched to fill the duration; where moves alone exceed it, all is hurried."""
+    pauses = sum(step.seconds for step in steps if isinstance(step, Pause))
+    moves = sum(step.seconds for step in steps) - pauses
+    stretch = max((duration - moves) / pauses, SHORTEST_PAUSE)
+    hurry = duration / (moves + stretch * pauses)
+    return [s.seconds * hurry * (stretch if isinstance(s, Pause) else 1.0) for s in steps]
 
 
 def minimum_jerk(share: ArrayLike) -> Array:
@@ -117,12 +132,14 @@ def minimum_jerk(share: ArrayLike) -> Array:
     return np.asarray(s**3 * (10.0 - 15.0 * s + 6.0 * s**2))
 
 
-def track(times: Array, keys: Sequence[tuple[float, float]]) -> Array:
-    """Values (T,) through keys (time, value) in order of time, at rest at every key."""
-    values = np.full(len(times), keys[0][1])
-    for (start, first), (end, second) in pairwise(keys):
-        values += (second - first) * minimum_jerk((times - start) / (end - start))
-    return values
+def track(times: Array, keys: Sequence[tuple[float, ArrayLike]]) -> Array:
+    """Values (T, ...) through keys (time, value) in order of time, at rest at every key."""
+    moments = [time for time, _ in keys]
+    values = np.array([value for _, value in keys], float)
+    result = np.repeat(values[:1], len(times), axis=0)
+    for (start, end), change in zip(pairwise(moments), np.diff(values, axis=0), strict=True):
+        result += np.multiply.outer(minimum_jerk((times - start) / (end - start)), change)
+    return np.asarray(result)
 
 
 def flow(times: Array, knots: Sequence[tuple[float, ArrayLike]]) -> Array:

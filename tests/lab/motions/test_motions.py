@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from inhand_lab.motions.performance import ContactKind, mouth
-from inhand_lab.motions.timeline import Move, Pause, minimum_jerk, schedule
+from inhand_lab.motions.timeline import Move, Pause, Plan, minimum_jerk, schedule
 from inhand_lab.objects.mug import MUG_HEIGHT, MUG_RADIUS
 from inhand_lab.people.kinematics import BALL_HEIGHT, place_trunk
 from inhand_lab.people.person import sample_person
@@ -190,8 +190,8 @@ def test_sweeping_repeats_strokes_over_the_floor_with_both_hands(participant: in
 def test_a_schedule_fills_its_time_and_repeats_the_use() -> None:
     person, random = sample_person(0, 0), np.random.default_rng(0)
     opening, closing = (Pause("wait", 0.5), Move("reach", 1.0)), (Move("leave", 1.0),)
-    use = (Move("do", 1.0), Pause("hold", 0.5))
-    stages = schedule(person, random, 30.0, opening, use, closing)
+    plan = Plan(opening, (Move("do", 1.0), Pause("hold", 0.5)), closing)
+    stages = schedule(person, random, 30.0, plan)
     assert stages[0].start == 0.0
     assert stages[-1].end == pytest.approx(30.0)
     assert all(a.end == b.start for a, b in pairwise(stages))
