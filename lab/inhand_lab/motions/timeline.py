@@ -1,6 +1,6 @@
 """Stages of an interaction in time, and smooth movement through key poses.
 
-Move between rests is minimum-jerk (Flash & Hogan, 1985).
+Movement between rests is minimum-jerk (Flash & Hogan, 1985).
 """
 
 from __future__ import annotations
