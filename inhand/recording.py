@@ -10,7 +10,7 @@ from inhand_recorder.repair import add_infos
 from inhand_recorder.verification import examine_recording
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED
-from inhand_runtime.part_file import PART_SUFFIX
+from inhand_runtime.recording.part_file import PART_SUFFIX
 from rich.table import Table
 
 from inhand.looking import output

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from inhand_runtime.checksums import CHECKSUMS_RECORD
 from inhand_runtime.recording import APART_ENCODING
+from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.topics import topic_of
 from mcap.records import Channel, Message, Metadata

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from inhand_runtime.part_file import PART_SUFFIX
 from inhand_runtime.recording import RecordingError, RecordingWriter
+from inhand_runtime.recording.part_file import PART_SUFFIX
 
 from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses

@@ -4,14 +4,15 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from inhand_runtime.checksums import CHECKSUMS_RECORD
 from inhand_runtime.recording import MESSAGE_ENCODING, RecordingError, RecordingWriter
+from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
 from inhand_schemas.errors import KeyFormatError, MessageError, UnknownVersionError
 from inhand_schemas.topics import AnyTopic, topic_of
 from mcap.records import Channel, Message, Metadata
 
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses, parse_losses
-from inhand_recorder.scanning import Bytes, Stretch, channels, opened, scan
+from inhand_recorder.records import Bytes
+from inhand_recorder.scanning import Stretch, channels, opened, scan
 
 RECOVERY_RECORD = "recovery"
 RECOVERING_SUFFIX = ".recovering"

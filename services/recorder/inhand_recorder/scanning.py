@@ -9,67 +9,31 @@ import os
 import re
 import struct
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
 from typing import BinaryIO, Literal, TypeAlias
 
-from inhand_runtime.checksums import CHECKSUMS_RECORD, digest, parse_digests
-from inhand_runtime.recording import DAMAGE, RecordingError
-from mcap.data_stream import ReadDataStream
+from inhand_runtime.recording import RecordingError
+from inhand_runtime.recording.checksums import CHECKSUMS_RECORD, parse_digests
 from mcap.opcode import Opcode
 from mcap.records import (
-    Attachment,
-    AttachmentIndex,
     Channel,
     Chunk,
-    ChunkIndex,
-    DataEnd,
     Footer,
-    Header,
     McapRecord,
     Message,
-    MessageIndex,
     Metadata,
-    MetadataIndex,
-    Schema,
-    Statistics,
-    SummaryOffset,
 )
-from mcap.stream_reader import get_chunk_data_stream
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
-Bytes: TypeAlias = bytes | mmap.mmap
+from inhand_recorder.records import HEADER_BYTES, Bytes, checked_records, length_at, record_at
+from inhand_recorder.remains import remains_of
+
 State: TypeAlias = Literal["whole", "cut", "damaged"]
 
-HEADER_BYTES = 9
-"""Of every record: the opcode and the length."""
 FOOTER_BYTES = HEADER_BYTES + 20
-MESSAGE_BYTES = 22
-"""Of a message record without its payload."""
-
-_READERS: dict[int, Callable[[ReadDataStream], McapRecord]] = {
-    Opcode.HEADER: Header.read,
-    Opcode.FOOTER: Footer.read,
-    Opcode.SCHEMA: Schema.read,
-    Opcode.CHANNEL: Channel.read,
-    Opcode.CHUNK: Chunk.read,
-    Opcode.MESSAGE_INDEX: MessageIndex.read,
-    Opcode.CHUNK_INDEX: ChunkIndex.read,
-    Opcode.ATTACHMENT: Attachment.read,
-    Opcode.ATTACHMENT_INDEX: AttachmentIndex.read,
-    Opcode.STATISTICS: Statistics.read,
-    Opcode.METADATA: Metadata.read,
-    Opcode.METADATA_INDEX: MetadataIndex.read,
-    Opcode.SUMMARY_OFFSET: SummaryOffset.read,
-    Opcode.DATA_END: DataEnd.read,
-}
-_IN_CHUNKS = (Schema, Channel, Message)
-
-# The start of a schema, channel or message within a chunk.
-_INNER_ANCHOR = re.compile(rb"(?=[\x03\x04\x05][\s\S]{5}\x00\x00\x00)")
 
 # The start of a chunk, metadata, end of data or footer: opcode, then a length below 2 ** 40.
 _ANCHOR = re.compile(rb"(?=[\x06\x0c\x0f\x02][\s\S]{5}\x00\x00\x00)")
@@ -145,7 +109,7 @@ def summary_start(data: Bytes) -> int | None:
     end = len(data) - len(MAGIC)
     if end < len(MAGIC) + FOOTER_BYTES or data[end:] != MAGIC:
         return None
-    footer = _record_at(data, end - FOOTER_BYTES)
+    footer = record_at(data, end - FOOTER_BYTES)
     if not isinstance(footer, Footer):
         return None
     start = footer.summary_start
@@ -158,7 +122,7 @@ def summary_start(data: Bytes) -> int | None:
 
 def has_checksums(data: Bytes) -> bool:
     """Whether a finished file says what its index must add up to; they are optional in MCAP."""
-    footer = _record_at(data, len(data) - len(MAGIC) - FOOTER_BYTES)
+    footer = record_at(data, len(data) - len(MAGIC) - FOOTER_BYTES)
     return isinstance(footer, Footer) and footer.summary_crc != 0
 
 
@@ -191,11 +155,11 @@ def scan(data: Bytes, offset: int = len(MAGIC)) -> Iterator[Stretch]:
 
 
 def _stretch_at(data: Bytes, offset: int, digests: frozenset[bytes]) -> Stretch:
-    record = _record_at(data, offset)
+    record = record_at(data, offset)
     if isinstance(record, Chunk):
-        return _chunk(record, offset, _length_at(data, offset), digests)
+        return _chunk(record, offset, length_at(data, offset), digests)
     if record is not None:
-        return Stretch(offset, _length_at(data, offset), "whole", (record,))
+        return Stretch(offset, length_at(data, offset), "whole", (record,))
     anchor = _next_anchor(data, offset + 1)
     if anchor is not None:
         return Stretch(offset, anchor - offset, "damaged", (), anchor - offset)
@@ -203,13 +167,13 @@ def _stretch_at(data: Bytes, offset: int, digests: frozenset[bytes]) -> Stretch:
 
 
 def _chunk(chunk: Chunk, offset: int, length: int, digests: frozenset[bytes]) -> Stretch:
-    records = _checked_records(chunk)
+    records = checked_records(chunk)
     if records is not None:
         return Stretch(offset, length, "whole", records)
     if chunk.compression:
         return Stretch(offset, length, "damaged", (), length)
     times = chunk.message_start_time, chunk.message_end_time
-    remains = _remains(chunk.data, digests, times)
+    remains = remains_of(chunk.data, digests, times)
     unread = length if not remains.messages else remains.unread_bytes
     return Stretch(offset, length, "damaged", remains.records, unread, remains.doubtful)
 
@@ -220,7 +184,7 @@ def _cut(data: Bytes, offset: int, digests: frozenset[bytes]) -> Stretch:
     if len(rest) >= chunk_head.size:
         opcode, _, start, end, _, _, compression_length, _ = chunk_head.unpack_from(rest)
         if opcode == Opcode.CHUNK and compression_length == 0:
-            remains = _remains(rest[chunk_head.size :], digests, (start, end))
+            remains = remains_of(rest[chunk_head.size :], digests, (start, end))
             return Stretch(
                 offset,
                 len(rest),
@@ -232,103 +196,11 @@ def _cut(data: Bytes, offset: int, digests: frozenset[bytes]) -> Stretch:
     return Stretch(offset, len(rest), "cut", (), len(rest))
 
 
-@dataclass
-class _Remains:
-    """What is left of a chunk whose own checksum does not hold."""
-
-    records: tuple[McapRecord, ...] = ()
-    doubtful: tuple[Message, ...] = ()
-    unread_bytes: int = 0
-
-    @property
-    def messages(self) -> bool:
-        return bool(self.doubtful) or any(isinstance(one, Message) for one in self.records)
-
-
-def _remains(data: bytes, digests: frozenset[bytes], times: tuple[int, int]) -> _Remains:
-    """Walk a chunk's records, and past what is broken to the next one that proves itself.
-
-    A message proves itself by its checksum, where the file has any, and else by a time of reception
-    that lies within the chunk's.
-    """
-    proved: list[McapRecord] = []
-    doubtful: list[Message] = []
-    unread = offset = 0
-    while offset < len(data):
-        record = _record_at(data, offset)
-        if isinstance(record, Message) and _proves_itself(record, digests, times):
-            (proved if digests else doubtful).append(record)
-            offset += _length_at(data, offset)
-        elif isinstance(record, Schema | Channel):
-            proved.append(record)
-            offset += _length_at(data, offset)
-        else:
-            following = _next_inner(data, offset, digests, times)
-            unread += following - offset
-            offset = following
-    if digests and not any(isinstance(record, Message) for record in proved):
-        return _remains(data, frozenset(), times)  # they are another chunk's: the record was lost
-    return _Remains(tuple(proved), tuple(doubtful), unread)
-
-
-def _next_inner(data: bytes, offset: int, digests: frozenset[bytes], times: tuple[int, int]) -> int:
-    """Where the next record of a damaged chunk is that proves itself; its end where none does."""
-    record = _record_at(data, offset)
-    if isinstance(record, Message):
-        # A payload alone may be damaged: then the record behind it stands where its length says.
-        behind = offset + _length_at(data, offset)
-        if behind == len(data) or _is_inner(_record_at(data, behind), digests, times):
-            return behind
-    for match in _INNER_ANCHOR.finditer(data, offset + 1):
-        if _is_inner(_record_at(data, match.start()), digests, times):
-            return match.start()
-    return len(data)
-
-
-def _is_inner(record: McapRecord | None, digests: frozenset[bytes], times: tuple[int, int]) -> bool:
-    if isinstance(record, Message):
-        return _proves_itself(record, digests, times)
-    return isinstance(record, Schema | Channel)
-
-
-def _proves_itself(message: Message, digests: frozenset[bytes], times: tuple[int, int]) -> bool:
-    if not digests:
-        return times[0] <= message.log_time <= times[1]
-    return (
-        digest(
-            message.channel_id,
-            message.sequence,
-            message.log_time,
-            message.publish_time,
-            message.data,
-        )
-        in digests
-    )
-
-
-def _checked_records(chunk: Chunk) -> tuple[McapRecord, ...] | None:
-    try:
-        stream, length = get_chunk_data_stream(chunk, validate_crc=True)
-        records, read = _inner_records(stream.read(length))
-    except DAMAGE:
-        return None
-    return records if read == length else None
-
-
-def _inner_records(data: bytes) -> tuple[tuple[McapRecord, ...], int]:
-    records: list[McapRecord] = []
-    offset = 0
-    while isinstance(record := _record_at(data, offset), _IN_CHUNKS):
-        records.append(record)
-        offset += _length_at(data, offset)
-    return tuple(records), offset
-
-
 def _next_anchor(data: Bytes, offset: int) -> int | None:
     for match in _ANCHOR.finditer(data, offset):
         place = match.start()
-        record = _record_at(data, place) if _fits_its_length(data, place) else None
-        if record is None or (isinstance(record, Chunk) and _checked_records(record) is None):
+        record = record_at(data, place) if _fits_its_length(data, place) else None
+        if record is None or (isinstance(record, Chunk) and checked_records(record) is None):
             continue
         return place
     return None
@@ -337,7 +209,7 @@ def _next_anchor(data: Bytes, offset: int) -> int | None:
 def _fits_its_length(data: Bytes, offset: int) -> bool:
     """Whether the lengths inside an anchor add up to its own: cheap, however long it says it is."""
     opcode, body = data[offset], offset + HEADER_BYTES
-    length = _length_at(data, offset) - HEADER_BYTES
+    length = length_at(data, offset) - HEADER_BYTES
     try:
         if opcode == Opcode.CHUNK:
             compression = struct.unpack_from("<I", data, body + 28)[0]
@@ -350,34 +222,3 @@ def _fits_its_length(data: Bytes, offset: int) -> bool:
     except struct.error:
         return False
     return bool(inner == length)
-
-
-def _length_at(data: Bytes, offset: int) -> int:
-    """Bytes of the whole record at ``offset``, its header included."""
-    length: int = struct.unpack_from("<Q", data, offset + 1)[0]
-    return HEADER_BYTES + length
-
-
-def _record_at(data: Bytes, offset: int) -> McapRecord | None:
-    """The record that fills its declared length exactly, or None."""
-    if offset + HEADER_BYTES > len(data):
-        return None
-    length = _length_at(data, offset)
-    if offset + length > len(data):
-        return None
-    body = data[offset + HEADER_BYTES : offset + length]
-    opcode = data[offset]
-    if opcode == Opcode.MESSAGE:
-        if len(body) < MESSAGE_BYTES:
-            return None
-        message: Message = Message.read(ReadDataStream(BytesIO(body)), len(body))
-        return message
-    reader = _READERS.get(opcode)
-    if reader is None:
-        return None
-    stream = ReadDataStream(BytesIO(body))
-    try:
-        record = reader(stream)
-    except DAMAGE:
-        return None
-    return record if stream.count == len(body) else None

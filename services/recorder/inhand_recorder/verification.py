@@ -16,8 +16,8 @@ from mcap.records import DataEnd, Message, Metadata, Statistics
 
 from inhand_recorder.clock import CLOCK_RECORD, parse_clock_steps
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, Losses, parse_losses
+from inhand_recorder.records import Bytes
 from inhand_recorder.scanning import (
-    Bytes,
     Stretch,
     channels,
     has_checksums,

@@ -1,0 +1,91 @@
+"""What is left of a chunk that was damaged or cut off: each message proves itself, or does not."""
+
+import re
+from dataclasses import dataclass
+
+from inhand_runtime.recording.checksums import digest
+from mcap.records import (
+    Channel,
+    McapRecord,
+    Message,
+    Schema,
+)
+
+from inhand_recorder.records import length_at, record_at
+
+# The start of a schema, channel or message within a chunk.
+_INNER_ANCHOR = re.compile(rb"(?=[\x03\x04\x05][\s\S]{5}\x00\x00\x00)")
+
+
+@dataclass
+class Remains:
+    """What is left of a chunk whose own checksum does not hold."""
+
+    records: tuple[McapRecord, ...] = ()
+    doubtful: tuple[Message, ...] = ()
+    unread_bytes: int = 0
+
+    @property
+    def messages(self) -> bool:
+        return bool(self.doubtful) or any(isinstance(one, Message) for one in self.records)
+
+
+def remains_of(data: bytes, digests: frozenset[bytes], times: tuple[int, int]) -> Remains:
+    """Walk a chunk's records, and past what is broken to the next one that proves itself.
+
+    A message proves itself by its checksum, where the file has any, and else by a time of reception
+    that lies within the chunk's.
+    """
+    proved: list[McapRecord] = []
+    doubtful: list[Message] = []
+    unread = offset = 0
+    while offset < len(data):
+        record = record_at(data, offset)
+        if isinstance(record, Message) and _proves_itself(record, digests, times):
+            (proved if digests else doubtful).append(record)
+            offset += length_at(data, offset)
+        elif isinstance(record, Schema | Channel):
+            proved.append(record)
+            offset += length_at(data, offset)
+        else:
+            following = _next_inner(data, offset, digests, times)
+            unread += following - offset
+            offset = following
+    if digests and not any(isinstance(record, Message) for record in proved):
+        return remains_of(data, frozenset(), times)  # they are another chunk's: the record was lost
+    return Remains(tuple(proved), tuple(doubtful), unread)
+
+
+def _next_inner(data: bytes, offset: int, digests: frozenset[bytes], times: tuple[int, int]) -> int:
+    """Where the next record of a damaged chunk is that proves itself; its end where none does."""
+    record = record_at(data, offset)
+    if isinstance(record, Message):
+        # A payload alone may be damaged: then the record behind it stands where its length says.
+        behind = offset + length_at(data, offset)
+        if behind == len(data) or _is_inner(record_at(data, behind), digests, times):
+            return behind
+    for match in _INNER_ANCHOR.finditer(data, offset + 1):
+        if _is_inner(record_at(data, match.start()), digests, times):
+            return match.start()
+    return len(data)
+
+
+def _is_inner(record: McapRecord | None, digests: frozenset[bytes], times: tuple[int, int]) -> bool:
+    if isinstance(record, Message):
+        return _proves_itself(record, digests, times)
+    return isinstance(record, Schema | Channel)
+
+
+def _proves_itself(message: Message, digests: frozenset[bytes], times: tuple[int, int]) -> bool:
+    if not digests:
+        return times[0] <= message.log_time <= times[1]
+    return (
+        digest(
+            message.channel_id,
+            message.sequence,
+            message.log_time,
+            message.publish_time,
+            message.data,
+        )
+        in digests
+    )

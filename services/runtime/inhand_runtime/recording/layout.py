@@ -1,0 +1,61 @@
+"""What recordings are made of, for those who write them and those who read them."""
+
+import struct
+from dataclasses import dataclass
+
+from inhand_schemas.messages import Message
+from inhand_schemas.topics import AnyTopic
+from mcap.exceptions import McapError
+from zstandard import ZstdError
+
+from inhand_runtime.errors import InhandError
+
+PROFILE = "inhand"
+SCHEMA_ENCODING = "jsonschema"
+MESSAGE_ENCODING = "msgpack"
+APART_ENCODING = "x-undecodable"
+"""The message encoding of a channel that holds what could not be read on its key."""
+CHUNK_BYTES = 1024 * 1024
+UNBOUNDED_CHUNK = 1 << 40
+"""The writer's own bound on chunks, which are ended here, after their messages' checksums."""
+MOST_CHANNELS = 0xFFFF
+LATEST_NS = (1 << 64) - 1
+SEQUENCE_MASK = 0xFFFFFFFF
+REORDERED_NS = 1_000_000_000
+"""Messages that were received this much apart, in nanoseconds, stand in order in a file of ours."""
+
+DAMAGE = (
+    McapError,
+    ValueError,
+    LookupError,
+    ArithmeticError,
+    MemoryError,
+    RuntimeError,
+    struct.error,
+    ZstdError,
+)
+"""What the MCAP library raises on damaged bytes."""
+
+
+class RecordingError(InhandError):
+    """A recording that cannot be written or read; the message tells the user the mend."""
+
+
+@dataclass(frozen=True)
+class RecordedMessage:
+    """One message of a recording; times are nanoseconds since the epoch.
+
+    ``sequence`` is the message's own, its lowest 32 bits.
+    """
+
+    key: str
+    topic: AnyTopic
+    name: str
+    payload: bytes
+    received_ns: int
+    captured_ns: int
+    sequence: int
+
+    def message(self) -> Message:
+        """The payload decoded; raises MessageError."""
+        return self.topic.decode(self.payload)

@@ -1,0 +1,161 @@
+"""Reading whole recordings."""
+
+import heapq
+import os
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO
+
+from inhand_schemas.errors import KeyFormatError, UnknownVersionError
+from inhand_schemas.keys import ParsedKey
+from inhand_schemas.topics import AnyTopic, topic_of
+from mcap.reader import SeekingReader
+from mcap.records import Channel
+from mcap.records import Message as MessageRecord
+from mcap.summary import Summary
+from mcap.writer import MCAP0_MAGIC
+
+from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
+from inhand_runtime.recording.layout import (
+    DAMAGE,
+    MESSAGE_ENCODING,
+    PROFILE,
+    REORDERED_NS,
+    RecordedMessage,
+    RecordingError,
+)
+
+
+def read_recording(
+    path: Path, *, streams: Collection[str] | None = None
+) -> Iterator[RecordedMessage]:
+    """The messages of a whole recording in the order of their reception.
+
+    Where the clock was set back while it was recorded, what stands later in the file comes later;
+    in files of other writers the times alone say the order.
+
+    ``streams`` chooses; keys that are not Inhand's are passed over. Raises RecordingError for a
+    file that is missing, foreign, cut off or damaged, and UnknownVersionError.
+    """
+    with _open(path) as reader:
+        chosen = _choose(_summary(path, reader).channels.values(), streams)
+        for key, message in _records(path, reader, chosen):
+            topic, parsed = chosen[key]
+            times = message.log_time, message.publish_time
+            yield RecordedMessage(key, topic, parsed.name, message.data, *times, message.sequence)
+
+
+def read_metadata(path: Path) -> dict[str, dict[str, str]]:
+    """The named records about a whole recording; raises RecordingError."""
+    with _open(path) as reader:
+        _summary(path, reader)
+        with _explaining_damage(path):
+            return {
+                record.name: record.metadata
+                for record in reader.iter_metadata()
+                if record.name != CHECKSUMS_RECORD
+            }
+
+
+def _choose(
+    channels: Iterable[Channel], streams: Collection[str] | None
+) -> dict[str, tuple[AnyTopic, ParsedKey]]:
+    chosen = {}
+    for channel in channels:
+        if channel.message_encoding != MESSAGE_ENCODING:
+            continue
+        try:
+            topic, parsed = topic_of(channel.topic)
+        except KeyFormatError as error:
+            if isinstance(error, UnknownVersionError):
+                raise
+            continue
+        if streams is None or topic.stream in streams:
+            chosen[channel.topic] = topic, parsed
+    return chosen
+
+
+def _records(
+    path: Path, reader: SeekingReader, keys: Collection[str]
+) -> Iterator[tuple[str, MessageRecord]]:
+    with _explaining_damage(path):
+        ours = reader.get_header().profile == PROFILE
+    records = (
+        (channel.topic, message)
+        for _, channel, message in reader.iter_messages(topics=keys, log_time_order=not ours)
+        if channel.message_encoding == MESSAGE_ENCODING
+    )
+    in_order = _in_order_of_reception(records) if ours else records
+    while True:
+        with _explaining_damage(path):
+            record = next(in_order, None)
+        if record is None:
+            return
+        yield record
+
+
+def _in_order_of_reception(
+    records: Iterator[tuple[str, MessageRecord]],
+) -> Iterator[tuple[str, MessageRecord]]:
+    """Sort what lies within a second; what lies farther back comes after a clock that was set."""
+    waiting: list[tuple[int, int, tuple[str, MessageRecord]]] = []
+    newest_ns = 0
+    for number, record in enumerate(records):
+        time_ns = record[1].log_time
+        if time_ns < newest_ns - REORDERED_NS:
+            yield from (heapq.heappop(waiting)[2] for _ in range(len(waiting)))
+            newest_ns = 0
+        newest_ns = max(newest_ns, time_ns)
+        heapq.heappush(waiting, (time_ns, number, record))
+        while waiting[0][0] < newest_ns - REORDERED_NS:
+            yield heapq.heappop(waiting)[2]
+    yield from (heapq.heappop(waiting)[2] for _ in range(len(waiting)))
+
+
+@contextmanager
+def _open(path: Path) -> Iterator[SeekingReader]:
+    try:
+        file = path.open("rb")
+    except FileNotFoundError:
+        raise RecordingError(f"{path} does not exist: check the path") from None
+    except OSError as error:
+        raise RecordingError(
+            f"cannot read {path}: {error.strerror}: give a file that you may read"
+        ) from error
+    with file:
+        _require_whole(path, file)
+        yield SeekingReader(file, validate_crcs=True)
+
+
+def _require_whole(path: Path, file: IO[bytes]) -> None:
+    head = file.read(len(MCAP0_MAGIC))
+    if not MCAP0_MAGIC.startswith(head):
+        raise RecordingError(f"{path} is no recording: give a .mcap file")
+    size = file.seek(0, os.SEEK_END)
+    file.seek(max(0, size - len(MCAP0_MAGIC)))
+    if size < 2 * len(MCAP0_MAGIC) or file.read() != MCAP0_MAGIC:
+        raise RecordingError(
+            f"{path} was cut off: `inhand recording recover {path}` saves what is left"
+        )
+    file.seek(0)
+
+
+def _summary(path: Path, reader: SeekingReader) -> Summary:
+    with _explaining_damage(path):
+        summary = reader.get_summary()
+    if summary is None:
+        raise RecordingError(f"{path} has no index: `inhand recording recover {path}` writes one")
+    return summary
+
+
+@contextmanager
+def _explaining_damage(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise RecordingError(f"cannot read {path}: {error.strerror}") from error
+    except DAMAGE as error:
+        raise RecordingError(
+            f"{path} is damaged ({error}): `inhand recording recover {path}` saves what is left"
+        ) from error

@@ -1,0 +1,194 @@
+"""Writing recordings, so that a crash or a full disk costs as little as can be."""
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Self, cast
+
+from inhand_schemas.json_schema import json_schema
+from inhand_schemas.topics import topic_of
+from mcap.writer import CompressionType, Writer
+
+from inhand_runtime.recording.checksums import CHECKSUMS_RECORD, digest, format_digests
+from inhand_runtime.recording.layout import (
+    APART_ENCODING,
+    CHUNK_BYTES,
+    LATEST_NS,
+    MESSAGE_ENCODING,
+    MOST_CHANNELS,
+    PROFILE,
+    SCHEMA_ENCODING,
+    SEQUENCE_MASK,
+    UNBOUNDED_CHUNK,
+    RecordingError,
+)
+from inhand_runtime.recording.part_file import PART_SUFFIX, PartFile
+
+
+class RecordingWriter:
+    """Writes one recording, from one thread; every method raises RecordingError.
+
+    After the first failure (a full disk, say) nothing more is written, each call raises that
+    failure again, and the ``.part`` keeps what could be written. As a context manager it closes
+    the recording, except after an exception: then the ``.part`` stays too.
+    """
+
+    def __init__(self, path: Path, *, part_suffix: str = PART_SUFFIX) -> None:
+        self.path = path
+        self._failure: RecordingError | None = None
+        self._channels: dict[tuple[str, bool], int] = {}
+        self._schemas: dict[str, int] = {}
+        self._digests: list[bytes] = []
+        self._chunk_bytes = 0
+        self._file = _create(path, part_suffix)
+        self._writer = Writer(
+            cast(IO[bytes], self._file),
+            chunk_size=UNBOUNDED_CHUNK,
+            compression=CompressionType.NONE,
+            enable_data_crcs=True,
+        )
+        try:
+            with self._reporting():
+                self._writer.start(profile=PROFILE)
+        except RecordingError:
+            self._file.close()
+            raise
+
+    @property
+    def bytes_written(self) -> int:
+        """The size of the file so far, without the chunk that still fills in memory."""
+        return self._file.bytes_written
+
+    def write(
+        self, key: str, payload: bytes, *, received_ns: int, captured_ns: int, sequence: int
+    ) -> None:
+        """Add one encoded message; raises KeyFormatError when ``key`` is not Inhand's."""
+        self._add(key, payload, received_ns, captured_ns, sequence, apart=False)
+
+    def write_apart(self, key: str, payload: bytes, *, received_ns: int) -> None:
+        """Keep what cannot be read on a key, in a channel of its own that readers pass over.
+
+        Raises KeyFormatError when ``key`` is not Inhand's.
+        """
+        self._add(key, payload, received_ns, received_ns, 0, apart=True)
+
+    def _add(
+        self,
+        key: str,
+        payload: bytes,
+        received_ns: int,
+        captured_ns: int,
+        sequence: int,
+        apart: bool,
+    ) -> None:
+        # The library writes half a message where a number does not fit, and damages the next one.
+        if not (0 <= received_ns <= LATEST_NS and 0 <= captured_ns <= LATEST_NS):
+            raise RecordingError(f"{key}: a time before 1970, or after 2554, cannot be recorded")
+        with self._reporting():
+            channel = self._channels.get((key, apart)) or self._register(key, apart)
+            stamp = channel, sequence & SEQUENCE_MASK, received_ns, captured_ns
+            self._writer.add_message(channel, received_ns, payload, captured_ns, stamp[1])
+            self._digests.append(digest(*stamp, payload))
+            self._chunk_bytes += len(payload)
+            if self._chunk_bytes > CHUNK_BYTES:
+                self._end_chunk()
+
+    def _end_chunk(self) -> None:
+        """Write the messages' checksums, and then the chunk that waits in memory."""
+        if self._digests:
+            self._writer.add_metadata(CHECKSUMS_RECORD, format_digests(self._digests))
+        self._digests.clear()
+        self._chunk_bytes = 0
+        self._writer.flush()  # type: ignore[no-untyped-call]
+
+    def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
+        """Add one named record about the recording; a later one of that name replaces it."""
+        with self._reporting():
+            self._writer.add_metadata(name, dict(values))
+
+    def sync(self) -> None:
+        """Bring everything so far to the disk, so that even a power cut leaves it."""
+        with self._reporting():
+            self._end_chunk()
+            self._file.sync()
+
+    def close(self) -> Path:
+        """Finish the file and give it its final name, which is returned."""
+        if self._failure is None and self._file.closed:
+            return self.path
+        try:
+            with self._reporting():
+                self._end_chunk()
+                self._writer.finish()  # type: ignore[no-untyped-call]
+                self._file.publish()
+        finally:
+            self._file.close()
+        return self.path
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        try:
+            if kind is None:
+                self.close()
+            elif self._failure is None and not self._file.closed:
+                self.sync()
+        finally:
+            self._file.close()
+
+    def _register(self, key: str, apart: bool) -> int:
+        topic, _ = topic_of(key)
+        if len(self._channels) >= MOST_CHANNELS:
+            raise RecordingError(f"{self.path} holds {MOST_CHANNELS} keys: begin another recording")
+        if apart:
+            channel = self._writer.register_channel(key, APART_ENCODING, 0)
+            self._channels[key, apart] = channel
+            return channel
+        name = f"{topic.message_type.__name__}.v1"
+        if name not in self._schemas:
+            schema = json.dumps(json_schema(topic.message_type)).encode()
+            self._schemas[name] = self._writer.register_schema(name, SCHEMA_ENCODING, schema)
+        schema_id = self._schemas[name]
+        channel = self._writer.register_channel(key, MESSAGE_ENCODING, schema_id)
+        self._channels[key, apart] = channel
+        return channel
+
+    @contextmanager
+    def _reporting(self) -> Iterator[None]:
+        if self._failure is not None:
+            raise self._failure
+        if self._file.closed:
+            raise RecordingError(f"{self.path} is closed: open another recording")
+        try:
+            yield
+        except OSError as error:
+            self._failure = RecordingError(
+                f"cannot write {self._file.part}: {error.strerror}: make room or use another disk; "
+                f"`inhand recording recover {self._file.part}` saves what was written"
+            )
+            raise self._failure from error
+
+
+def _create(path: Path, part_suffix: str) -> PartFile:
+    try:
+        if path.exists():
+            raise RecordingError(f"{path} exists already: choose another name, or move it away")
+        return PartFile(path, part_suffix)
+    except FileExistsError:
+        part = path.with_name(path.name + part_suffix)
+        raise RecordingError(
+            f"{part} is left from a recording that was cut off: "
+            f"run `inhand recording recover {part}`, then delete it"
+        ) from None
+    except OSError as error:
+        raise RecordingError(
+            f"cannot create {path}: {error.strerror}: use a folder that exists and can be written"
+        ) from error
