@@ -1,7 +1,7 @@
 """A camera's info reaches everybody, in whatever order a rig's processes start."""
 
 import pytest
-from starts import LATE_S, TOGETHER, run_trials
+from random_starts import LATE_S, TOGETHER, run_trials
 
 
 @pytest.mark.long

@@ -1,9 +1,10 @@
 """Starts three processes of a rig in random order, many times, and counts infos that never came.
 
-``python tests/reliability/starts.py --trials 1000``: in each trial a publisher of a camera's info,
-a subscriber and, in every other one, a third peer that may hold the meeting address start within
-two seconds. Many trials run beside each other, each with an address of its own; the three roles are
-three processes. A kept value that comes later than two seconds after both are there is a miss.
+``python tests/scenes/random_starts.py --trials 1000``: in each trial a publisher of a camera's
+info, a subscriber and, in every other one, a third peer that may hold the meeting address start
+within two seconds. Many trials run beside each other, each with an address of its own; the three
+roles are three processes. A kept value that comes later than two seconds after both are there is a
+miss.
 """
 
 import argparse
