@@ -3,17 +3,7 @@ import numpy as np
 import pytest
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.camera import Intrinsics
-from inhand_tracker.sight.kernels.projection import (
-    depth_noise,
-    edge_channel,
-    image_normal,
-    in_image,
-    is_covered,
-    projected,
-    rotated,
-    rotation_matrix,
-    view_of_pose,
-)
+from inhand_tracker.sight.kernels import projection
 
 CORNER_LENS = (70.0, 72.0, 31.8, 24.1)
 POSES = list(zip(*arrays.poses(), strict=True))
@@ -23,19 +13,21 @@ POSES = list(zip(*arrays.poses(), strict=True))
 def test_points_are_turned_and_projected_as_by_matrix_and_camera(
     place: np.ndarray, turn: np.ndarray
 ) -> None:
-    matrix = rotation_matrix(*turn)
+    matrix = projection.rotation_matrix(*turn)
     np.testing.assert_allclose(np.reshape(matrix, (3, 3)), rotations.to_matrix(turn), atol=1e-12)
-    point = np.array(rotated(matrix, 0.02, -0.03, 0.01)) + place
+    point = np.array(projection.rotated(matrix, 0.02, -0.03, 0.01)) + place
     expected = rotations.rotate(turn, np.array([0.02, -0.03, 0.01])) + place
     np.testing.assert_allclose(point, expected)
     camera = Intrinsics(70.0, 72.0, 31.3, 23.6, 64, 48)
-    np.testing.assert_allclose(projected(CORNER_LENS, *point), camera.project(expected) + 0.5)
+    np.testing.assert_allclose(
+        projection.projected(CORNER_LENS, *point), camera.project(expected) + 0.5
+    )
 
 
 @pytest.mark.parametrize(("place", "turn"), POSES)
 def test_a_pose_is_seen_from_the_nearest_direction(place: np.ndarray, turn: np.ndarray) -> None:
-    outlines, matrix = arrays.outlines(), rotation_matrix(*turn)
-    view = view_of_pose(outlines.grid, outlines.directions, matrix, *place)
+    outlines, matrix = arrays.outlines(), projection.rotation_matrix(*turn)
+    view = projection.view_of_pose(outlines.grid, outlines.directions, matrix, *place)
     assert view == arrays.nearest(outlines.directions, (place, turn))
 
 
@@ -43,18 +35,20 @@ def test_a_pose_is_seen_from_the_nearest_direction(place: np.ndarray, turn: np.n
 def test_a_normals_image_is_where_its_point_moves_along_it(seed: int) -> None:
     random = np.random.default_rng(seed)
     point, normal = random.normal([0.0, 0.0, 1.0], 0.1), random.normal(size=3)
-    ends = [np.array(projected(CORNER_LENS, *(point + s * normal))) for s in (-1e-6, 1e-6)]
+    ends = [
+        np.array(projection.projected(CORNER_LENS, *(point + s * normal))) for s in (-1e-6, 1e-6)
+    ]
     moved = (ends[1] - ends[0]) / 2e-6
-    image = np.array(image_normal(CORNER_LENS, tuple(normal), *point))
+    image = np.array(projection.image_normal(CORNER_LENS, tuple(normal), *point))
     np.testing.assert_allclose(image / point[2], moved, rtol=1e-5)
     ray = tuple(point / point[2])
-    np.testing.assert_allclose(image_normal(CORNER_LENS, tuple(normal), *ray), image)
+    np.testing.assert_allclose(projection.image_normal(CORNER_LENS, tuple(normal), *ray), image)
 
 
 @pytest.mark.parametrize("degrees", np.arange(-170.0, 181.0, 10.0))
 def test_a_channel_is_that_of_the_nearest_of_four_directions(degrees: float) -> None:
     normal = np.array([np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))])
-    assert edge_channel(*normal) == arrays.channels(normal[:, None])[0]
+    assert projection.edge_channel(*normal) == arrays.channels(normal[:, None])[0]
 
 
 @pytest.mark.parametrize(
@@ -69,7 +63,7 @@ def test_a_channel_is_that_of_the_nearest_of_four_directions(degrees: float) -> 
     ],
 )
 def test_pixels_in_the_image(u: float, v: float, inside: bool) -> None:
-    assert in_image(u, v, 64, 48) == inside
+    assert projection.in_image(u, v, 64, 48) == inside
 
 
 @pytest.mark.parametrize(
@@ -78,8 +72,8 @@ def test_pixels_in_the_image(u: float, v: float, inside: bool) -> None:
 def test_a_point_is_covered_by_what_was_measured_well_before_it(
     measured: float, covered: bool
 ) -> None:
-    assert is_covered(measured, 1.0, 0.05) == covered
+    assert projection.is_covered(measured, 1.0, 0.05) == covered
 
 
 def test_noise_grows_with_the_square_of_the_depth() -> None:
-    assert depth_noise(0.003, 0.0025, 2.0) == pytest.approx(0.013)
+    assert projection.depth_noise(0.003, 0.0025, 2.0) == pytest.approx(0.013)

@@ -11,20 +11,9 @@ import numpy as np
 from numba import njit
 
 from inhand_tracker.geometry.arrays import Array, Flags, Singles
+from inhand_tracker.sight.kernels import projection
 from inhand_tracker.sight.kernels.inputs import Outlines, ScoredPixels, Sensor
-from inhand_tracker.sight.kernels.projection import (
-    NEAREST,
-    Matrix,
-    depth_noise,
-    edge_channel,
-    image_normal,
-    in_image,
-    is_covered,
-    projected,
-    rotated,
-    rotation_matrix,
-    view_of_pose,
-)
+from inhand_tracker.sight.kernels.projection import Matrix
 
 
 class GatherSettings(NamedTuple):
@@ -73,8 +62,10 @@ def gather(
     for pose in range(len(translations)):
         place = translations[pose, 0], translations[pose, 1], translations[pose, 2]
         w, x, y, z = orientations[pose]
-        turn = rotation_matrix(w, x, y, z)
-        view = view_of_pose(outlines.grid, outlines.directions, turn, place[0], place[1], place[2])
+        turn = projection.rotation_matrix(w, x, y, z)
+        view = projection.view_of_pose(
+            outlines.grid, outlines.directions, turn, place[0], place[1], place[2]
+        )
         if settings.wanted[0] or settings.wanted[1]:
             _gather_outline(
                 (turn, place, view),
@@ -110,19 +101,15 @@ def _gather_outline(
     height, width = pixels.limbs.shape
     for point in range(outlines.points.shape[2]):
         a, b, c = outlines.points[view, :, point]
-        arm = rotated(turn, a, b, c)
-        px, py, pz = arm[0] + place[0], arm[1] + place[1], arm[2] + place[2]
+        arm, (px, py, pz), (u, v) = _placed(turn, place, (a, b, c), lens)
+        if not projection.in_image(u, v, width, height):
+            continue
         reach = _reach(arm, settings)
-        if pz < NEAREST:
-            continue
-        u, v = projected(lens, px, py, pz)
-        if not in_image(u, v, width, height):
-            continue
         margin = settings.sensor.covered_m + 2.0 * _noise(pz, settings.sensor) + reach
-        if is_covered(pixels.depth[int(v), int(u)], pz, margin):
+        if projection.is_covered(pixels.depth[int(v), int(u)], pz, margin):
             continue
         a, b, c = outlines.normals[view, :, point]
-        nx, ny = image_normal(lens, rotated(turn, a, b, c), px, py, pz)
+        nx, ny = projection.image_normal(lens, projection.rotated(turn, a, b, c), px, py, pz)
         length = np.sqrt(nx * nx + ny * ny)
         if length < 1e-9:
             continue
@@ -159,12 +146,12 @@ def _sample_across(
     u, v, nx, ny = line
     log_posterior, within, beside = buffers
     height, width = pixels.limbs.shape
-    channel = edge_channel(nx, ny)
+    channel = projection.edge_channel(nx, ny)
     for sample in range(2 * settings.samples + 1):
         away = (sample - settings.samples) * step
         within[sample] = beside[sample] = log_posterior[sample] = 0.0
         su, sv = u + away * nx, v + away * ny
-        if not in_image(su, sv, width, height):
+        if not projection.in_image(su, sv, width, height):
             continue
         column, row = int(su), int(sv)
         if settings.wanted[1] and -away < sides[0] and away < sides[1]:
@@ -218,14 +205,10 @@ def _gather_surface(
     height, width = pixels.limbs.shape
     for point in range(outlines.surface_points.shape[2]):
         a, b, c = outlines.surface_points[view, :, point]
-        arm = rotated(turn, a, b, c)
-        px, py, pz = arm[0] + place[0], arm[1] + place[1], arm[2] + place[2]
+        arm, (px, py, pz), (u, v) = _placed(turn, place, (a, b, c), lens)
+        if not projection.in_image(u, v, width, height):
+            continue
         reach = _reach(arm, settings)
-        if pz < NEAREST:
-            continue
-        u, v = projected(lens, px, py, pz)
-        if not in_image(u, v, width, height):
-            continue
         column, row = int(u), int(v)
         measured = pixels.depth[row, column]
         if measured <= 0.0:
@@ -243,7 +226,7 @@ def _gather_surface(
         if pixels.limbs[row, column]:
             other *= settings.limb_factor
         a, b, c = outlines.surface_normals[view, :, point]
-        across = rotated(turn, a, b, c)
+        across = projection.rotated(turn, a, b, c)
         # The measured point lies on the same ray, ``measured`` away.
         share = measured / pz - 1.0
         residual = share * (across[0] * px + across[1] * py + across[2] * pz)
@@ -259,6 +242,23 @@ def _corner_lens(lens: Singles) -> tuple[float, float, float, float]:
 
 
 @njit(cache=True, nogil=True, inline="always")
+def _placed(
+    turn: Matrix,
+    place: tuple[float, float, float],
+    point: tuple[float, float, float],
+    lens: tuple[float, float, float, float],
+) -> tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float]]:
+    """Return a point of the object from the object's origin, from the camera, and its pixel, which
+    is out of the image where the point is too near."""
+    arm = projection.rotated(turn, point[0], point[1], point[2])
+    x, y, z = arm[0] + place[0], arm[1] + place[1], arm[2] + place[2]
+    u, v = -1.0, -1.0
+    if z >= projection.NEAREST:
+        u, v = projection.projected(lens, x, y, z)
+    return arm, (x, y, z), (u, v)
+
+
+@njit(cache=True, nogil=True, inline="always")
 def _reach(arm: tuple[float, float, float], settings: GatherSettings) -> float:
     """Return how far a point may be off, in metres, at ``arm`` from the object's origin."""
     length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
@@ -267,7 +267,7 @@ def _reach(arm: tuple[float, float, float], settings: GatherSettings) -> float:
 
 @njit(cache=True, nogil=True, inline="always")
 def _noise(depth: float, sensor: Sensor) -> float:
-    return depth_noise(sensor.noise_m, sensor.noise_per_m, depth)
+    return projection.depth_noise(sensor.noise_m, sensor.noise_per_m, depth)
 
 
 @njit(cache=True, nogil=True, inline="always")
