@@ -18,7 +18,8 @@ from inhand_tracker.methods.darby2014.edges import chamfer_of
 from inhand_tracker.methods.darby2014.likelihood import Likelihood
 from inhand_tracker.methods.darby2014.particles import Particles
 from inhand_tracker.model.model import Model
-from inhand_tracker.shape.viewpoints import BOUNDARY_POINTS, Viewpoints, find_viewpoints
+from inhand_tracker.shape.parameters import DEFAULT_SHAPE
+from inhand_tracker.shape.viewpoints import Viewpoints, find_viewpoints
 from inhand_tracker.sight.frame import Region, prepare
 from inhand_tracker.sight.sight import Sight
 
@@ -92,7 +93,7 @@ def measure_tracker(
     edge_rate, naive_rate = DEFAULT.hypotheses / edges_s, DEFAULT.naive_hypotheses / naive_s
     return TrackerSpeed(
         edge_rate,
-        BOUNDARY_POINTS,
+        DEFAULT_SHAPE.boundary_points,
         1,
         DEFAULT.hypotheses / full_s,
         edge_rate / naive_rate,

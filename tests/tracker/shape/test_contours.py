@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 import trimesh
-from inhand_tracker.shape.contours import FARTHEST_M, Contours, find_contours
+from inhand_tracker.shape.contours import Contours, find_contours
 from inhand_tracker.shape.parallel_view import view_axes
+from inhand_tracker.shape.parameters import DEFAULT_SHAPE
 from inhand_tracker.shape.shape import ObjectShape
 
 TOWARDS_Z = np.array([[0.0, 0.0, 1.0]])
@@ -54,7 +55,7 @@ def test_how_far_the_silhouette_goes_on_inwards_and_the_gap_outwards_are_told() 
     contours = find_contours(ring(), TOWARDS_Z)
     outer = around(contours) > 0.08
     np.testing.assert_allclose(contours.inside[0], 0.04, atol=0.005)
-    np.testing.assert_allclose(contours.outside[0][outer], FARTHEST_M)
+    np.testing.assert_allclose(contours.outside[0][outer], DEFAULT_SHAPE.endless_m)
     np.testing.assert_allclose(contours.outside[0][~outer], 0.12, atol=0.01)
 
 

@@ -12,7 +12,7 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.model.model import Model
-from inhand_tracker.shape.viewpoints import VisiblePoints
+from inhand_tracker.shape.visible_points import VisiblePoints
 from inhand_tracker.sight.support import Support
 
 

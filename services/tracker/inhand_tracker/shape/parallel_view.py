@@ -10,8 +10,12 @@ from inhand_tracker.shape.shape import ObjectShape
 
 @dataclass(frozen=True)
 class ParallelView:
-    """``axes`` (3, 3) are rows right, down and forwards; the vertices are at ``pixels`` (N, 2),
-    ``scale`` to the metre, with ``depths`` (N,); ``low`` (2,) is where the margin ends."""
+    """A mesh as it is seen from far away: its vertices at ``pixels`` (N, 2), ``scale`` pixels to
+    the metre, with ``depths`` (N,).
+
+    The rows of ``axes`` (3, 3) are right, down and forwards; ``low`` (2,) in metres is where the
+    margin ends.
+    """
 
     axes: Array
     low: Array
@@ -21,8 +25,7 @@ class ParallelView:
     depths: Array
 
     def place(self, pixels: Array, surface: Array) -> Array:
-        """The points (B, 3) at pixels (B, 2) of a surface of depths (R, R), in the object's
-        frame."""
+        """Place pixels (B, 2) of a surface of depths (R, R) in the object's frame, (B, 3)."""
         column, row = np.rint(pixels).astype(int).T
         across = (pixels - self.margin) / self.scale + self.low
         placed: Array = np.column_stack((across, surface[row, column])) @ self.axes
@@ -30,7 +33,7 @@ class ParallelView:
 
 
 def view_along(shape: ObjectShape, direction: Array, raster: int, margin: int) -> ParallelView:
-    """A shape from ``direction`` (3,), unit, as large as a raster and its margin let it be."""
+    """See a shape from ``direction`` (3,), unit, as large as a raster and its margin let it be."""
     axes = view_axes(direction)
     seen = shape.vertices @ axes.T
     low, high = seen[:, :2].min(axis=0), seen[:, :2].max(axis=0)
@@ -39,7 +42,8 @@ def view_along(shape: ObjectShape, direction: Array, raster: int, margin: int) -
 
 
 def view_axes(direction: Array) -> Array:
-    """Rows: right, down and forwards of a viewer who looks at the object from ``direction``."""
+    """Return the axes (3, 3) of a viewer who looks at the object from ``direction``, by rows:
+    right, down and forwards."""
     helper = np.eye(3)[np.argmin(np.abs(direction))]
     right = np.cross(helper, -direction)
     right /= np.linalg.norm(right)
@@ -47,8 +51,7 @@ def view_axes(direction: Array) -> Array:
 
 
 def along_curve(column: Indices, row: Indices) -> Indices:
-    """The order of pixels (P,) along Morton's curve: neighbours on it are neighbours in the
-    raster."""
+    """Order pixels (P,) along Morton's curve: neighbours on it are neighbours in the raster."""
     place = np.zeros_like(column)
     for bit in range(max(int(column.max()), int(row.max())).bit_length()):
         place |= ((column >> bit) & 1) << (2 * bit) | ((row >> bit) & 1) << (2 * bit + 1)
@@ -56,5 +59,5 @@ def along_curve(column: Indices, row: Indices) -> Indices:
 
 
 def evenly(pixels: int, count: int) -> Indices:
-    """``count`` of so many pixels, at one step from each other."""
+    """Choose ``count`` of a number of ``pixels``, at one step from each other."""
     return ((np.arange(count) + 0.5) * pixels / count).astype(np.int64)

@@ -1,25 +1,17 @@
-"""Which of some directions is the nearest to a given one, by a look-up."""
+"""A grid of all directions that says which of a few may be nearest (``kernels/nearest_view``)."""
 
 from functools import lru_cache
 from itertools import product
-from typing import Any, TypeAlias
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
-from inhand_tracker.geometry.arrays import Array, Indices
-
-Real: TypeAlias = Any
-"""float32 or float64, or an array of it."""
-Candidates = NDArray[np.int16]
-
-CELLS = 48
+from inhand_tracker.shape.kernels.nearest_view import CELLS, Candidates
 
 
 def view_grid(directions: NDArray[np.floating]) -> Candidates:
-    """(6, CELLS, CELLS, C): which of the unit directions (V, 3) may be the nearest, -1 for none
-    more, in each cell of a grid on the six sides of a cube.
+    """Find which of the unit directions (V, 3) may be the nearest in each cell of a grid on the six
+    sides of a cube, (6, CELLS, CELLS, C); -1 for no more.
 
     What is nearest to the middle of a cell by more than the cell's width is nearest everywhere in
     it, so that C is small and the look-up is exact.
@@ -47,38 +39,3 @@ def _grid(directions: bytes, count: int) -> Candidates:
     cell, view = np.nonzero(possible)
     grid[cell, places[cell, view]] = view
     return grid.reshape(6, CELLS, CELLS, -1)
-
-
-@njit(cache=True, nogil=True)
-def nearest_views(grid: Candidates, directions: Array, towards_viewer: Array) -> Indices:
-    """The indices (P,) of the directions (V, 3) nearest to vectors (P, 3) of any length."""
-    views = np.empty(len(towards_viewer), np.int64)
-    for index in range(len(towards_viewer)):
-        x, y, z = towards_viewer[index]
-        views[index] = nearest_view(grid, directions, x, y, z)
-    return views
-
-
-@njit(cache=True, nogil=True, inline="always")
-def nearest_view(grid: Candidates, directions: Real, x: Real, y: Real, z: Real) -> int:
-    """The index of the direction nearest to (x, y, z), of any length but zero."""
-    ax, ay, az = abs(x), abs(y), abs(z)
-    if ax >= ay and ax >= az:
-        side, scale, first, second = (1 if x > 0.0 else 0), ax, y, z
-    elif ay >= az:
-        side, scale, first, second = (3 if y > 0.0 else 2), ay, z, x
-    else:
-        side, scale, first, second = (5 if z > 0.0 else 4), az, x, y
-    half = np.float32(0.5 * CELLS)
-    scale = max(scale, np.float32(1e-12))
-    row = min(int((first / scale + np.float32(1.0)) * half), CELLS - 1)
-    column = min(int((second / scale + np.float32(1.0)) * half), CELLS - 1)
-    best, most = 0, np.float32(-1e30)
-    for place in range(grid.shape[3]):
-        view = grid[side, row, column, place]
-        if view < 0:
-            break
-        agreement = directions[view, 0] * x + directions[view, 1] * y + directions[view, 2] * z
-        if agreement > most:
-            best, most = view, agreement
-    return best

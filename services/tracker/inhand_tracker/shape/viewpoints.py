@@ -1,8 +1,8 @@
 """Visible boundaries and surfaces of an object, precomputed for directions all around it.
 
-What is seen of an object hardly depends on more than the direction that it is seen from. So its
-points are found once a direction, and a hypothesis costs a look-up and some projections (the
-sparse viewpoint model of contour trackers, Stoiber et al. 2020).
+What is seen of an object depends on little more than the direction that it is seen from. So its
+points are found once for each direction, and a hypothesis costs a look-up and some projections
+(the sparse viewpoint model of contour trackers, Stoiber et al. 2020).
 """
 
 from dataclasses import dataclass
@@ -11,28 +11,22 @@ import cv2
 import numpy as np
 import trimesh
 
-from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.shape.contours import Contours, find_contours
 from inhand_tracker.shape.parallel_view import ParallelView, along_curve, evenly, view_along
+from inhand_tracker.shape.parameters import DEFAULT_SHAPE, ShapeParameters
 from inhand_tracker.shape.raster import nearest_depths
 from inhand_tracker.shape.shape import ObjectShape
-from inhand_tracker.shape.view_grid import nearest_views, view_grid
-
-SUBDIVISIONS = 3
-BOUNDARY_POINTS = 50
-SURFACE_POINTS = 50
-RASTER = 160
-MARGIN = 4
 
 
 @dataclass(frozen=True)
 class Viewpoints:
-    """``directions`` (V, 3), unit, from the object to the viewer, in the object's frame.
+    """An object's points as they are seen from ``directions`` (V, 3), unit, from the object to the
+    viewer, all in the object's frame.
 
-    ``boundaries`` (V, B, 3): equally spaced points of the visible boundary in the object's frame.
-    ``surfaces`` (V, S, 3): evenly spaced points of the surface that is seen (what faces away or is
-    hidden is left out); ``contours`` are for ``sight``. Both are None in models of older releases.
+    ``boundaries`` (V, B, 3) are equally spaced points of the visible boundary, ``surfaces``
+    (V, S, 3) evenly spaced points of the visible surface (what faces away or is hidden is left
+    out); ``contours`` are for ``sight``. Both are None in models of older releases.
     """
 
     directions: Array
@@ -41,41 +35,26 @@ class Viewpoints:
     contours: Contours | None = None
 
 
-def find_viewpoints(shape: ObjectShape) -> Viewpoints:
-    """The boundaries and surfaces of a shape from 642 directions."""
-    directions = np.asarray(trimesh.creation.icosphere(SUBDIVISIONS).vertices, float)
+def find_viewpoints(shape: ObjectShape, parameters: ShapeParameters = DEFAULT_SHAPE) -> Viewpoints:
+    """Find the boundaries, surfaces and contours of a shape from directions all around it."""
+    sphere = trimesh.creation.icosphere(parameters.subdivisions)
+    directions = np.asarray(sphere.vertices, float)
     directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    views = [_see(shape, direction) for direction in directions]
+    views = [_see(shape, direction, parameters) for direction in directions]
     return Viewpoints(
         directions,
-        np.array([_boundary(shape, view) for view in views]),
-        np.array([_surface(view) for view in views]),
-        find_contours(shape, directions),
+        np.array([_boundary(shape, view, parameters.boundary_points) for view in views]),
+        np.array([_surface(view, parameters.surface_points) for view in views]),
+        find_contours(shape, directions, parameters),
     )
 
 
-def find_surfaces(shape: ObjectShape, directions: Array) -> Array:
-    """``Viewpoints.surfaces`` for given directions (V, 3)."""
-    return np.array([_surface(_see(shape, direction)) for direction in directions])
-
-
-class VisiblePoints:
-    """The points that are seen of many hypotheses at once.
-
-    ``directions`` (V, 3) are those of ``Viewpoints``, ``points`` (V, B, 3) one of its arrays.
-    """
-
-    def __init__(self, directions: Array, points: Array) -> None:
-        self._points = points
-        self._directions = np.ascontiguousarray(directions)
-        self._grid = view_grid(directions)
-
-    def place(self, translations: Array, orientations: Array) -> Array:
-        """Points (P, B, 3) in the camera frame of object poses (P, 3) and (P, 4)."""
-        towards_viewer = rotations.rotate(rotations.conjugate(orientations), -translations)
-        views = nearest_views(self._grid, self._directions, towards_viewer)
-        turns = np.swapaxes(rotations.to_matrix(orientations), -1, -2)
-        return self._points[views] @ turns + translations[:, None, :]
+def find_surfaces(
+    shape: ObjectShape, directions: Array, parameters: ShapeParameters = DEFAULT_SHAPE
+) -> Array:
+    """Find ``Viewpoints.surfaces`` for given directions (V, 3)."""
+    views = [_see(shape, direction, parameters) for direction in directions]
+    return np.array([_surface(view, parameters.surface_points) for view in views])
 
 
 @dataclass(frozen=True)
@@ -88,38 +67,40 @@ class _Seen:
     surface: Array
 
 
-def _see(shape: ObjectShape, direction: Array) -> _Seen:
-    view = view_along(shape, direction, RASTER, MARGIN)
-    depths = nearest_depths(view.pixels, view.depths, shape.faces, RASTER)
+def _see(shape: ObjectShape, direction: Array, parameters: ShapeParameters) -> _Seen:
+    raster = parameters.boundary_raster
+    view = view_along(shape, direction, raster, parameters.boundary_margin)
+    depths = nearest_depths(view.pixels, view.depths, shape.faces, raster)
     # A point between two pixels of the boundary may round to one beside it.
     beside = np.asarray(cv2.erode(depths, np.ones((3, 3))), np.float64)
     return _Seen(view, depths, np.where(np.isfinite(depths), depths, beside))
 
 
-def _boundary(shape: ObjectShape, seen: _Seen) -> Array:
-    """Equally spaced boundary points (B, 3)."""
+def _boundary(shape: ObjectShape, seen: _Seen, count: int) -> Array:
+    """Find ``count`` equally spaced boundary points (B, 3)."""
     mask = np.isfinite(seen.depths).astype(np.uint8)
     contours, _ = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     around = [contour[:, 0, :].astype(float) for contour in contours]
     if all(len(contour) == 1 for contour in around):
-        return np.repeat(shape.vertices.mean(axis=0)[None], BOUNDARY_POINTS, axis=0)
-    return seen.view.place(_equally_spaced(around), seen.surface)
+        return np.repeat(shape.vertices.mean(axis=0)[None], count, axis=0)
+    return seen.view.place(_equally_spaced(around, count), seen.surface)
 
 
-def _surface(seen: _Seen) -> Array:
-    """Evenly spaced points (S, 3) of what is seen: steps along a curve that fills the raster."""
+def _surface(seen: _Seen, count: int) -> Array:
+    """Find ``count`` evenly spaced points (S, 3) of what is seen: steps along a curve that fills
+    the raster."""
     row, column = np.nonzero(np.isfinite(seen.depths))
     along = along_curve(column, row)
-    chosen = along[evenly(len(along), SURFACE_POINTS)]
+    chosen = along[evenly(len(along), count)]
     pixels = np.column_stack((column, row))[chosen].astype(float)
     return seen.view.place(pixels, seen.surface)
 
 
-def _equally_spaced(contours: list[Array]) -> Array:
-    """BOUNDARY_POINTS points along closed contours, at one spacing over all of them."""
+def _equally_spaced(contours: list[Array], count: int) -> Array:
+    """Find ``count`` points along closed contours, at one spacing over all of them."""
     segments = [np.linalg.norm(np.roll(c, -1, axis=0) - c, axis=1) for c in contours]
     lengths = np.array([segment.sum() for segment in segments])
-    positions = (np.arange(BOUNDARY_POINTS) + 0.5) * lengths.sum() / BOUNDARY_POINTS
+    positions = (np.arange(count) + 0.5) * lengths.sum() / count
     starts = np.concatenate(([0.0], np.cumsum(lengths)))
     chosen = []
     for contour, segment, start, end in zip(

@@ -12,7 +12,8 @@ from inhand_tracker.methods.darby2014.depths import depth_log_weights, surfaces_
 from inhand_tracker.methods.darby2014.edges import chamfer_of, weigh_by_edges
 from inhand_tracker.model.model import Model
 from inhand_tracker.shape.view_grid import view_grid
-from inhand_tracker.shape.viewpoints import Viewpoints, VisiblePoints, find_surfaces
+from inhand_tracker.shape.viewpoints import Viewpoints, find_surfaces
+from inhand_tracker.shape.visible_points import VisiblePoints
 
 Term = Literal["edges", "depth"]
 

@@ -32,7 +32,7 @@ from inhand_tracker.recognition.darby2012.parameters import DEFAULT_DARBY2012, D
 from inhand_tracker.recognition.object_recogniser import ObjectRecogniser
 from inhand_tracker.recognition.recogniser import Recogniser
 from inhand_tracker.recognition.recognition import Recognition, outline_boxes, recognised_action
-from inhand_tracker.shape.viewpoints import VisiblePoints
+from inhand_tracker.shape.visible_points import VisiblePoints
 
 
 class Cascade2012(ObjectRecogniser):

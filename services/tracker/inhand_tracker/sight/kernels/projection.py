@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from inhand_tracker.geometry.camera import NEAREST_M
-from inhand_tracker.shape.view_grid import nearest_view
+from inhand_tracker.shape.kernels.nearest_view import nearest_view
 
 Real: TypeAlias = Any
 """float32 or float64, as the caller has it; or an array of it."""
