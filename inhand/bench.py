@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from inhand_lab.benchmarks.ablation import Worth, ablate, varied
+from inhand_lab.benchmarks.constants import ConstantCheck, check_constants
 from inhand_lab.benchmarks.likelihood_check import ObjectCheck, check_likelihood
 from inhand_lab.benchmarks.parameters import DEFAULT_TRAINING_COST
 from inhand_lab.benchmarks.tracker_speed import TrackerSpeed, measure_tracker
@@ -34,7 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         type=Path,
         metavar="SOURCE",
-        help="for likelihood: a folder of YCB-Video, or of an excerpt; for ablation: a dataset",
+        help="for likelihood: a folder of YCB-Video, or of an excerpt; for ablation and "
+        "constants: a dataset",
     )
     parser.add_argument(
         "--vary",
@@ -51,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Measure and show the table; raises InhandError."""
     if (arguments.subject in MEASURED_ON) != (arguments.source is not None):
         raise SettingsError(
-            f"{' and '.join(MEASURED_ON)}, and nothing else, are measured on a SOURCE: name it"
+            f"{', '.join(MEASURED_ON)}, and nothing else, are measured on a SOURCE: name it"
         )
     if arguments.vary and arguments.subject != "ablation":
         raise SettingsError("--vary is for ablation, and for nothing else: leave it out")
@@ -181,6 +183,36 @@ def _ablation(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, 
     return ablation_table(worths), {"variants": [_ablation_row(worth) for worth in worths]}
 
 
+def constants_table(checks: Sequence[ConstantCheck]) -> Table:
+    """A row a number, and how many times the usual error that errs which is halved or doubled."""
+    table = Table(
+        "number",
+        "usual",
+        "lower",
+        "ratio",
+        "higher",
+        "ratio",
+        title="fusion's numbers, each changed by itself: vertex error, times the usual one",
+    )
+    for check in checks:
+        table.add_row(
+            check.name,
+            f"{check.usual:g}",
+            f"{check.lower:g}",
+            f"{check.lower_ratio:.3f}",
+            f"{check.higher:g}",
+            f"{check.higher_ratio:.3f}",
+        )
+    return table
+
+
+def _constants(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    dataset = load_dataset(arguments.source)
+    with progress_bar("evaluating", len(leave_one_out(dataset))) as advance:
+        checks = check_constants(dataset, usable_cores(), advance)
+    return constants_table(checks), {"numbers": [asdict(check) for check in checks]}
+
+
 def _ablation_row(worth: Worth) -> dict[str, Any]:
     variant = worth.variant
     instead = {"instead": variant.instead} if variant.instead else {}
@@ -214,10 +246,11 @@ _TRAINING_ROWS: dict[str, Callable[[TrainingCost], float]] = {
     "linear search, ms, p50": lambda cost: cost.asking.linear_ms,
 }
 
-MEASURED_ON = ("likelihood", "ablation")
+MEASURED_ON = ("likelihood", "ablation", "constants")
 
 SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "ablation": _ablation,
+    "constants": _constants,
     "likelihood": _likelihood,
     "tracker": _tracker,
     "training": _training,
