@@ -21,9 +21,16 @@ def performed(
     interaction: str, participant: int
 ) -> tuple[SimulatedPerson, Performance, BodyMotion]:
     """12 s of an interaction at 15 Hz, in the person's world."""
-    person = sample_person(SEED, participant)
-    times = np.arange(0.0, 12.0, 1.0 / FRAME_RATE)
-    random = np.random.default_rng([SEED, participant])
+    return perform(interaction, participant, SEED, FRAME_RATE)
+
+
+def perform(
+    interaction: str, participant: int, seed: int, frame_rate: float
+) -> tuple[SimulatedPerson, Performance, BodyMotion]:
+    """12 s of an interaction at some frame rate, in the world of a seed's person."""
+    person = sample_person(seed, participant)
+    times = np.arange(0.0, 12.0, 1.0 / frame_rate)
+    random = np.random.default_rng([seed, participant])
     performance = INTERACTIONS[interaction].perform(person, times, random)
     posture, right, left = performance.posture, performance.right_hand, performance.left_hand
     return person, performance, place_body(person, posture, right, left)

@@ -69,15 +69,7 @@ def drive(
         joints = (joints * MIRROR)[:, MIRRORED_JOINTS]
     person = _person_of(joints, recorded, seed)
     times = np.arange(len(joints)) / recorded.frame_rate
-    random = np.random.default_rng(
-        [
-            PEOPLE_VERSION,
-            seed,
-            recorded.participant,
-            recorded.recording,
-            zlib.crc32(interaction.encode()),
-        ]
-    )
+    random = _random_stream_of(recorded, interaction, seed)
     hold = rehearse(interaction, sample_person(seed, recorded.participant), seed)
     seen = seen_frames(joints, recorded.frame_rate)
     body = _turn_unseen(joints, seen, hold.right_wrist, hold.left_wrist, times, random)
@@ -100,6 +92,13 @@ def drive(
         camera_from_world=camera_from_world,
         facing=facing_of(camera_from_world),
     )
+
+
+def _random_stream_of(recorded: RecordedBody, interaction: str, seed: int) -> np.random.Generator:
+    """A stream of its own for every take and interaction."""
+    take = recorded.participant, recorded.recording
+    named = zlib.crc32(interaction.encode())
+    return np.random.default_rng([PEOPLE_VERSION, seed, *take, named])
 
 
 def _world_of(joints: Array) -> Transform:

@@ -52,14 +52,6 @@ def camera() -> ObjectModel:
     glass = _lens(LENS_RADIUS - 0.007, deep + LENS_LENGTH - 0.004, deep + LENS_LENGTH + 0.001)
     screen = creation.box(extents=(0.075, 0.003, 0.050))
     screen.apply_translation([0.0, -deep - 0.0005, -0.006])
-    marks = [
-        *((x * wide, 0.55 * deep, z * high) for x in (-1.0, 1.0) for z in (-1.0, 1.0)),
-        (0.018, -0.8 * deep, high + 0.022),
-        (-0.018, -0.8 * deep, high + 0.022),
-        (LENS_RADIUS, deep + LENS_LENGTH, 0.0),
-        (-LENS_RADIUS, deep + LENS_LENGTH, 0.0),
-        (0.0, deep + LENS_LENGTH, -LENS_RADIUS),
-    ]
     parts = [
         (body, BODY_COLOUR),
         (finder, BODY_COLOUR),
@@ -67,7 +59,7 @@ def camera() -> ObjectModel:
         (glass, GLASS_COLOUR),
         (screen, SCREEN_COLOUR),
     ]
-    return build_model("camera", parts, marks)
+    return build_model("camera", parts, _marks(wide, deep, high))
 
 
 def _lens(radius: float, back: float, front: float) -> trimesh.Trimesh:
@@ -76,3 +68,15 @@ def _lens(radius: float, back: float, front: float) -> trimesh.Trimesh:
     cylinder.apply_transform(FORWARD)
     cylinder.apply_translation([0.0, 0.5 * (front + back), 0.0])
     return cylinder
+
+
+def _marks(wide: float, deep: float, high: float) -> list[tuple[float, float, float]]:
+    """Corners of the front, top of the finder and edge of the lens, by the body's half sizes."""
+    return [
+        *((x * wide, 0.55 * deep, z * high) for x in (-1.0, 1.0) for z in (-1.0, 1.0)),
+        (0.018, -0.8 * deep, high + 0.022),
+        (-0.018, -0.8 * deep, high + 0.022),
+        (LENS_RADIUS, deep + LENS_LENGTH, 0.0),
+        (-LENS_RADIUS, deep + LENS_LENGTH, 0.0),
+        (0.0, deep + LENS_LENGTH, -LENS_RADIUS),
+    ]

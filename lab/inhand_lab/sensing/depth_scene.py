@@ -12,7 +12,8 @@ import numba
 import numpy as np
 from inhand_tracker.geometry.arrays import Bytes, Singles
 
-from inhand_lab.sensing.noise_fields import FIELD, Place
+from inhand_lab.sensing.noise_fields import FIELD, NoiseFields, Place, noise_fields
+from inhand_lab.sensing.noise_parameters import StereoNoise, StructuredLightNoise
 
 
 class DepthScene(NamedTuple):
@@ -31,6 +32,17 @@ class DepthScene(NamedTuple):
     unseen: int
     lasting: Place
     fresh: Place
+
+
+def fields_for(noise: StructuredLightNoise | StereoNoise) -> NoiseFields:
+    """Fields of noise of a depth sensor's sizes."""
+    return noise_fields(noise.grain, noise.lateral_deviation, noise.patch)
+
+
+@numba.njit(cache=True, nogil=True)
+def steps_at_one_metre(noise):  # type: ignore[no-untyped-def]
+    """Disparity of what is one metre away, in steps."""
+    return np.float32(noise.focal_length * noise.baseline * noise.steps_per_pixel)
 
 
 @numba.njit(cache=True, nogil=True)

@@ -12,7 +12,7 @@ from inhand_tracker.geometry.arrays import Array, Indices
 
 from inhand_lab.geometry.transforms import turn_points
 from inhand_lab.sensing.skeleton_errors import HANDS
-from inhand_lab.sensing.skeleton_noise_parameters import ErrorEpisodes
+from inhand_lab.sensing.skeleton_noise_parameters import EpisodeNoise
 
 FEET = (Joint.FOOT_LEFT, Joint.FOOT_RIGHT)
 MOST_CHANCE = 0.5
@@ -20,7 +20,7 @@ MOST_CHANCE = 0.5
 
 
 def misread_ends(
-    random: np.random.Generator, joints: Array, frame_rate: float, noise: ErrorEpisodes
+    random: np.random.Generator, joints: Array, frame_rate: float, noise: EpisodeNoise
 ) -> Array:
     """Joints (T, 20, 3) with hands and feet that are now and then turned or cut short."""
     misread = joints.copy()
@@ -39,11 +39,7 @@ def misread_ends(
 
 
 def flip_hands(
-    random: np.random.Generator,
-    joints: Array,
-    speed: Array,
-    frame_rate: float,
-    noise: ErrorEpisodes,
+    random: np.random.Generator, joints: Array, speed: Array, frame_rate: float, noise: EpisodeNoise
 ) -> Array:
     """Joints (T, 20, 3) with hands that now and then point back along the forearm."""
     flipped = joints.copy()
@@ -56,11 +52,7 @@ def flip_hands(
 
 
 def lose_wrists(
-    random: np.random.Generator,
-    joints: Array,
-    speed: Array,
-    frame_rate: float,
-    noise: ErrorEpisodes,
+    random: np.random.Generator, joints: Array, speed: Array, frame_rate: float, noise: EpisodeNoise
 ) -> Array:
     """Joints (T, 20, 3) with fast wrists that stay behind or leave the arm, hands with them."""
     lost = joints.copy()

@@ -107,7 +107,7 @@ class EndMisreadings:
 
 
 @dataclass(frozen=True)
-class ErrorEpisodes:
+class EpisodeNoise:
     """Errors that begin and end: ends misread, hands flipped, wrists lost."""
 
     hand: EndMisreadings = EndMisreadings(rate=5.3, turn=0.08, stretch=0.38)
@@ -191,6 +191,6 @@ class SkeletonNoise:
 
     mistakes: PoseMistakes = PoseMistakes()
     wandering: WanderingErrors = WanderingErrors()
-    episodes: ErrorEpisodes = ErrorEpisodes()
+    episodes: EpisodeNoise = EpisodeNoise()
     reading: SkeletonReadingNoise = SkeletonReadingNoise()
     filter: SkeletonFilter = SkeletonFilter()

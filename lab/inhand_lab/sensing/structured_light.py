@@ -16,17 +16,23 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from inhand_lab.sensing.depth_scene import DepthScene, displaced, looked_up, mixed, steepest
-from inhand_lab.sensing.noise_fields import noise_fields
+from inhand_lab.sensing.depth_scene import (
+    DepthScene,
+    displaced,
+    fields_for,
+    looked_up,
+    mixed,
+    steepest,
+    steps_at_one_metre,
+)
 from inhand_lab.sensing.noise_parameters import StructuredLightNoise
 
 
 def measure_structured_light_depth(
     scene: DepthScene, noise: StructuredLightNoise
 ) -> NDArray[np.uint16]:
-    """Measure depth (H, W) in millimetres, 0 where nothing was measured."""
-    fields = noise_fields(noise.grain, noise.lateral_deviation, noise.patch)
-    return np.asarray(_measure(scene, fields, noise))
+    """Measure a projector's depth (H, W), millimetres, 0 where nothing was measured."""
+    return np.asarray(_measure(scene, fields_for(noise), noise))
 
 
 @numba.njit(cache=True, nogil=True)
@@ -34,7 +40,7 @@ def _measure(scene, fields, noise):  # type: ignore[no-untyped-def]
     inverse_depth = scene.inverse_depth
     height, width = inverse_depth.shape
     depth = np.zeros((height, width), np.uint16)
-    steps = np.float32(noise.focal_length * noise.baseline * noise.steps_per_pixel)
+    steps = steps_at_one_metre(noise)
     parallax = np.float32(scene.focal * noise.baseline)
     for v in range(height):
         lit_from = np.float32(1e9)

@@ -199,13 +199,7 @@ def simulate(
         return random_stream(seed, participant, interaction, purpose, *more)
 
     person = sample_person(seed, participant)
-    seconds = max(USUAL_SECONDS, frames / camera.frame_rate)
-    times = np.arange(round(seconds * camera.frame_rate)) / camera.frame_rate
-    done = INTERACTIONS[interaction].perform(person, times, stream("motion", performance))
-    body = place_body(person, done.posture, done.right_hand, done.left_hand)
-    enacted = Enactment(body, done.world_from_object, done.contact, done.furniture)[:frames]
-    if person.handedness == "left":
-        enacted = enacted.mirrored()
+    enacted = _enact(interaction, person, stream("motion", performance), frames, camera.frame_rate)
     facing, camera_from_world = place_camera(person, camera.intrinsics, stream("camera"))
     body_in_camera = enacted.body.seen_from(camera_from_world)
     return Simulation(
@@ -226,3 +220,19 @@ def simulate(
         facing=facing,
         furniture=enacted.furniture,
     )
+
+
+def _enact(
+    interaction: str,
+    person: SimulatedPerson,
+    random: np.random.Generator,
+    frames: int,
+    frame_rate: float,
+) -> Enactment:
+    """The first frames of a performance, mirrored for a left-handed person."""
+    seconds = max(USUAL_SECONDS, frames / frame_rate)
+    times = np.arange(round(seconds * frame_rate)) / frame_rate
+    done = INTERACTIONS[interaction].perform(person, times, random)
+    body = place_body(person, done.posture, done.right_hand, done.left_hand)
+    enacted = Enactment(body, done.world_from_object, done.contact, done.furniture)[:frames]
+    return enacted.mirrored() if person.handedness == "left" else enacted

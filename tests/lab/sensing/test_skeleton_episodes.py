@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inhand_lab.sensing.skeleton_episodes import flip_hands, lose_wrists, misread_ends
-from inhand_lab.sensing.skeleton_noise_parameters import ErrorEpisodes
+from inhand_lab.sensing.skeleton_noise_parameters import EpisodeNoise
 from inhand_schemas.joints import PARENTS, Joint
 
 FRAME_RATE, FRAMES = 30.0, 3000
 JOINTS = np.repeat(np.random.default_rng(0).uniform(-0.8, 0.8, (1, 20, 3)), FRAMES, axis=0)
-NOISE = ErrorEpisodes()
+NOISE = EpisodeNoise()
 
 
 def test_a_flipped_hand_points_back_along_the_forearm_as_often_as_is_set() -> None:

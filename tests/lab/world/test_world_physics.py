@@ -5,12 +5,11 @@ import pytest
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.motions.performance import Performance
 from inhand_lab.people.body_motion import BodyMotion
-from inhand_lab.people.kinematics import place_body
-from inhand_lab.people.person import SimulatedPerson, sample_person
+from inhand_lab.people.person import SimulatedPerson
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import simulate
 from inhand_schemas.joints import Joint
-from performers import angles_at
+from performers import angles_at, perform
 from silhouettes import silhouette
 from solids import (
     depth_in_limbs,
@@ -45,23 +44,12 @@ crowds = pytest.mark.parametrize(
 interactions = pytest.mark.parametrize("interaction", INTERACTIONS)
 
 
-def performed(
-    interaction: str, participant: int
-) -> tuple[SimulatedPerson, Performance, BodyMotion]:
-    """12 s of an interaction at 30 Hz, in the person's world."""
-    person = sample_person(SEED, participant)
-    times = np.arange(0.0, 12.0, 1.0 / FRAME_RATE)
-    random = np.random.default_rng([SEED, participant])
-    done = INTERACTIONS[interaction].perform(person, times, random)
-    return person, done, place_body(person, done.posture, done.right_hand, done.left_hand)
-
-
 @crowds
 @interactions
 def test_the_world_keeps_its_laws(interaction: str, participants: range) -> None:
     broken = []
     for participant in participants:
-        person, performance, body = performed(interaction, participant)
+        person, performance, body = perform(interaction, participant, SEED, FRAME_RATE)
         sampled = slice(None, None, EVERY)
         placed_object = performance.world_from_object[sampled]
         broken += [
