@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from inhand_schemas.joints import MIRRORED_JOINTS, Joint
+from inhand_schemas.joints import Joint
+from inhand_tracker.body.skeleton import mirror_joints
 from inhand_tracker.geometry.arrays import Array, Bytes
 
 from inhand_lab.driven.denoising import bone_lengths, denoise
@@ -21,7 +22,6 @@ from inhand_lab.driven.holds import attach, rehearse
 from inhand_lab.driven.parameters import DEFAULT_HOLD
 from inhand_lab.driven.seen_frames import SeenFrames, seen_frames
 from inhand_lab.geometry.transforms import (
-    MIRROR,
     Transform,
     normalised,
     rotation_about,
@@ -66,7 +66,7 @@ def drive(
     joints = camera_from_world.inverse().apply(camera_joints)
     left_handed = recorded.handedness == "left"
     if left_handed:
-        joints = (joints * MIRROR)[:, MIRRORED_JOINTS]
+        joints = mirror_joints(joints)
     person = _person_of(joints, recorded, seed)
     times = np.arange(len(joints)) / recorded.frame_rate
     random = _random_stream_of(recorded, interaction, seed)

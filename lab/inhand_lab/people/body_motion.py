@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from inhand_schemas.joints import MIRRORED_JOINTS
+from inhand_tracker.body.skeleton import mirror_joints
 from inhand_tracker.geometry.arrays import Array
 
-from inhand_lab.geometry.transforms import MIRROR, Transform
+from inhand_lab.geometry.transforms import Transform
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class BodyMotion:
     def mirrored(self) -> BodyMotion:
         """The same movement by the other hand."""
         return BodyMotion(
-            (self.joints * MIRROR)[:, MIRRORED_JOINTS],
+            mirror_joints(self.joints),
             self.from_pelvis.mirrored(),
             self.from_chest.mirrored(),
             self.from_head.mirrored(),

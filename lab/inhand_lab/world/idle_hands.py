@@ -14,6 +14,7 @@ from inhand_lab.motions.timeline import Key, drift, move_through
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.kinematics import Trunk, place_body, place_trunk
 from inhand_lab.people.person import SimulatedPerson
+from inhand_lab.world.parameters import DEFAULT_IDLE_HANDS
 
 GESTURES = {
     "hips": ((0.20, 0.03, -0.38), (-0.6, 0.3, -0.7)),
@@ -25,18 +26,6 @@ GESTURES = {
 }
 """Where a right hand goes, in the chest's frame of a person of 1.75 m, metres, and where its
 fingers point. A gesture is of one hand or of both."""
-BOTH_HANDS = 0.4
-"""Share of gestures that are of both hands."""
-GESTURE_SECONDS, HANGING_SECONDS = (1.0, 4.0), (1.0, 5.0)
-"""Ranges of the times for which a gesture lasts and hands hang, seconds."""
-WAY_SECONDS = 0.7
-"""Time that a hand takes to a gesture and back, seconds."""
-FIDGET_LOW, FIDGET_HIGH = (-0.30, -0.10, -0.60), (0.60, 0.55, 0.55)
-"""Corners between which, as in GESTURES, the right hand of somebody who fidgets goes."""
-FIDGET_SECONDS, FIDGET_WAY_SECONDS = (0.0, 1.5), (0.3, 1.2)
-"""Ranges of the times for which a fidgeting hand rests and is on its way, seconds."""
-FIDGETS = 6
-"""Number of places that a fidgeting hand goes to before it hangs again, at most."""
 
 Keys = tuple[list[Key], list[Key]]
 """Where the right and the left hand are at some times."""
@@ -91,43 +80,44 @@ def still_hands(standing: Standing, _: np.random.Generator) -> Keys:
 
 def gesturing_hands(standing: Standing, random: np.random.Generator) -> Keys:
     """One or both hands make one gesture after the other."""
-    times, hanging = standing.times, standing.hanging
+    usual, times, hanging = DEFAULT_IDLE_HANDS, standing.times, standing.hanging
     keys = still_hands(standing, random)
-    now = float(random.uniform(*HANGING_SECONDS))
+    now = float(random.uniform(*usual.hanging_s))
     while now < times[-1]:
         place, fingers = GESTURES[str(random.choice(list(GESTURES)))]
-        lasts = float(random.uniform(*GESTURE_SECONDS))
-        both, side = random.random() < BOTH_HANDS, int(random.integers(2))
+        lasts = float(random.uniform(*usual.gesture_s))
+        both, side = random.random() < usual.both_hands, int(random.integers(2))
         for hand in (0, 1):
             if both or hand == side:
                 pose = standing.hand_at(np.array(place), np.array(fingers), hand)
                 keys[hand].extend(
                     [
                         Key(now, hanging[hand]),
-                        Key(now + WAY_SECONDS, pose),
-                        Key(now + WAY_SECONDS + lasts, pose),
-                        Key(now + 2.0 * WAY_SECONDS + lasts, hanging[hand]),
+                        Key(now + usual.way_s, pose),
+                        Key(now + usual.way_s + lasts, pose),
+                        Key(now + 2.0 * usual.way_s + lasts, hanging[hand]),
                     ]
                 )
-        now += 2.0 * WAY_SECONDS + lasts + float(random.uniform(*HANGING_SECONDS))
+        now += 2.0 * usual.way_s + lasts + float(random.uniform(*usual.hanging_s))
     return keys
 
 
 def fidgeting_hands(standing: Standing, random: np.random.Generator) -> Keys:
     """Each hand goes anywhere by itself, and hangs in between."""
+    usual = DEFAULT_IDLE_HANDS
     keys: Keys = ([], [])
     for hand, hanging in enumerate(standing.hanging):
-        now = float(random.uniform(*HANGING_SECONDS))
+        now = float(random.uniform(*usual.hanging_s))
         keys[hand].append(Key(now, hanging))
         while now < standing.times[-1]:
-            for _ in range(int(random.integers(1, FIDGETS + 1))):
-                place = random.uniform(FIDGET_LOW, FIDGET_HIGH)
+            for _ in range(int(random.integers(1, usual.fidgets + 1))):
+                place = random.uniform(usual.fidget_low, usual.fidget_high)
                 pose = standing.hand_at(place, random.normal(size=3), hand)
-                reached = now + float(random.uniform(*FIDGET_WAY_SECONDS))
-                now = reached + float(random.uniform(*FIDGET_SECONDS))
+                reached = now + float(random.uniform(*usual.fidget_way_s))
+                now = reached + float(random.uniform(*usual.fidget_s))
                 keys[hand].extend([Key(reached, pose), Key(now, pose)])
-            now += WAY_SECONDS
+            now += usual.way_s
             keys[hand].append(Key(now, hanging))
-            now += float(random.uniform(*HANGING_SECONDS))
+            now += float(random.uniform(*usual.hanging_s))
             keys[hand].append(Key(now, hanging))
     return keys

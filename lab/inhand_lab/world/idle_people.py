@@ -26,6 +26,7 @@ from inhand_lab.world.idle_hands import (
     still_hands,
 )
 from inhand_lab.world.interactions import INTERACTIONS
+from inhand_lab.world.parameters import IDLE_CAMERA_PLACING
 from inhand_lab.world.simulation import Simulation
 from inhand_lab.world.viewpoint import facing_of, looking
 from inhand_lab.world.walking import walk
@@ -43,10 +44,6 @@ CIRCLE = 0.9
 """Radius of the way of who walks about, metres."""
 SPACE_TO_WALK = 0.5
 """Distance by which the wall is farther back in a room to walk about in, metres."""
-IDLE_CAMERA_HEIGHT, IDLE_CAMERA_DISTANCE = (1.0, 1.4), (2.9, 3.6)
-"""Ranges of the camera's height and distance, metres."""
-IDLE_CAMERA_ASIDE = 0.5
-"""Angle by which the camera is aside of what people face, at the most, radians."""
 UNUSED = INTERACTIONS["drinkFromMug"]
 """A simulation has an object: that of these people is behind the camera."""
 
@@ -98,8 +95,9 @@ def simulate_idle(
 
 def _place_camera(random: np.random.Generator) -> Transform:
     """camera_from_world of a camera that looks at the world's origin."""
-    aside = random.uniform(-IDLE_CAMERA_ASIDE, IDLE_CAMERA_ASIDE)
-    distance = random.uniform(*IDLE_CAMERA_DISTANCE)
-    height = random.uniform(*IDLE_CAMERA_HEIGHT)
+    placing = IDLE_CAMERA_PLACING
+    aside = random.uniform(-placing.aside, placing.aside)
+    distance = random.uniform(*placing.distance)
+    height = random.uniform(*placing.height)
     position = np.array([np.sin(aside) * distance, np.cos(aside) * distance, height])
     return looking(position, np.array([0.0, 0.0, 0.8]))

@@ -8,29 +8,20 @@ from inhand_tracker.geometry.camera import Intrinsics
 
 from inhand_lab.geometry.transforms import Transform, normalised, rotation_about
 from inhand_lab.people.person import SimulatedPerson
-
-HEIGHT = (1.0, 1.4)
-"""Range of a camera's height above the floor, metres."""
-DISTANCE = (2.2, 3.0)
-"""Range of its distance from the person, metres; more where the person would not fit."""
-ASIDE = np.radians(30.0)
-"""Angle by which it is aside of what the person faces, at the most, radians."""
-HEADROOM = 0.60
-"""Height that is in the image beside the person's, metres."""
-AIM = 0.43
-"""Height that the camera looks at, as a share of stature."""
+from inhand_lab.world.parameters import DEFAULT_CAMERA_PLACING
 
 
 def place_camera(
     person: SimulatedPerson, intrinsics: Intrinsics, random: np.random.Generator
 ) -> tuple[float, Transform]:
     """The direction to the camera as a turn to the person's left, and camera_from_world."""
-    facing = float(random.uniform(-ASIDE, ASIDE))
-    fitting = (person.height + HEADROOM) * intrinsics.fy / intrinsics.height
-    distance = max(random.uniform(*DISTANCE), fitting)
+    placing = DEFAULT_CAMERA_PLACING
+    facing = float(random.uniform(-placing.aside, placing.aside))
+    fitting = (person.height + placing.headroom) * intrinsics.fy / intrinsics.height
+    distance = max(random.uniform(*placing.distance), fitting)
     ahead = rotation_about("z", facing)[:, 1]
-    position = ahead * distance + np.array([0.0, 0.0, random.uniform(*HEIGHT)])
-    target = np.array([0.0, 0.0, AIM * person.height + random.normal(0.0, 0.02)])
+    position = ahead * distance + np.array([0.0, 0.0, random.uniform(*placing.height)])
+    target = np.array([0.0, 0.0, placing.aim * person.height + random.normal(0.0, 0.02)])
     return facing, looking(position, target)
 
 

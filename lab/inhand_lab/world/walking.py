@@ -13,19 +13,7 @@ from inhand_lab.motions.timeline import minimum_jerk
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.kinematics import Trunk, place_body, place_trunk
 from inhand_lab.people.person import SimulatedPerson
-
-CADENCE = 1.75
-"""Steps a second."""
-STRIDE = 0.62
-"""Length of a step, metres for 1.75 m of stature."""
-SWING_SECONDS = 0.8
-"""Time for which a foot is lifted, as a share of the time from step to step."""
-LIFT = 0.10
-"""Height to which a foot is lifted, metres."""
-HALF_TRACK = 0.08
-"""Distance of a foot from the middle of the way, metres."""
-ARM_SWING = 0.35
-"""Angle by which arms swing, radians."""
+from inhand_lab.world.parameters import DEFAULT_WALK
 
 
 @dataclass(frozen=True)
@@ -51,7 +39,7 @@ class Walk:
 
     def foot(self, times: Array, side: float) -> Array:
         """The sole (T, 3) of one foot: it stands, then swings past the other to its next place."""
-        swing = SWING_SECONDS / self.pace
+        swing = DEFAULT_WALK.swing / self.pace
         first = 0.0 if side > 0.0 else 1.0 / self.pace
         landings = np.arange(first - 2.0 / self.pace, times[-1] + 4.0 / self.pace, 2.0 / self.pace)
         places = np.array(
@@ -61,12 +49,12 @@ class Walk:
         for landing, before, after in zip(landings[1:], places, places[1:], strict=False):
             share = minimum_jerk((times - (landing - swing)) / swing)
             sole += share[:, None] * (after - before)
-            sole[:, 2] += LIFT * 4.0 * share * (1.0 - share)
+            sole[:, 2] += DEFAULT_WALK.lift * 4.0 * share * (1.0 - share)
         return sole
 
     def _place(self, way_gone: float, side: float) -> Array:
         """Where a foot stands when the body has gone so many metres."""
-        aside = HALF_TRACK * side
+        aside = DEFAULT_WALK.half_track * side
         if not self.radius:
             return np.array([aside, 0.0, 0.0])
         turn = float(self.heading(np.array([way_gone]))[0])
@@ -78,8 +66,8 @@ def walk(
     person: SimulatedPerson, times: Array, random: np.random.Generator, radius: float
 ) -> BodyMotion:
     """Walk on the spot, where the radius is 0, or in a circle about the world's origin."""
-    pace = CADENCE * person.manner.tempo
-    stride = STRIDE * person.height / 1.75 * person.manner.amplitude
+    pace = DEFAULT_WALK.cadence * person.manner.tempo
+    stride = DEFAULT_WALK.stride * person.height / 1.75 * person.manner.amplitude
     speed = pace * stride if radius else 0.0
     start, way = random.uniform(0.0, 2.0 * np.pi), float(random.choice([-1.0, 1.0]))
     walked = Walk(pace, speed, radius, start, way)
@@ -88,7 +76,7 @@ def walk(
     stance = Stance(right_foot, left_foot, walked.heading(times * speed), still, still, still)
     posture = stand(person, times, random, stance)
     trunk = place_trunk(person, posture)
-    phase = ARM_SWING * person.manner.amplitude * np.sin(np.pi * pace * times)
+    phase = DEFAULT_WALK.arm_swing * person.manner.amplitude * np.sin(np.pi * pace * times)
     right, left = hanging_hands(person, trunk, random)
     return place_body(
         person,

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from inhand_lab.people.person import sample_person
 from inhand_lab.sensing.cameras import KINECT
-from inhand_lab.world.viewpoint import ASIDE, facing_of, looking, place_camera
+from inhand_lab.world.parameters import DEFAULT_CAMERA_PLACING
+from inhand_lab.world.viewpoint import facing_of, looking, place_camera
 
 
 def test_a_camera_looks_at_its_target_and_stands_upright() -> None:
@@ -21,5 +22,5 @@ def test_the_direction_to_a_camera_is_found_from_its_place() -> None:
     for number in range(5):
         random = np.random.default_rng(number)
         facing, camera_from_world = place_camera(sample_person(1, 0), KINECT.intrinsics, random)
-        assert abs(facing) <= ASIDE
+        assert abs(facing) <= DEFAULT_CAMERA_PLACING.aside
         assert facing_of(camera_from_world) == pytest.approx(facing)
