@@ -151,7 +151,7 @@ class Sight:
         """Move poses (K, 3) and (K, 4) to where the frame and the prior agree best nearby; one
         that does not become likelier stays where it is.
 
-        The frame counts by ``trust``: less than 1 where the frames before have said the same.
+        The frame counts by ``trust``: less than 1 where earlier frames showed the same.
         """
         moved = self._refiner.refine((translations, orientations), view, prior, trust)
         after = self._log_posterior(moved.translations, moved.rotations, view, prior, trust)
