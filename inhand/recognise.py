@@ -1,4 +1,4 @@
-"""``inhand recognise``: how well objects are tracked that are not given, by people left out."""
+"""``inhand recognise``: measures how well objects that are not given are recognised and tracked."""
 
 import argparse
 import time
@@ -8,22 +8,21 @@ from typing import Any
 from inhand_lab.datasets.dataset import Dataset, load_dataset
 from inhand_lab.datasets.recorded_frames import has_images
 from inhand_lab.recognition.adaptive_comparison import Environments
+from inhand_lab.recognition.cascade_learning import labelled_entries
 from inhand_lab.recognition.confusion_picture import draw_confusions
+from inhand_lab.recognition.false_objects import FalseObjectProtocol
 from inhand_lab.recognition.false_objects_by_movement import count_by_movement
 from inhand_lab.recognition.false_objects_with_images import count_with_images
 from inhand_lab.recognition.movement_alone import RecognitionAlone, recognise_alone
-from inhand_lab.recognition.protocol import (
+from inhand_lab.recognition.parameters import DEFAULT_RECOGNITION_EVALUATION
+from inhand_lab.recognition.recognition_protocol import (
     CASCADES,
     TRACKING,
     RecognitionProtocol,
     evaluate_recognition,
-    labelled_entries,
 )
-from inhand_lab.recognition.tables import (
-    false_object_grid,
-    recognition_grids,
-    summarise_recognition,
-)
+from inhand_lab.recognition.recognition_summary import summarise_recognition
+from inhand_lab.recognition.recognition_tables import false_object_grid, recognition_grids
 from inhand_lab.report.grid import Grid
 from inhand_lab.report.report_folder import prepare_report_folder
 from inhand_lab.workers import usable_cores
@@ -36,7 +35,7 @@ from inhand.results import write_json
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The verb's arguments."""
+    """Add the verb's arguments."""
     parser.add_argument("dataset", type=Path, metavar="DATASET")
     what = parser.add_mutually_exclusive_group()
     what.add_argument(
@@ -147,21 +146,23 @@ def _false_objects(
     dataset: Dataset, arguments: argparse.Namespace
 ) -> tuple[dict[str, Any], list[Grid]]:
     others = None if arguments.others is None else load_dataset(arguments.others)
-    unseen = _unseen(dataset, arguments.unseen)
+    protocol = FalseObjectProtocol(
+        dataset, others, _unseen(dataset, arguments.unseen), DEFAULT_RECOGNITION_EVALUATION
+    )
     if has_images(dataset):
-        with progress_bar("participants", len(unseen)) as advance:
-            found = count_with_images(dataset, others, unseen, usable_cores(), advance)
+        with progress_bar("participants", len(protocol.unseen)) as advance:
+            counted = count_with_images(protocol, usable_cores(), advance)
     else:
         with progress_bar("actions", 1 + len(dataset.interactions())) as advance:
-            found = count_by_movement(dataset, others, unseen, usable_cores(), advance)
+            counted = count_by_movement(protocol, usable_cores(), advance)
     result = {
-        "images": found.images,
-        "others_images": found.others_images,
-        "nothing_in_use": found.idle,
-        "others": found.others,
-        "never_trained": found.never_trained,
+        "images": counted.images,
+        "others_images": counted.others_images,
+        "nothing_in_use": counted.idle,
+        "others": counted.others,
+        "never_trained": counted.never_trained,
     }
-    return dict(result), [false_object_grid(found)]
+    return dict(result), [false_object_grid(counted)]
 
 
 def _unseen(dataset: Dataset, chosen: str | None) -> tuple[str, ...]:

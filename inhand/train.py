@@ -1,4 +1,4 @@
-"""``inhand train``: learn where an object is from how people move with it."""
+"""``inhand train``: learns where an object is from how people move with it."""
 
 import argparse
 from collections.abc import Sequence
@@ -6,11 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from inhand_lab.datasets.dataset import Dataset, load_dataset
-from inhand_lab.training.learned import learned_by
-from inhand_lab.training.model_training import entries_for, stages, train
+from inhand_lab.training.model_summary import summarise_model
+from inhand_lab.training.model_training import entries_for, model_stages, train
 from inhand_lab.training.presence_training import learn_presence
-from inhand_lab.training.recogniser_training import stages as recogniser_stages
-from inhand_lab.training.recogniser_training import train_recogniser
+from inhand_lab.training.recogniser_training import recogniser_stages, train_recogniser
 from inhand_runtime.errors import SettingsError
 from inhand_tracker.model.model import Model
 from inhand_tracker.model.model_file import load_model, save_model
@@ -22,7 +21,7 @@ from inhand.progress import progress_bars
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The verb's arguments."""
+    """Add the verb's arguments."""
     parser.add_argument("dataset", type=Path, metavar="DATASET", help="a dataset's folder")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="MODEL")
     parser.add_argument("--object", metavar="O", help="which one, where there are several")
@@ -56,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.recogniser:
         return _train_recogniser(dataset, arguments)
     entries = entries_for(dataset, arguments.object, arguments.without)
-    with progress_bars({**stages(len(entries)), "saving": 1}) as advance:
+    with progress_bars({**model_stages(len(entries)), "saving": 1}) as advance:
         model = train(dataset, entries, advance)
         save_model(model, arguments.output)
         advance("saving")
@@ -97,7 +96,7 @@ def _models_of(actions: Sequence[str], files: Sequence[Path]) -> list[Model]:
 
 
 def _summary(model: Model) -> Table:
-    learned = learned_by(model.mapping)
+    learned = summarise_model(model.mapping)
     least, median, greatest = learned.radii
     table = Table("learned", "value", title=f"{model.shape.name}, {model.interaction}")
     table.add_row("recordings", str(learned.recordings))

@@ -13,8 +13,8 @@ from inhand_tracker.sight.appearance import learn_appearance
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.training.appearance_samples import appearance_samples
-from inhand_lab.training.checks import check_hands
 from inhand_lab.training.model_training import checked_sequence
+from inhand_lab.training.recording_checks import check_hands
 
 
 def learn_fold_model(trained: Dataset, fold: Fold, *, images: bool, fused: bool) -> Model:

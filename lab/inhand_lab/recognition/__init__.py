@@ -1,1 +1,1 @@
-"""How well objects that are not given are recognised."""
+"""Evaluates how well objects that are not given are recognised."""

@@ -10,23 +10,21 @@ from pathlib import Path
 
 import numpy as np
 from inhand_runtime.errors import InhandError
-from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.arrays import Array, Indices
 
 from inhand_lab.datasets.recorded_frames import RecordedFrame, iterate_pixels
 from inhand_lab.recognition import adaptive_trackers
-
-SMALLEST = 8
-"""Pixels: a smaller first box is widened, because some trackers refuse one."""
+from inhand_lab.recognition.parameters import DEFAULT_RECOGNITION_EVALUATION
 
 
 @dataclass(frozen=True)
 class Environments:
-    """``contrib`` is a Python whose OpenCV is the contrib build; None where there is none."""
+    """Pythons that have OpenCV: ours, and, unless None, one with its build of ``contrib``."""
 
     contrib: Path | None = None
 
     def of(self) -> dict[str, str]:
-        """The Python that runs each tracker that can be had."""
+        """Return the Python that runs each adaptive tracker that can be had."""
         own = sys.executable if self.contrib is None else str(self.contrib)
         names = adaptive_trackers.available() if self.contrib is None else _ask(own)
         return dict.fromkeys(names, own)
@@ -35,36 +33,52 @@ class Environments:
 def follow_adaptively(
     path: Path, frames: Sequence[RecordedFrame], boxes: Array, pythons: dict[str, str]
 ) -> dict[str, Array]:
-    """The boxes (T, 4), left, top, right, bottom, that each adaptive tracker follows.
+    """Follow an object by each adaptive tracker; return boxes (T, 4), left, top, right and bottom.
 
-    Each starts at the first known one of the true ``boxes`` (T, 4); before it they are NaN. Raises
+    Each starts at the first finite one of the true ``boxes`` (T, 4); before it they are NaN. Raises
     InhandError or RecordingError.
     """
-    known = np.flatnonzero(np.isfinite(boxes).all(axis=1))
-    images = {
+    if not pythons:
+        return {}
+    finite = np.flatnonzero(np.isfinite(boxes).all(axis=1))
+    shown, images = _images_from(path, frames, int(finite[0]))
+    first = _first_box(boxes[shown[0]])
+    followed = {}
+    for python in dict.fromkeys(pythons.values()):
+        names = [name for name, where in pythons.items() if where == python]
+        for name, found in _run(python, images, first, names).items():
+            x, y, width, height = np.array(found).T
+            series = np.full((len(frames), 4), np.nan)
+            series[shown] = np.column_stack((x, y, x + width, y + height))
+            followed[name] = series
+    return followed
+
+
+def _images_from(
+    path: Path, frames: Sequence[RecordedFrame], first: int
+) -> tuple[Indices, list[bytes]]:
+    """Read the JPEG images from a frame on; return the numbers (S,) of their frames, and them."""
+    by_time = {
         pixels.time_ns: pixels.colour.data
         for pixels in iterate_pixels(path)
         if pixels.colour is not None and pixels.colour.codec == "jpeg"
     }
-    seen = [i for i in range(known[0], len(frames)) if frames[i].time_ns in images]
-    left, top, right, bottom = boxes[seen[0]]
-    width, height = max(right - left, SMALLEST), max(bottom - top, SMALLEST)
-    first = [round(value) for value in (max(left, 0.0), max(top, 0.0), width, height)]
-    shown = [images[frames[i].time_ns] for i in seen]
-    followed = {}
-    for python in dict.fromkeys(pythons.values()):
-        wanted = [name for name, where in pythons.items() if where == python]
-        for name, found in _run(python, shown, first, wanted).items():
-            series = np.full((len(frames), 4), np.nan)
-            x, y, wide, high = np.array(found).T
-            series[seen] = np.column_stack((x, y, x + wide, y + high))
-            followed[name] = series
-    return followed
+    shown = [i for i in range(first, len(frames)) if frames[i].time_ns in by_time]
+    return np.array(shown, np.int64), [by_time[frames[i].time_ns] for i in shown]
+
+
+def _first_box(box: Array) -> list[int]:
+    """Return left, top, width and height of a box (4,), as adaptive trackers take them."""
+    left, top, right, bottom = box
+    least = DEFAULT_RECOGNITION_EVALUATION.least_box_pixels
+    sides = (max(left, 0.0), max(top, 0.0), max(right - left, least), max(bottom - top, least))
+    return [round(side) for side in sides]
 
 
 def _run(
     python: str, images: Sequence[bytes], box: list[int], trackers: list[str]
 ) -> dict[str, list[list[float]]]:
+    """Run trackers by a Python; return the boxes of each in every image."""
     with tempfile.TemporaryDirectory() as folder:
         data, job, result = (Path(folder) / name for name in ("frames", "job.json", "result.json"))
         data.write_bytes(b"".join(images))
@@ -79,6 +93,7 @@ def _run(
 
 
 def _ask(python: str) -> list[str]:
+    """Return the names of the adaptive trackers that a Python's OpenCV has."""
     folder = str(Path(adaptive_trackers.__file__).parent)
     text = _call(
         [
@@ -92,6 +107,7 @@ def _ask(python: str) -> list[str]:
 
 
 def _call(command: list[str]) -> str:
+    """Run a command; return what it prints. Raises InhandError."""
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=True)
     except OSError as error:

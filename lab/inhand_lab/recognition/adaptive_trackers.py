@@ -27,31 +27,31 @@ FACTORIES = {
 
 
 def available() -> list[str]:
-    """The trackers that this OpenCV has."""
+    """Return the names of the trackers that this OpenCV has."""
     return [name for name in FACTORIES if _factory(name) is not None]
 
 
 def _factory(name: str) -> Any:
-    found: Any = cv2
+    factory: Any = cv2
     for part in FACTORIES[name]:
-        found = getattr(found, part, None)
-    return found
+        factory = getattr(factory, part, None)
+    return factory
 
 
-def follow(images: list[Any], box: list[int], name: str) -> list[list[float]]:
-    """The boxes of one tracker in all images; ``box`` is that in the first."""
+def follow_box(images: list[Any], box: list[int], name: str) -> list[list[float]]:
+    """Follow a box by one tracker; return it in all images. ``box`` is that in the first."""
     cv2.setRNGSeed(0)
     tracker = _factory(name)()
     tracker.init(images[0], tuple(box))
     boxes = [[float(value) for value in box]]
     for image in images[1:]:
-        found, now = tracker.update(image)
-        boxes.append([float(value) for value in now] if found else boxes[-1])
+        success, box = tracker.update(image)
+        boxes.append([float(value) for value in box] if success else boxes[-1])
     return boxes
 
 
 def main(job_file: str, result_file: str) -> None:
-    """Do a job."""
+    """Follow the boxes of a job, and write the result."""
     cv2.setNumThreads(1)
     job = json.loads(Path(job_file).read_text(encoding="utf-8"))
     data = Path(job["frames"]).read_bytes()
@@ -60,7 +60,7 @@ def main(job_file: str, result_file: str) -> None:
         for start, end in pairwise([0, *job["ends"]])
     ]
     wanted = [name for name in job["trackers"] if name in available()]
-    result = {name: follow(images, job["box"], name) for name in wanted}
+    result = {name: follow_box(images, job["box"], name) for name in wanted}
     Path(result_file).write_text(json.dumps(result), encoding="utf-8")
 
 

@@ -1,19 +1,32 @@
-"""How often an object is known falsely: where none is in use, or one that nobody taught."""
+"""What is counted of false objects: recognised where none is in use, or one that nobody taught."""
 
 from dataclasses import dataclass
 
-from inhand_lab.world.idle_people import Idleness
+from inhand_lab.datasets.dataset import Dataset
+from inhand_lab.recognition.parameters import RecognitionEvaluationParameters
 
-IDLE_KINDS: tuple[Idleness, ...] = ("stand", "walkOnSpot", "walkAbout", "gesture")
-IDLE_SEED = 900
+
+@dataclass(frozen=True)
+class FalseObjectProtocol:
+    """On whom false objects are counted.
+
+    The recogniser learns from ``dataset``, but not from its participants who are ``unseen``. Each
+    action is left out of training once, and looked at in them; nobody taught anything of the people
+    of ``others``.
+    """
+
+    dataset: Dataset
+    others: Dataset | None
+    unseen: tuple[str, ...]
+    parameters: RecognitionEvaluationParameters
 
 
 @dataclass(frozen=True)
 class FalseObjects:
-    """The share of frames in which an object is known falsely, of people of each kind: idle ones,
-    those of other datasets, and those whose action was left out of training.
+    """Share of frames with a false object, by kind of people: idle ones by what they do, those of
+    other datasets and those whose action was left out of training by their interaction.
 
-    ``images`` and ``others_images`` tell whether there were images, of the others apart.
+    ``images`` is whether there were images, ``others_images`` whether there were of the others.
     """
 
     idle: dict[str, float]

@@ -1,39 +1,38 @@
-"""How often an object is known falsely with images: the whole `cascade`, as a rig runs it."""
+"""Counts false objects with images: the whole `cascade`, as a rig runs it."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import DEFAULT_METHOD, new_tracker
 from inhand_tracker.model.model import Model
 from inhand_tracker.recognition.cascade import Cascade
-from inhand_tracker.recognition.movement_classes import MovementClasses
-from inhand_tracker.recognition.presence import Presence
+from inhand_tracker.recognition.recogniser import LearnedCascade
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry
 from inhand_lab.datasets.observations import Observation, observe, observe_simulation
 from inhand_lab.datasets.recorded_frames import has_images, load_frames
 from inhand_lab.people.joint_sequence import JointSequence
-from inhand_lab.recognition.false_objects import IDLE_KINDS, IDLE_SEED, FalseObjects
-from inhand_lab.recognition.protocol import answers_together, labelled_entries, learn_models
-from inhand_lab.recognition.scores import UNKNOWN
-from inhand_lab.training.presence_training import NEEDS, Look, look_around, presence_of
+from inhand_lab.recognition.cascade_learning import labelled_entries, learn_models
+from inhand_lab.recognition.false_objects import FalseObjectProtocol, FalseObjects
+from inhand_lab.recognition.recognition_scores import UNKNOWN, answer_together
+from inhand_lab.training.presence_training import (
+    NEEDS,
+    SupportSample,
+    look_around,
+    presence_of,
+)
 from inhand_lab.training.recogniser_training import learn_movements
-from inhand_lab.training.watched_people import watch
+from inhand_lab.training.recorded_movements import read_joints
 from inhand_lab.workers import in_processes
 from inhand_lab.world.idle_people import simulate_idle
 
-IDLE_PEOPLE = 1
-"""Of each kind, for each unseen participant other ones."""
-
 
 @dataclass(frozen=True)
-class _Found:
-    """The share of a recording's frames in which an object is known falsely; ``kind`` is a field
-    of FalseObjects."""
+class _FalseShare:
+    """Share of a recording's frames with a false object; ``kind`` is a field of FalseObjects."""
 
     kind: str
     name: str
@@ -41,92 +40,71 @@ class _Found:
 
 
 def count_with_images(
-    dataset: Dataset,
-    others: Dataset | None,
-    unseen: Sequence[str],
-    processes: int,
-    on_progress: Callable[[], None] = lambda: None,
+    protocol: FalseObjectProtocol, processes: int, on_progress: Callable[[], None] = lambda: None
 ) -> FalseObjects:
-    """For each of the ``unseen`` learn from the dataset's other participants, and look at people.
+    """For each unseen participant learn from the dataset's other ones, and count on people.
 
-    Each action is left out once, and looked at in the unseen one. Idle people and the recordings
-    of ``others`` are dealt out among what is learned. ``on_progress`` is called once a
-    participant. Raises DatasetError or RecordingError.
+    Idle people and the recordings of others are dealt out among what is learned. ``on_progress`` is
+    called once a participant. Raises DatasetError or RecordingError.
     """
-    tasks = [(dataset, others, tuple(unseen), number) for number in range(len(unseen))]
+    tasks = [(protocol, number) for number in range(len(protocol.unseen))]
     done = in_processes(_leave_person_out, tasks, processes, lambda _: on_progress())
-    found = [one for some in done for one in some]
+    shares = [one for some in done for one in some]
     return FalseObjects(
-        _means(found, "idle"),
-        _means(found, "others"),
-        _means(found, "never_trained"),
+        _means(shares, "idle"),
+        _means(shares, "others"),
+        _means(shares, "never_trained"),
         images=True,
-        others_images=others is not None and has_images(others),
+        others_images=protocol.others is not None and has_images(protocol.others),
     )
 
 
-def _means(found: Sequence[_Found], kind: str) -> dict[str, float]:
-    shares: dict[str, list[float]] = {}
-    for one in found:
+def _means(shares: Sequence[_FalseShare], kind: str) -> dict[str, float]:
+    by_name: dict[str, list[float]] = {}
+    for one in shares:
         if one.kind == kind:
-            shares.setdefault(one.name, []).append(one.share)
-    return {name: float(np.mean(some)) for name, some in shares.items()}
+            by_name.setdefault(one.name, []).append(one.share)
+    return {name: float(np.mean(some)) for name, some in by_name.items()}
 
 
-def _leave_person_out(
-    task: tuple[Dataset, Dataset | None, tuple[str, ...], int],
-) -> list[_Found]:
-    dataset, others, unseen, number = task
-    entries = labelled_entries(dataset)
-    lesson = _learn(dataset, [entry for entry in entries if entry.participant != unseen[number]])
-    cascade = lesson.cascades()
-    found = list(_idle(cascade, range(number * IDLE_PEOPLE, (number + 1) * IDLE_PEOPLE)))
-    if others is not None:
-        for entry in others.entries[number :: len(unseen)]:
-            share = _known_on(cascade[entry.handedness], others, entry)
-            found.append(_Found("others", entry.interaction, share))
-    for action in dict.fromkeys(entry.interaction for entry in entries):
-        asked = [e for e in entries if (e.interaction, e.participant) == (action, unseen[number])]
-        cascade = lesson.cascades(without=action) if asked else {}
-        for entry in asked:
-            share = _known_on(cascade[entry.handedness], dataset, entry)
-            found.append(_Found("never_trained", action, share))
-    return found
-
-
-@dataclass(frozen=True)
-class _Learned:
-    """What was learned without a support vector machine, which `cascade` does not use."""
-
-    body_poses: Array
-    movements: MovementClasses
-    temper: float
-    presence: Presence
+def _leave_person_out(task: tuple[FalseObjectProtocol, int]) -> list[_FalseShare]:
+    """Count everything that the unseen participant of a number stands for."""
+    protocol, number = task
+    unseen = protocol.unseen[number]
+    entries = labelled_entries(protocol.dataset)
+    lesson = _learn(protocol.dataset, [one for one in entries if one.participant != unseen])
+    tested = [one for one in entries if one.participant == unseen]
+    cascades = lesson.cascades()
+    return [
+        *_on_idle(cascades, protocol, number),
+        *_on_others(cascades, protocol, number),
+        *_on_never_trained(lesson, protocol.dataset, tested),
+    ]
 
 
 @dataclass(frozen=True)
 class _Lesson:
-    """What people teach: what is ``seen`` of each object, by action, wherever it is looked for."""
+    """What people teach: how they move, and ``samples`` of what is seen of each object."""
 
     people: tuple[JointSequence, ...]
     models: dict[str, Model]
-    seen: list[Look]
-    named: str
+    samples: list[SupportSample]
+    origin: str
 
     def cascades(self, without: str | None = None) -> Mapping[str, Cascade]:
-        """For right- and left-handed people; nothing of the action ``without`` is learned."""
-        taught = [one for one in self.people if one.action != without]
-        learned = learn_movements(taught, self.named)
-        looks = [look for look in self.seen if look.action != without]
-        told = _Learned(
-            learned.body_poses,
-            learned.movements,
-            learned.temper,
-            presence_of(looks, learned.actions),
+        """Make cascades by handedness that learn nothing of the action ``without``.
+
+        They have no support vector machine, which `cascade` does not use.
+        """
+        learned = learn_movements(
+            [one for one in self.people if one.action != without], self.origin
         )
+        samples = [sample for sample in self.samples if sample.action != without]
+        presence = presence_of(samples, learned.actions)
+        taught = LearnedCascade(learned.body_poses, learned.movements, learned.temper, presence)
         return {
             hand: Cascade(
-                told,
+                taught,
                 [trackers[action] for action in learned.actions],
                 left_handed=hand == "left",
             )
@@ -135,7 +113,7 @@ class _Lesson:
 
     @cached_property
     def _trackers(self) -> dict[str, dict[str, ObjectTracker]]:
-        """By handedness and action; a cascade starts them afresh."""
+        """Trackers by handedness and action; a cascade starts them afresh."""
         return {
             hand: {
                 action: new_tracker(model, DEFAULT_METHOD, left_handed=hand == "left")
@@ -146,31 +124,58 @@ class _Lesson:
 
 
 def _learn(dataset: Dataset, entries: Sequence[DatasetEntry]) -> _Lesson:
-    people = tuple(watch(dataset, entry) for entry in entries)
+    people = tuple(read_joints(dataset, entry) for entry in entries)
     actions = list(dict.fromkeys(one.action for one in people))
     models = learn_models(dataset, entries, actions)
-    looks = look_around(dataset, entries, actions, models)
-    return _Lesson(people, dict(zip(actions, models, strict=True)), looks, str(dataset.folder))
+    samples = look_around(dataset, entries, actions, models)
+    return _Lesson(people, dict(zip(actions, models, strict=True)), samples, str(dataset.folder))
 
 
-def _idle(cascades: Mapping[str, Cascade], numbers: Iterable[int]) -> Iterator[_Found]:
-    for number in numbers:
-        for kind in IDLE_KINDS:
-            simulation = simulate_idle(kind, number, IDLE_SEED)
+def _on_idle(
+    cascades: Mapping[str, Cascade], protocol: FalseObjectProtocol, number: int
+) -> Iterator[_FalseShare]:
+    """Count on the idle people who fall to the unseen participant of a number."""
+    parameters = protocol.parameters
+    count = parameters.idle_people_with_images
+    for person in range(number * count, (number + 1) * count):
+        for kind in parameters.idle_kinds:
+            simulation = simulate_idle(kind, person, parameters.idle_seed)
             cascade = cascades[simulation.person.handedness]
             seen = observe_simulation(simulation, NEEDS)
-            share = _known_share(cascade, seen, simulation.frames)
-            yield _Found("idle", kind, share)
+            yield _FalseShare("idle", kind, _recognised_share(cascade, seen, simulation.frames))
 
 
-def _known_on(cascade: Cascade, dataset: Dataset, entry: DatasetEntry) -> float:
+def _on_others(
+    cascades: Mapping[str, Cascade], protocol: FalseObjectProtocol, number: int
+) -> Iterator[_FalseShare]:
+    """Count on the recordings of others that fall to the unseen participant of a number."""
+    if protocol.others is None:
+        return
+    for entry in protocol.others.entries[number :: len(protocol.unseen)]:
+        share = _share_in(cascades[entry.handedness], protocol.others, entry)
+        yield _FalseShare("others", entry.interaction, share)
+
+
+def _on_never_trained(
+    lesson: _Lesson, dataset: Dataset, tested: Sequence[DatasetEntry]
+) -> Iterator[_FalseShare]:
+    """Count on an unseen participant's recordings, whose action is left out of training."""
+    for action in dict.fromkeys(entry.interaction for entry in tested):
+        cascades = lesson.cascades(without=action)
+        for entry in tested:
+            if entry.interaction == action:
+                share = _share_in(cascades[entry.handedness], dataset, entry)
+                yield _FalseShare("never_trained", action, share)
+
+
+def _share_in(cascade: Cascade, dataset: Dataset, entry: DatasetEntry) -> float:
     path = dataset.path(entry)
     frames = load_frames(path, entry.object)
-    return _known_share(cascade, observe(path, frames, NEEDS), len(frames))
+    return _recognised_share(cascade, observe(path, frames, NEEDS), len(frames))
 
 
-def _known_share(cascade: Cascade, observations: Iterable[Observation], frames: int) -> float:
-    """Of so many frames the share in which an action is known."""
+def _recognised_share(cascade: Cascade, observations: Iterable[Observation], frames: int) -> float:
+    """Share of the frames in which an action is recognised."""
     cascade.restart()
-    (answers,) = answers_together([cascade], observations, frames)
-    return float((answers.known != UNKNOWN).mean())
+    (answers,) = answer_together([cascade], observations, frames)
+    return float((answers.actions != UNKNOWN).mean())

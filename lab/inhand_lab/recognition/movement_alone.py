@@ -1,4 +1,4 @@
-"""Recognition without objects or images: which action is it, of people that were left out?"""
+"""Evaluates recognition by movement alone, without objects or images, on people left out."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -10,16 +10,17 @@ from inhand_tracker.recognition.recogniser import MovementRecogniser, Recogniser
 
 from inhand_lab.datasets.dataset import Dataset, DatasetError
 from inhand_lab.people.joint_sequence import JointSequence
-from inhand_lab.training.recogniser_training import recogniser_of
-from inhand_lab.training.watched_people import UsualPoses, read_bodies, watch
+from inhand_lab.training.recogniser_training import learn_recogniser
+from inhand_lab.training.recorded_movements import UsualPoses, read_bodies, read_joints
 from inhand_lab.workers import in_processes
 
 
 @dataclass(frozen=True)
-class Recognised:
-    """One recording: the true action and, of N frames, what each way of recognition says (N,).
+class RecognisedRecording:
+    """What is recognised in N frames of a recording, beside the true ``action``.
 
-    ``probabilities`` (N, K + 1) are those over time, of the actions and, last, of none.
+    ``by_pose`` (N,) are the actions by the body pose alone; ``probabilities`` (N, K + 1) are those
+    over time, of the actions and, last, of none.
     """
 
     action: int
@@ -29,12 +30,12 @@ class Recognised:
 
     @property
     def by_movement(self) -> Indices:
-        """(N,): the likeliest action up to each frame, none being no answer here."""
+        """The likeliest action (N,) up to each frame; none is no answer here."""
         return np.argmax(self.probabilities[:, :-1], axis=1)
 
     @property
     def sequence(self) -> int:
-        """The action of the whole recording: the likeliest on average, none being no answer."""
+        """The likeliest action of the whole recording on average; none is no answer here."""
         actions = self.probabilities[:, :-1]
         return int(np.argmax((actions / actions.sum(axis=1, keepdims=True)).mean(axis=0)))
 
@@ -44,10 +45,10 @@ class RecognitionAlone:
     """All recordings, each recognised by what the other participants teach."""
 
     actions: tuple[str, ...]
-    recordings: tuple[Recognised, ...]
+    recordings: tuple[RecognisedRecording, ...]
 
     def confusion(self, *, sequences: bool) -> Array:
-        """(K, K): of each true action (row) the shares that are taken for each, 0 to 1."""
+        """Shares (K, K) of each true action (row) that are taken for each action, 0 to 1."""
         counts = np.zeros((len(self.actions), len(self.actions)))
         for one in self.recordings:
             answers = np.array([one.sequence]) if sequences else one.by_movement
@@ -55,7 +56,7 @@ class RecognitionAlone:
         return counts / np.maximum(counts.sum(axis=1, keepdims=True), 1.0)
 
     def summary(self) -> dict[str, float]:
-        """Accuracies in percent: of frames by pose, of frames over time, of sequences."""
+        """Shares in percent that are right: frames by pose, frames over time, sequences."""
         poses = np.concatenate([one.by_pose == one.action for one in self.recordings])
         movements = np.concatenate([one.by_movement == one.action for one in self.recordings])
         whole = [one.sequence == one.action for one in self.recordings]
@@ -69,11 +70,11 @@ class RecognitionAlone:
 def recognise_alone(
     dataset: Dataset, processes: int, on_progress: Callable[[], None] = lambda: None
 ) -> RecognitionAlone:
-    """Leave one participant out; ``on_progress`` is called once a participant.
+    """Leave each participant out once; ``on_progress`` is called once a participant.
 
     Raises DatasetError or RecordingError.
     """
-    people = tuple(watch(dataset, entry) for entry in dataset.entries)
+    people = tuple(read_joints(dataset, entry) for entry in dataset.entries)
     actions = tuple(dict.fromkeys(one.action for one in people))
     participants = participants_of(people)
     if len(participants) < 3:
@@ -83,18 +84,18 @@ def recognise_alone(
         )
     tasks = [(people, participant) for participant in participants]
     done = in_processes(_leave_out, tasks, processes, lambda _: on_progress())
-    return RecognitionAlone(actions, tuple(one for found in done for one in found))
+    return RecognitionAlone(actions, tuple(one for recordings in done for one in recordings))
 
 
 def participants_of(people: Sequence[JointSequence]) -> list[str]:
-    """Their names, in order."""
+    """Return the names of the participants, in order."""
     return sorted({one.participant for one in people})
 
 
 def probabilities_over_time(
     movements: MovementClasses, temper: float, usual: UsualPoses, one: JointSequence
 ) -> tuple[Array, Array]:
-    """Probabilities (N, K + 1) of a recording's frames with a body, and its body poses (N, 60).
+    """Return probabilities (N, K + 1) of the frames with a body, and these bodies' poses (N, 60).
 
     Raises DatasetError where no body is seen.
     """
@@ -109,17 +110,17 @@ def probabilities_over_time(
     return np.array(probabilities), np.array(poses)
 
 
-def _recognise(recogniser: Recogniser, one: JointSequence) -> Recognised:
+def _recognise(recogniser: Recogniser, one: JointSequence) -> RecognisedRecording:
     usual = UsualPoses(recogniser.body_poses)
     probabilities, poses = probabilities_over_time(
         recogniser.movements, recogniser.temper, usual, one
     )
     by_pose = np.argmax(recogniser.svm.probabilities(poses), axis=1)
     action = recogniser.actions.index(one.action)
-    return Recognised(action, one.participant, by_pose, probabilities)
+    return RecognisedRecording(action, one.participant, by_pose, probabilities)
 
 
-def _leave_out(task: tuple[tuple[JointSequence, ...], str]) -> list[Recognised]:
+def _leave_out(task: tuple[tuple[JointSequence, ...], str]) -> list[RecognisedRecording]:
     people, participant = task
     # In the order of all actions, whoever is left out.
     order = list(dict.fromkeys(one.action for one in people))
@@ -127,7 +128,7 @@ def _leave_out(task: tuple[tuple[JointSequence, ...], str]) -> list[Recognised]:
         (one for one in people if one.participant != participant),
         key=lambda one: order.index(one.action),
     )
-    recogniser = recogniser_of(others)
+    recogniser = learn_recogniser(others)
     if recogniser.actions != tuple(order):
         raise DatasetError(f"only {participant} does some of {', '.join(order)}")
     return [_recognise(recogniser, one) for one in people if one.participant == participant]

@@ -1,1 +1,1 @@
-"""Models and recognisers from datasets."""
+"""Trains models and recognisers from datasets."""

@@ -1,4 +1,4 @@
-"""Training a model from a dataset."""
+"""Trains the model of one object and its interaction from a dataset."""
 
 from collections.abc import Callable, Collection, Sequence
 
@@ -13,13 +13,13 @@ from inhand_tracker.sight.appearance import learn_appearance
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.training.appearance_samples import appearance_samples
-from inhand_lab.training.checks import check_hands, check_sequence
+from inhand_lab.training.recording_checks import check_hands, check_sequence
 
 READING, VIEWPOINTS, APPEARANCE, PRIOR = "recordings", "viewpoints", "appearance", "prior"
 
 
-def stages(recordings: int) -> dict[str, int]:
-    """What training goes through, each with the number of its steps."""
+def model_stages(recordings: int) -> dict[str, int]:
+    """Name the stages of training a model, each with the number of its steps."""
     return {
         READING: recordings,
         **dict.fromkeys(STAGES, recordings),
@@ -32,33 +32,37 @@ def stages(recordings: int) -> dict[str, int]:
 def entries_for(
     dataset: Dataset, object_name: str | None = None, without: Collection[str] = ()
 ) -> list[DatasetEntry]:
-    """The labelled recordings of one object, but for some participants'.
+    """Choose the labelled recordings of one object, but for some participants'.
 
     ``object_name`` may be left out where the dataset has one object. Raises DatasetError.
     """
     labelled = [entry for entry in dataset.entries if entry.object is not None]
     objects = sorted({entry.object for entry in labelled if entry.object is not None})
-    if object_name is None:
-        if len(objects) != 1:
-            raise DatasetError(
-                f"{dataset.folder} has {len(objects)} labelled objects; "
-                + (f"choose with --object: {', '.join(objects)}" if objects else "none to learn")
-            )
-        object_name = objects[0]
-    chosen = [e for e in labelled if e.object == object_name]
+    name = _only(objects, dataset) if object_name is None else object_name
+    chosen = [entry for entry in labelled if entry.object == name]
     if not chosen:
         raise DatasetError(
-            f"{dataset.folder} has no labelled recording of {object_name!r}; there are: "
+            f"{dataset.folder} has no labelled recording of {name!r}; there are: "
             f"{', '.join(objects) or 'none'}"
         )
     participants = sorted({entry.participant for entry in chosen})
     unknown = sorted(set(without) - set(participants))
     if unknown:
         raise DatasetError(
-            f"{dataset.folder} has no participant {unknown[0]!r} with {object_name!r}; there are: "
+            f"{dataset.folder} has no participant {unknown[0]!r} with {name!r}; there are: "
             f"{', '.join(participants)}"
         )
     return [entry for entry in chosen if entry.participant not in without]
+
+
+def _only(objects: Sequence[str], dataset: Dataset) -> str:
+    """Return the only object of a dataset; raises DatasetError where there are more or none."""
+    if len(objects) != 1:
+        raise DatasetError(
+            f"{dataset.folder} has {len(objects)} labelled objects; "
+            + (f"choose with --object: {', '.join(objects)}" if objects else "none to learn")
+        )
+    return objects[0]
 
 
 def train(
@@ -66,24 +70,13 @@ def train(
     entries: Sequence[DatasetEntry],
     on_step: Callable[[str], None] = lambda stage: None,
 ) -> Model:
-    """Learn from recordings of one object; ``on_step`` is called at every step of ``stages``.
+    """Learn from recordings of one object; ``on_step`` is called at each step of ``model_stages``.
 
     Raises DatasetError or InhandError.
     """
-    if len(entries) < 2:
-        raise DatasetError(
-            f"{dataset.folder}: learning compares recordings, two at the least, and "
-            f"{len(entries)} is left: add participants"
-        )
-    first = entries[0]
-    if first.object is None:
-        raise DatasetError(f"{first.file} is not labelled")
-    shape = dataset.shape(first.object)
-    sequences = []
-    for entry in entries:
-        sequences.append(checked_sequence(dataset, entry))
-        on_step(READING)
-    check_hands(entries, sequences)
+    first = _first_of(dataset, entries)
+    shape = dataset.shape(str(first.object))
+    sequences = _read(dataset, entries, on_step)
     try:
         mapping = learn(sequences, shape.mirror_normal, on_step)
     except UnusableSequenceError as error:
@@ -100,8 +93,32 @@ def train(
     return model
 
 
+def _first_of(dataset: Dataset, entries: Sequence[DatasetEntry]) -> DatasetEntry:
+    """Return the first recording; raises DatasetError where too few, or it, cannot be learned."""
+    if len(entries) < 2:
+        raise DatasetError(
+            f"{dataset.folder}: learning compares recordings, two at the least, and "
+            f"{len(entries)} is left: add participants"
+        )
+    if entries[0].object is None:
+        raise DatasetError(f"{entries[0].file} is not labelled")
+    return entries[0]
+
+
+def _read(
+    dataset: Dataset, entries: Sequence[DatasetEntry], on_step: Callable[[str], None]
+) -> list[LabelledSequence]:
+    """Read and check all recordings; raises DatasetError."""
+    sequences = []
+    for entry in entries:
+        sequences.append(checked_sequence(dataset, entry))
+        on_step(READING)
+    check_hands(entries, sequences)
+    return sequences
+
+
 def checked_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
-    """A recording for training; raises DatasetError for one that cannot be meant."""
+    """Read a recording for training; raises DatasetError for one that cannot be meant."""
     try:
         sequence = labelled_sequence(dataset, entry)
     except MessageError as error:

@@ -1,13 +1,16 @@
-"""What a tracker's support is worth: how well objects are seen that are there, and that are not.
+"""Trains what a tracker's support is worth: that of objects which are there, and are not.
 
 Every object is looked for in some frames of every recording, whichever is in use in it.
 """
 
-from collections.abc import Mapping, Sequence
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS, new_tracker
 from inhand_tracker.model.model import Model
 from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
@@ -18,23 +21,15 @@ from numpy.typing import ArrayLike
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry
 from inhand_lab.datasets.observations import observe
 from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.training.parameters import DEFAULT_TRAINING
 
 NEEDS = METHODS[DEFAULT_METHOD].needs(METHODS[DEFAULT_METHOD].usual_terms)
 """What of a frame the trackers of objects look at."""
-PLACES = (0.02, 0.35, 0.7)
-"""Where in a recording objects are looked for: at first most lie untouched."""
-STEPS = 2
-"""Frames one after the other: the second look finds more."""
-PRIOR_COUNT = 4.0
-"""So many looks are taken to have shown the usual support beforehand."""
-PARTS_PRIOR_COUNT = 15.0
-"""The same of the spreads of its parts."""
-LEAST_SPREAD = 3.0
 
 
 @dataclass(frozen=True)
-class Look:
-    """The ``supports`` of objects, by their actions, where somebody does ``action``.
+class SupportSample:
+    """The ``supports`` of objects, by their actions, in one look where somebody does ``action``.
 
     Objects of which the image says nothing have none.
     """
@@ -49,7 +44,10 @@ def learn_presence(
     actions: Sequence[str],
     models: Sequence[Model],
 ) -> Presence:
-    """Of the objects of ``models``, in the order of their actions; raises RecordingError."""
+    """Look for the objects of ``models``, which are those of ``actions``, and learn their presence.
+
+    Raises RecordingError.
+    """
     return presence_of(look_around(dataset, entries, actions, models), actions)
 
 
@@ -58,98 +56,117 @@ def look_around(
     entries: Sequence[DatasetEntry],
     actions: Sequence[str],
     models: Sequence[Model],
-) -> list[Look]:
-    """Look for every object at each place in each recording; raises RecordingError."""
+) -> list[SupportSample]:
+    """Look for every object several times in each recording; raises RecordingError."""
     return [
-        Look(entry.interaction, {actions[number]: support for number, support in told.items()})
+        SupportSample(entry.interaction, supports)
         for entry in entries
-        for told in _looks(dataset, entry, models)
+        for supports in _look_in(dataset, entry, dict(zip(actions, models, strict=True)))
     ]
 
 
-def presence_of(looks: Sequence[Look], actions: Sequence[str]) -> Presence:
-    """What looks say of the objects of ``actions``."""
+def presence_of(samples: Sequence[SupportSample], actions: Sequence[str]) -> Presence:
+    """Learn the presence of the objects of ``actions`` from looks at them."""
     supports, spreads, parts, part_spreads = [], [], [], []
     for action in actions:
-        found = {done: _supports(looks, action, done) for done in actions}
-        told = {done: [one.log_likelihood for one in some] for done, some in found.items()}
-        others = [support for done in actions if done != action for support in told[done]]
-        expected = dict.fromkeys(actions, _mean(others, DEFAULT_RECOGNITION.usual_support_absent))
-        expected[action] = DEFAULT_RECOGNITION.usual_support_present
-        supports.append([_mean(told[done], expected[done]) for done in actions])
-        spreads.append(_spread(told, action))
-        means, deviations = _parts(found[action])
+        by_action = {done: _supports(samples, action, done) for done in actions}
+        values = {done: [one.log_likelihood for one in some] for done, some in by_action.items()}
+        supports.append(_mean_supports(values, action))
+        spreads.append(_spread(values, action))
+        means, deviations = _parts(by_action[action])
         parts.append(means)
         part_spreads.append(deviations)
     return Presence(*map(np.array, (supports, spreads, parts, part_spreads)))
 
 
-def _supports(looks: Sequence[Look], action: str, done: str) -> list[Support]:
-    """Those of an action's object where somebody does ``done``."""
-    return [
-        look.supports[action] for look in looks if look.action == done and action in look.supports
-    ]
-
-
-def _looks(
-    dataset: Dataset, entry: DatasetEntry, models: Sequence[Model]
-) -> list[dict[int, Support]]:
-    """The support of each object that says anything, at each place in a recording."""
+def _look_in(
+    dataset: Dataset, entry: DatasetEntry, models: Mapping[str, Model]
+) -> Iterator[dict[str, Support]]:
+    """Yield, for each look in a recording, the support of each object that has one."""
     path = dataset.path(entry)
     frames = load_frames(path, entry.object)
-    firsts = [int(place * (len(frames) - STEPS)) for place in PLACES]
-    looked_at = [frames[first + step] for first in firsts for step in range(STEPS)]
+    steps = DEFAULT_TRAINING.look_frames
+    firsts = [int(share * (len(frames) - steps)) for share in DEFAULT_TRAINING.looks_at]
+    looked_at = [frames[first + step] for first in firsts for step in range(steps)]
     images = {seen.time_ns: seen.image for seen in observe(path, looked_at, NEEDS)}
-    trackers = [
-        new_tracker(model, DEFAULT_METHOD, left_handed=entry.handedness == "left")
-        for model in models
-    ]
-    reader = trackers[0].new_reader()
-    found: list[dict[int, Support]] = []
+    trackers = {
+        action: new_tracker(model, DEFAULT_METHOD, left_handed=entry.handedness == "left")
+        for action, model in models.items()
+    }
+    reader = next(iter(trackers.values())).new_reader()
     for index, seen in enumerate(observe(path, frames)):
         body = None if seen.joints is None else reader.read(seen.joints)
         if body is None:
             continue
         image = images.get(seen.time_ns)
-        for tracker in trackers:
+        for tracker in trackers.values():
             if image is None:
                 tracker.remember(body, seen.time_ns)
             else:
                 tracker.step_body(body, seen.time_ns, image)
-        if index - STEPS + 1 in firsts:
-            told = {number: tracker.support for number, tracker in enumerate(trackers)}
-            found.append({n: support for n, support in told.items() if support is not None})
-    return found
+        if index - steps + 1 in firsts:
+            yield _supports_of(trackers)
 
 
-def _mean(supports: Sequence[float], expected: float) -> float:
-    return (sum(supports) + PRIOR_COUNT * expected) / (len(supports) + PRIOR_COUNT)
+def _supports_of(trackers: Mapping[str, ObjectTracker]) -> dict[str, Support]:
+    """Return what the last image says for each object, by its action, where it says anything."""
+    supports = {action: tracker.support for action, tracker in trackers.items()}
+    return {action: support for action, support in supports.items() if support is not None}
 
 
-def _spread(found: Mapping[str, Sequence[float]], action: str) -> float:
-    """That within images of one object, as much of the object's own as of all others'."""
+def _supports(samples: Sequence[SupportSample], action: str, done: str) -> list[Support]:
+    """Return the supports of an action's object where somebody does ``done``."""
+    return [
+        sample.supports[action]
+        for sample in samples
+        if sample.action == done and action in sample.supports
+    ]
+
+
+def _mean_supports(values: Mapping[str, Sequence[float]], action: str) -> list[float]:
+    """Mean support (K,) of an action's object in images of each object.
+
+    Images of an object without any, or with few, are taken to be like those of the others.
+    """
+    others = [value for done, some in values.items() if done != action for value in some]
+    expected = dict.fromkeys(values, _mean(others, DEFAULT_RECOGNITION.usual_support_absent))
+    expected[action] = DEFAULT_RECOGNITION.usual_support_present
+    return [_mean(some, expected[done]) for done, some in values.items()]
+
+
+def _mean(values: Sequence[float], expected: float) -> float:
+    """Mean of values, as if the prior looks had shown the expected one."""
+    prior = DEFAULT_TRAINING.prior_looks
+    return (sum(values) + prior * expected) / (len(values) + prior)
+
+
+def _spread(values: Mapping[str, Sequence[float]], action: str) -> float:
+    """Standard deviation within images of one object; the object's own weigh as all others'."""
+    usual = DEFAULT_RECOGNITION.usual_support_spread
     squares = {
-        done: np.square(np.array(some) - np.mean(some)) for done, some in found.items() if some
+        done: np.square(np.array(some) - np.mean(some)) for done, some in values.items() if some
     }
     own = squares.pop(action, np.empty(0))
     others = np.concatenate([np.empty(0), *squares.values()])
-    usual = DEFAULT_RECOGNITION.usual_support_spread
-    variances = [_variance(some, usual, PRIOR_COUNT) for some in (own, others) if len(some)]
+    variances = [
+        _variance(some, usual, DEFAULT_TRAINING.prior_looks) for some in (own, others) if len(some)
+    ]
     variance = np.mean(variances) if variances else usual**2
-    return float(max(np.sqrt(variance), LEAST_SPREAD))
+    return float(max(np.sqrt(variance), DEFAULT_TRAINING.least_support_spread))
 
 
 def _parts(own: Sequence[Support]) -> tuple[Array, Array]:
-    """The means and spreads (4,) of the parts of an object's own supports."""
-    if not own:
-        return np.full(PARTS, -np.inf), np.array(DEFAULT_RECOGNITION.usual_part_spreads)
-    told = np.array([one.parts for one in own])
-    means = told.mean(axis=0)
+    """Return the means and spreads (4,) of the parts of an object's own supports."""
     usual = DEFAULT_RECOGNITION.usual_part_spreads
-    return means, np.sqrt(_variance(np.square(told - means), usual, PARTS_PRIOR_COUNT))
+    if not own:
+        return np.full(PARTS, -np.inf), np.array(usual)
+    parts = np.array([one.parts for one in own])
+    means = parts.mean(axis=0)
+    squares = np.square(parts - means)
+    return means, np.sqrt(_variance(squares, usual, DEFAULT_TRAINING.prior_part_looks))
 
 
-def _variance(squares: Array, usual_spreads: ArrayLike, prior_count: float) -> Array:
-    """Of squared deviations (N, ...), as if so many had shown the usual spreads (...)."""
-    usual = prior_count * np.square(usual_spreads)
-    return np.asarray((squares.sum(axis=0) + usual) / (len(squares) + prior_count))
+def _variance(squares: Array, usual_spreads: ArrayLike, prior_looks: float) -> Array:
+    """Mean of squared deviations (N, ...), as if the prior looks had the usual spreads (...)."""
+    usual = prior_looks * np.square(usual_spreads)
+    return np.asarray((squares.sum(axis=0) + usual) / (len(squares) + prior_looks))

@@ -1,4 +1,4 @@
-"""Training a recogniser of actions from a dataset."""
+"""Trains a recogniser of actions from a dataset, or from people's joints."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,21 +13,21 @@ from inhand_tracker.recognition.recogniser import Recogniser
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.people.joint_sequence import JointSequence
 from inhand_lab.training.movement_training import MovementSequence, train_movements
+from inhand_lab.training.parameters import DEFAULT_TRAINING
+from inhand_lab.training.recorded_movements import (
+    UsualPoses,
+    read_joints,
+    read_movement,
+    usual_poses,
+)
 from inhand_lab.training.svm_training import train_svm
-from inhand_lab.training.watched_people import poses_and_movements, usual_poses, watch
-from inhand_lab.world.idle_people import Idleness, watch_idle
+from inhand_lab.world.idle_people import watch_idle
 
-STEP = 4
-"""Every so many-th body is learned from: successive ones are much the same."""
-KEPT_POSES = 1000
-IDLE_PEOPLE, IDLE_SEED, IDLE_STEP = 16, 7, 6
-IDLE_KINDS: tuple[Idleness, ...] = ("fidget", "stand", "walkOnSpot", "walkAbout")
-"""Simulated people who use nothing, of whom every recogniser learns."""
 READING, LEARNING = "recordings", "actions"
 
 
-def stages(recordings: int) -> dict[str, int]:
-    """What training goes through, each with the number of its steps."""
+def recogniser_stages(recordings: int) -> dict[str, int]:
+    """Name the stages of training a recogniser, each with the number of its steps."""
     return {READING: recordings, LEARNING: 1}
 
 
@@ -38,33 +38,37 @@ def train_recogniser(
 ) -> Recogniser:
     """Learn the actions of recordings, labelled or not; raises DatasetError or RecordingError.
 
-    ``on_step`` is called at every step of ``stages``.
+    ``on_step`` is called at every step of ``recogniser_stages``.
     """
     people = []
     for entry in entries:
-        people.append(_watched(dataset, entry))
+        people.append(_read_joints(dataset, entry))
         on_step(READING)
-    recogniser = recogniser_of(people, str(dataset.folder))
+    recogniser = learn_recogniser(people, str(dataset.folder))
     on_step(LEARNING)
     return recogniser
 
 
-def recogniser_of(people: Sequence[JointSequence], named: str = "the recordings") -> Recogniser:
-    """Learn the actions of people; ``named`` is where they are from, for the error.
+def learn_recogniser(people: Sequence[JointSequence], origin: str = "the recordings") -> Recogniser:
+    """Learn the actions of people; ``origin`` names where they are from, for the error.
 
     Raises DatasetError.
     """
-    learned = learn_movements(people, named)
-    svm = train_svm(learned.poses, learned.labels)
-    presence = usual_presence(len(learned.actions))
+    learned = learn_movements(people, origin)
     return Recogniser(
-        learned.actions, learned.body_poses, svm, learned.movements, learned.temper, presence
+        actions=learned.actions,
+        body_poses=learned.body_poses,
+        svm=train_svm(learned.poses, learned.labels),
+        movements=learned.movements,
+        temper=learned.temper,
+        presence=usual_presence(len(learned.actions)),
     )
 
 
 @dataclass(frozen=True)
 class LearnedMovements:
-    """``movements``, their ``temper``, and the body poses (N, 60) and actions (N,) learned from."""
+    """What is learned of ``actions`` (K), and the body ``poses`` (N, 60) it was learned from, with
+    the number of the action of each as ``labels`` (N,)."""
 
     actions: tuple[str, ...]
     movements: MovementClasses
@@ -74,58 +78,64 @@ class LearnedMovements:
 
     @property
     def body_poses(self) -> Array:
-        """(M, 60): some of the poses, for a recogniser to keep."""
-        return self.poses[:: max(1, len(self.poses) // KEPT_POSES)]
+        """Body poses (M, 60) that a recogniser keeps, evenly spaced."""
+        return self.poses[:: max(1, len(self.poses) // DEFAULT_TRAINING.kept_poses)]
 
 
 def learn_movements(
-    people: Sequence[JointSequence], named: str = "the recordings"
+    people: Sequence[JointSequence], origin: str = "the recordings"
 ) -> LearnedMovements:
-    """What ``recogniser_of`` learns, without the support vector machine; raises DatasetError."""
+    """Learn actions without the support vector machine; raises DatasetError."""
     actions = tuple(dict.fromkeys(one.action for one in people))
-    participants = {one.participant for one in people}
-    if len(actions) < 2 or len(participants) < 2:
-        raise DatasetError(
-            f"{named}: {len(actions)} actions by {len(participants)} participants: recognition "
-            "compares two actions at the least, by two participants at the least"
-        )
+    _check_enough(people, actions, origin)
     usual = usual_poses(people)
-    poses, labels, sequences = [], [], list(_background(len(actions)))
+    poses, labels, sequences = [], [], list(_idle_movements(len(actions)))
     for one in people:
-        theirs, features, frames = poses_and_movements(one, usual, STEP)
-        if not len(frames):
+        read = read_movement(one, usual, DEFAULT_TRAINING.body_step)
+        if not len(read.frames):
             continue
         number = actions.index(one.action)
-        poses.append(theirs)
-        labels.append(np.full(len(theirs), number))
-        sequences.append(MovementSequence(number, one.participant, features, one.times_ns[frames]))
+        poses.append(read.body_poses)
+        labels.append(np.full(len(read.frames), number))
+        times_ns = one.times_ns[read.frames]
+        sequences.append(MovementSequence(number, one.participant, read.features, times_ns))
     missing = set(range(len(actions))) - {one.action for one in sequences}
     if missing:
-        raise DatasetError(f"{named}: no body is seen doing {actions[min(missing)]!r}")
+        raise DatasetError(f"{origin}: no body is seen doing {actions[min(missing)]!r}")
     movements, temper = train_movements(sequences, len(actions))
     return LearnedMovements(
         actions, movements, temper, np.concatenate(poses), np.concatenate(labels)
     )
 
 
+def _check_enough(people: Sequence[JointSequence], actions: Sequence[str], origin: str) -> None:
+    participants = {one.participant for one in people}
+    if len(actions) < 2 or len(participants) < 2:
+        raise DatasetError(
+            f"{origin}: {len(actions)} actions by {len(participants)} participants: recognition "
+            "compares two actions at the least, by two participants at the least"
+        )
+
+
 @lru_cache(maxsize=4)
-def _background(number: int) -> list[MovementSequence]:
-    """People who use nothing, as the class of that number."""
+def _idle_movements(action: int) -> list[MovementSequence]:
+    """Simulate people who use nothing, whose class has the number ``action``."""
     people = [
-        watch_idle(idleness, participant, IDLE_SEED)
-        for participant in range(IDLE_PEOPLE)
-        for idleness in IDLE_KINDS
+        watch_idle(kind, participant, DEFAULT_TRAINING.idle_seed)
+        for participant in range(DEFAULT_TRAINING.idle_people)
+        for kind in DEFAULT_TRAINING.idle_kinds
     ]
     usual = usual_poses(people)
-    sequences = []
-    for one in people:
-        _, features, frames = poses_and_movements(one, usual, IDLE_STEP)
-        named = f"idle {one.participant}"
-        sequences.append(MovementSequence(number, named, features, one.times_ns[frames]))
-    return sequences
+    return [_idle_movement(one, usual, action) for one in people]
+
+
+def _idle_movement(one: JointSequence, usual: UsualPoses, action: int) -> MovementSequence:
+    read = read_movement(one, usual, DEFAULT_TRAINING.idle_step)
+    name = f"idle {one.participant}"
+    return MovementSequence(action, name, read.features, one.times_ns[read.frames])
 
 
 # Folds share recordings.
 @lru_cache(maxsize=512)
-def _watched(dataset: Dataset, entry: DatasetEntry) -> JointSequence:
-    return watch(dataset, entry)
+def _read_joints(dataset: Dataset, entry: DatasetEntry) -> JointSequence:
+    return read_joints(dataset, entry)

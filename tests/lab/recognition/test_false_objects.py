@@ -1,18 +1,26 @@
 """``inhand recognise --false-objects`` on small simulated worlds, without and with images."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.datasets.recorded_frames import has_images
-from inhand_lab.recognition import false_objects_by_movement, false_objects_with_images
+from inhand_lab.recognition.parameters import (
+    DEFAULT_RECOGNITION_EVALUATION,
+    RecognitionEvaluationParameters,
+)
 
 from inhand.__main__ import main
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(900)]
 
 ACTIONS = ("hammerNail", "putOnShoe", "drinkFromMug")
+
+
+def use(monkeypatch: pytest.MonkeyPatch, parameters: RecognitionEvaluationParameters) -> None:
+    monkeypatch.setattr("inhand.recognise.DEFAULT_RECOGNITION_EVALUATION", parameters)
 
 
 def count(folder: Path, result: Path, *more: str) -> dict[str, dict[str, float]]:
@@ -28,7 +36,7 @@ def count(folder: Path, result: Path, *more: str) -> dict[str, dict[str, float]]
 def test_without_images_skeletons_alone_are_looked_at(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(false_objects_by_movement, "IDLE_PEOPLE", 1)
+    use(monkeypatch, replace(DEFAULT_RECOGNITION_EVALUATION, idle_people_by_movement=1))
     people = generate(
         tmp_path / "set", GenerationSettings(ACTIONS, 3, 5, 90, images=False), lambda: None
     )
@@ -45,8 +53,7 @@ def test_without_images_skeletons_alone_are_looked_at(
 def test_with_images_the_cascade_sees_idle_people_strangers_and_untaught_actions(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(false_objects_with_images, "IDLE_PEOPLE", 1)
-    monkeypatch.setattr(false_objects_with_images, "IDLE_KINDS", ("stand",))
+    use(monkeypatch, replace(DEFAULT_RECOGNITION_EVALUATION, idle_kinds=("stand",)))
     people = generate(
         tmp_path / "set", GenerationSettings(ACTIONS, 3, 5, 90, images=True), lambda: None
     )

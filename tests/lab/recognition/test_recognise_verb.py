@@ -9,7 +9,7 @@ import pytest
 from inhand_lab.datasets.dataset import Dataset, DatasetError
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.datasets.recorded_frames import load_frames
-from inhand_lab.recognition.protocol import learn_from
+from inhand_lab.recognition.cascade_learning import learn_cascade
 from inhand_runtime.errors import SettingsError
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
@@ -39,7 +39,8 @@ def people(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
 
 @pytest.fixture(scope="module")
 def learned(people: Dataset) -> tuple[Recogniser, list[Model]]:
-    return learn_from(people, [e for e in people.entries if e.participant != "p04"], images=False)
+    others = [entry for entry in people.entries if entry.participant != "p04"]
+    return learn_cascade(people, others, images=False)
 
 
 def follow(cascade: Cascade | Cascade2012, people: Dataset, action: str) -> list[Recognition]:
@@ -183,4 +184,4 @@ def test_a_recogniser_is_trained_by_a_command(people: Dataset, tmp_path: Path) -
 def test_one_action_alone_cannot_be_recognised(people: Dataset, tmp_path: Path) -> None:
     lifted = replace(people, entries=people.entries[:5])
     with pytest.raises(DatasetError, match="1 actions by 5 participants"):
-        learn_from(lifted, lifted.entries, images=False)
+        learn_cascade(lifted, lifted.entries, images=False)

@@ -2,8 +2,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.training.appearance_samples import FRAMES, RECORDINGS, appearance_samples
+from inhand_lab.training.appearance_samples import appearance_samples
 from inhand_lab.training.model_training import train
+from inhand_lab.training.parameters import DEFAULT_TRAINING
 from waving import waving, write_dataset
 
 
@@ -21,10 +22,13 @@ def test_samples_are_frames_with_their_own_poses_and_joints(tmp_path: Path) -> N
 
 
 def test_of_many_recordings_some_frames_of_some_are_read(tmp_path: Path) -> None:
-    dataset = write_dataset(tmp_path / "many", 2 * RECORDINGS, frames=12, images=True)
+    dataset = write_dataset(
+        tmp_path / "many", 2 * DEFAULT_TRAINING.appearance_recordings, frames=12, images=True
+    )
     samples = list(appearance_samples(dataset, dataset.entries))
-    assert len(samples) == FRAMES
-    assert len({sample[1].tobytes() for sample in samples}) > 0.9 * FRAMES
+    frames = DEFAULT_TRAINING.appearance_frames
+    assert len(samples) == frames
+    assert len({sample[1].tobytes() for sample in samples}) > 0.9 * frames
 
 
 @pytest.mark.parametrize("images", [True, False])

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError, load_dataset
 from inhand_lab.datasets.generation import GenerationSettings, generate
-from inhand_lab.training.checks import check_hands, check_sequence
-from inhand_lab.training.learned import learned_by
-from inhand_lab.training.model_training import entries_for, stages, train
+from inhand_lab.training.model_summary import summarise_model
+from inhand_lab.training.model_training import entries_for, model_stages, train
+from inhand_lab.training.recording_checks import check_hands, check_sequence
 from inhand_runtime.errors import InhandError
 from inhand_runtime.recording import RecordingWriter, read_recording
 from inhand_schemas.joints import JOINT_NAMES, Joint
@@ -215,7 +215,7 @@ def test_participants_can_be_left_out(dataset: Dataset) -> None:
 def test_every_step_is_told_once(dataset: Dataset) -> None:
     told: Counter[str] = Counter()
     train(dataset, dataset.entries, lambda stage: told.update([stage]))
-    assert told == stages(len(dataset.entries))
+    assert told == model_stages(len(dataset.entries))
 
 
 def test_the_command_saves_a_model_and_says_what_was_learned(
@@ -224,7 +224,7 @@ def test_the_command_saves_a_model_and_says_what_was_learned(
     path = tmp_path / "mug.model"
     assert main(["train", str(dataset.folder), "-o", str(path)]) == 0
     shown = capsys.readouterr().out
-    learned = learned_by(load_model(path).mapping)
+    learned = summarise_model(load_model(path).mapping)
     assert (learned.recordings, learned.participants, learned.frames) == (3, 3, 3 * FRAMES)
     for told in ("participants", "cluster radii", "re-initialise rotation", "predicted from"):
         assert told in shown
@@ -245,7 +245,7 @@ def test_what_was_learned_is_counted_over_all_frames(dataset: Dataset) -> None:
     frames = len(mapping.body_poses)
     half, part = np.arange(frames) < frames // 2, np.full(frames, 10)
     part[0] = 3
-    learned = learned_by(
+    learned = summarise_model(
         replace(
             mapping,
             rotation_variation=np.where(half, 0.0, 10.0),

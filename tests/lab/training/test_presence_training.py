@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.training.model_training import train
-from inhand_lab.training.presence_training import Look, learn_presence, look_around, presence_of
+from inhand_lab.training.presence_training import (
+    SupportSample,
+    learn_presence,
+    look_around,
+    presence_of,
+)
 from inhand_tracker.model.model_file import save_model
 from inhand_tracker.recognition.presence import Presence, usual_presence
 from inhand_tracker.recognition.recogniser_file import load_recogniser
@@ -61,7 +66,7 @@ def test_looks_of_one_action_fewer_tell_the_same_of_the_others() -> None:
     random = np.random.default_rng(4)
     actions = ("sweep", "drink", "call")
     looks = [
-        Look(
+        SupportSample(
             done,
             {
                 seen: Support(
@@ -73,7 +78,7 @@ def test_looks_of_one_action_fewer_tell_the_same_of_the_others() -> None:
         for done in actions
         for _ in range(6)
     ]
-    looks.append(Look("drink", {}))
+    looks.append(SupportSample("drink", {}))
     of_all, of_two = presence_of(looks, actions), presence_of(looks, actions[:2])
     np.testing.assert_array_equal(own_supports(of_all)[:2], own_supports(of_two))
     kept = presence_of([look for look in looks if look.action != "call"], actions[:2])
@@ -87,7 +92,7 @@ def test_the_object_that_resembles_another_is_told_from_those_that_do_not() -> N
     actions = ("hammer", "brush", "call")
     resemblance = {("hammer", "brush"): 18.0, ("brush", "hammer"): 16.0}
     looks = [
-        Look(
+        SupportSample(
             done,
             {
                 seen: Support(
@@ -106,7 +111,7 @@ def test_the_object_that_resembles_another_is_told_from_those_that_do_not() -> N
 
 def test_the_parts_of_an_objects_support_are_those_in_images_of_itself() -> None:
     looks = [
-        Look(
+        SupportSample(
             "drink",
             {
                 "drink": Support(4.0, 12.0 + off, 2.0, 9.0),

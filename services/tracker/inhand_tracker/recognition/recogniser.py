@@ -1,7 +1,6 @@
 """Recognises actions by one person's movement, and keeps what was learned to do it."""
 
 from dataclasses import dataclass
-from typing import Protocol
 
 from inhand_tracker.body.reader import Body
 from inhand_tracker.geometry.arrays import Array
@@ -14,40 +13,29 @@ from inhand_tracker.recognition.presence import Presence
 
 
 @dataclass(frozen=True)
-class Recogniser:
-    """All that was learned to recognise ``actions`` (K), the names of interactions.
+class LearnedCascade:
+    """What `cascade` needs of a recogniser: all but the actions' names and Darby's machine.
 
-    ``body_poses`` (M, 60) are some of the people learned from. ``svm`` classifies body poses one
-    by one (Darby et al. 2012), ``movements`` the last seconds; ``temper`` is the share of each
-    frame's evidence that is new; ``presence`` is what images say of the actions' objects.
+    ``body_poses`` (M, 60) are some of the people learned from. ``movements`` classify the last
+    seconds; ``temper`` is the share of each frame's evidence that is new; ``presence`` is what
+    images say of the actions' objects.
     """
 
-    actions: tuple[str, ...]
     body_poses: Array
-    svm: PairwiseSvm
     movements: MovementClasses
     temper: float
     presence: Presence
 
 
-class LearnedCascade(Protocol):
-    """What `cascade` needs of a recogniser: all but the support vector machine."""
+@dataclass(frozen=True)
+class Recogniser(LearnedCascade):
+    """All that was learned to recognise ``actions`` (K), the names of interactions.
 
-    @property
-    def body_poses(self) -> Array:
-        """Body poses (M, 60) of some of the people learned from."""
+    ``svm`` classifies body poses one by one (Darby et al. 2012).
+    """
 
-    @property
-    def movements(self) -> MovementClasses:
-        """What the last seconds of movement say."""
-
-    @property
-    def temper(self) -> float:
-        """Share of each frame's evidence that is new."""
-
-    @property
-    def presence(self) -> Presence:
-        """What images say of the actions' objects."""
+    actions: tuple[str, ...]
+    svm: PairwiseSvm
 
 
 class MovementRecogniser:

@@ -48,10 +48,10 @@ def _assemble(description: dict[str, Any], arrays: Arrays) -> Recogniser:
         part: {name: arrays[f"{part}.{name}"] for name in names} for part, names in _ARRAYS.items()
     }
     return Recogniser(
-        tuple(description["actions"]),
-        arrays["body_poses"],
-        PairwiseSvm(gamma=float(description["gamma"]), **parts["svm"]),
-        MovementClasses(**parts["movements"]),
-        float(description["temper"]),
-        Presence(**parts["presence"]),
+        actions=tuple(description["actions"]),
+        body_poses=arrays["body_poses"],
+        svm=PairwiseSvm(gamma=float(description["gamma"]), **parts["svm"]),
+        movements=MovementClasses(**parts["movements"]),
+        temper=float(description["temper"]),
+        presence=Presence(**parts["presence"]),
     )

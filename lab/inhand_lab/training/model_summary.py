@@ -1,4 +1,4 @@
-"""What a model has learned, in a few numbers."""
+"""Sums up in a few numbers what a model has learned."""
 
 from dataclasses import dataclass
 
@@ -10,12 +10,13 @@ from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
 
 
 @dataclass(frozen=True)
-class Learned:
-    """``radii`` are the least, the median and the greatest δ, in body heights.
+class ModelSummary:
+    """What a model was learned from, and how well poses can be predicted with it.
 
-    ``good_rotations`` and ``good_translations`` are the shares of frames in which particles are
-    redrawn more often than not (α, β > ½). The parts are those that the object's translation and
-    rotation are predicted from most often, each with its share of frames.
+    ``radii`` are the least, the median and the greatest δ, in statures. ``good_rotations`` and
+    ``good_translations`` are the shares of frames in which particles are redrawn more often than
+    not (α, β > ½). The parts are those that the object's translation and rotation are predicted
+    from most often, each with its share of frames.
     """
 
     recordings: int
@@ -28,27 +29,31 @@ class Learned:
     rotation_part: tuple[str, float]
 
 
-def learned_by(mapping: Mapping) -> Learned:
-    """The numbers of a mapping."""
+def summarise_model(mapping: Mapping) -> ModelSummary:
+    """Sum up a model by its mapping."""
     variances = DEFAULT_DARBY2014
     least, median, greatest = np.quantile(mapping.radii, [0.0, 0.5, 1.0]).tolist()
-    return Learned(
+    return ModelSummary(
         recordings=len(mapping.participants),
         participants=len(set(mapping.participants)),
         frames=len(mapping.body_poses),
         radii=(least, median, greatest),
-        good_rotations=_good(mapping.rotation_variation, variances.rotation_variance),
-        good_translations=_good(mapping.translation_variation, variances.translation_variance),
+        good_rotations=_redrawn_share(mapping.rotation_variation, variances.rotation_variance),
+        good_translations=_redrawn_share(
+            mapping.translation_variation, variances.translation_variance
+        ),
         translation_part=_most_used(mapping.proximate_part),
         rotation_part=_most_used(mapping.stable_rotation_part),
     )
 
 
-def _good(variation: Array, variance: float) -> float:
+def _redrawn_share(variation: Array, variance: float) -> float:
+    """Share of frames in which a particle is redrawn with a probability above one half."""
     return float((np.exp(-np.square(variation) / (2.0 * variance)) > 0.5).mean())
 
 
 def _most_used(parts: Indices) -> tuple[str, float]:
+    """Return the part that is used in most frames, and its share of them."""
     counts = np.bincount(parts, minlength=len(PARTS))
     most = int(np.argmax(counts))
     return PARTS[most], float(counts[most] / len(parts))

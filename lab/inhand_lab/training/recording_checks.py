@@ -1,4 +1,4 @@
-"""Whether recordings can be learned from; each mistake is one line that says the mend."""
+"""Checks whether recordings can be learned from; each mistake is one line that says the mend."""
 
 from collections.abc import Sequence
 
@@ -9,22 +9,11 @@ from inhand_tracker.geometry import rotations
 from inhand_tracker.mapping.learning import LabelledSequence
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
-
-FASTEST_M_PER_S = 60.0
-"""Faster than the head of a golf club."""
-
-FASTEST_RAD_PER_S = 85.0
-"""Faster than a golf club turns; a label that is upside down for a frame at 30 Hz turns faster."""
-
-LEAST_SHARE = 0.5
-"""Of a recording's frames, that must have a label, and a whole body."""
-
-CLEARLY = 0.9
-"""The share of frames in which the object is nearer to one hand, where it is that hand's."""
+from inhand_lab.training.parameters import DEFAULT_TRAINING
 
 
 def check_sequence(entry: DatasetEntry, sequence: LabelledSequence) -> None:
-    """Raises DatasetError for a recording that cannot be meant."""
+    """Check one recording; raises DatasetError for one that cannot be meant."""
     if len(sequence.joints) == 0:
         raise DatasetError(
             f"{entry.file} holds no skeletons: record it again with a body tracker, or take it "
@@ -36,10 +25,13 @@ def check_sequence(entry: DatasetEntry, sequence: LabelledSequence) -> None:
 
 
 def check_hands(entries: Sequence[DatasetEntry], sequences: Sequence[LabelledSequence]) -> None:
-    """Raises DatasetError where an object is in the dominant hand of some people, and in the other
-    hand of others: one of them is not as handed as ``dataset.toml`` says."""
+    """Check that an object is at the same hand of everybody, dominant or other.
+
+    Raises DatasetError where it is not: somebody is not as handed as ``dataset.toml`` says.
+    """
     shares = np.array([_share_at_dominant_hand(sequence) for sequence in sequences])
-    at_dominant, at_other = shares >= CLEARLY, shares <= 1.0 - CLEARLY
+    clear = DEFAULT_TRAINING.clear_hand_share
+    at_dominant, at_other = shares >= clear, shares <= 1.0 - clear
     if not (at_dominant.any() and at_other.any()):
         return
     odd = at_other if at_other.sum() <= at_dominant.sum() else at_dominant
@@ -56,22 +48,23 @@ def check_hands(entries: Sequence[DatasetEntry], sequences: Sequence[LabelledSeq
 def _check_labels(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     frames = len(sequence.translations)
     unlabelled = int((~np.isfinite(sequence.translations).all(axis=1)).sum())
-    if unlabelled > (1.0 - LEAST_SHARE) * frames:
+    if unlabelled > DEFAULT_TRAINING.most_missing_share * frames:
         raise DatasetError(
             f"{entry.file} has no label of {entry.object!r} in {_share(unlabelled, frames)}, and "
-            f"{1.0 - LEAST_SHARE:.0%} may lack one: label it, or take it out of dataset.toml"
+            f"{DEFAULT_TRAINING.most_missing_share:.0%} may lack one: label it, or take it out of "
+            "dataset.toml"
         )
 
 
 def _check_jumps(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     moved = np.linalg.norm(np.diff(sequence.translations, axis=0), axis=1)
     turned = rotations.angle_between(sequence.rotations[:-1], sequence.rotations[1:])
-    for frame in np.flatnonzero(moved * entry.frame_rate > FASTEST_M_PER_S):
+    for frame in np.flatnonzero(moved * entry.frame_rate > DEFAULT_TRAINING.fastest_m_per_s):
         raise DatasetError(
             f"{entry.file}: the label jumps by {moved[frame]:.2f} m after frame {frame}: "
             "mend that label"
         )
-    for frame in np.flatnonzero(turned * entry.frame_rate > FASTEST_RAD_PER_S):
+    for frame in np.flatnonzero(turned * entry.frame_rate > DEFAULT_TRAINING.fastest_rad_per_s):
         raise DatasetError(
             f"{entry.file}: the label turns by {np.degrees(turned[frame]):.0f}° after frame "
             f"{frame}: mend that label"
@@ -81,7 +74,7 @@ def _check_jumps(entry: DatasetEntry, sequence: LabelledSequence) -> None:
 def _check_bodies(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     seen = np.asarray(np.isfinite(sequence.joints).all(axis=2))
     frames = len(seen)
-    most_missing = (1.0 - LEAST_SHARE) * frames
+    most_missing = DEFAULT_TRAINING.most_missing_share * frames
     without_pelvis = int((~seen[:, PELVIS_JOINTS].all(axis=1)).sum())
     if without_pelvis > most_missing:
         needed = ", ".join(JOINT_NAMES[joint] for joint in sorted(PELVIS_JOINTS))
@@ -94,12 +87,13 @@ def _check_bodies(entry: DatasetEntry, sequence: LabelledSequence) -> None:
         worst = JOINT_NAMES[int(np.argmin(seen.sum(axis=0)))]
         raise DatasetError(
             f"{entry.file} lacks joints in {_share(incomplete, frames)}, {worst} most often, and "
-            f"{1.0 - LEAST_SHARE:.0%} may: record so that the whole body is seen"
+            f"{DEFAULT_TRAINING.most_missing_share:.0%} may: record so that the whole body is "
+            "seen"
         )
 
 
 def _share_at_dominant_hand(sequence: LabelledSequence) -> float:
-    """The share of the frames in which the object is nearer to the dominant hand than the other."""
+    """Share of frames in which the object is nearer to the dominant hand than to the other."""
     hands = sequence.joints[:, [Joint.HAND_RIGHT, Joint.HAND_LEFT]]
     right, left = np.linalg.norm(hands - sequence.translations[:, None], axis=2).T
     known = np.isfinite(right) & np.isfinite(left)

@@ -1,0 +1,95 @@
+"""Every number of training that can be tuned.
+
+`inhand train` uses them all. What those of a recogniser are worth together shows `inhand recognise
+DATASET`; what those of movements and of the support vector machine are, `inhand recognise DATASET
+--alone`. Where nothing else is said a number was set by hand with these figures in view.
+"""
+
+from dataclasses import dataclass
+
+from inhand_lab.world.idle_people import Idleness
+
+
+@dataclass(frozen=True)
+class TrainingParameters:
+    """Which recordings are refused, how many frames are learned from, and how."""
+
+    # Which recordings are refused (recording_checks); docs/training.md lists these limits.
+    fastest_m_per_s: float = 60.0
+    """Speed of a label in metres a second above which it is wrong: faster than the head of a golf
+    club."""
+    fastest_rad_per_s: float = 85.0
+    """Speed of a label's turn in radians a second above which it is wrong: faster than a golf club
+    turns; a label that is upside down for one frame at 30 Hz turns faster."""
+    most_missing_share: float = 0.5
+    """Share of a recording's frames that may lack a label, or a whole body, at the most."""
+    clear_hand_share: float = 0.9
+    """Share of frames in which an object is nearer to one hand from which it is that hand's."""
+
+    # From how much the appearance of an object is learned (appearance_samples).
+    appearance_recordings: int = 12
+    """Number of recordings, evenly spaced, at the most: an object looks much the same in all."""
+    appearance_frames: int = 60
+    """Number of frames of all these recordings together, evenly spaced, at the most."""
+
+    # From how much a recogniser is learned (recogniser_training, recorded_movements).
+    usual_pose_step: int = 10
+    """Number of frames from one whole body to the next that fills in what is not seen of others."""
+    body_step: int = 4
+    """Number of frames from one body that is learned from to the next: successive ones are much
+    the same."""
+    kept_poses: int = 1000
+    """Number of body poses, about, that a recogniser keeps to fill in what is not seen."""
+    idle_kinds: tuple[Idleness, ...] = ("fidget", "stand", "walkOnSpot", "walkAbout")
+    """Kinds of simulated people who use nothing, of whom every recogniser learns."""
+    idle_people: int = 16
+    """Number of them, of each kind."""
+    idle_seed: int = 7
+    """Seed of these people; others than those on whom false objects are counted."""
+    idle_step: int = 6
+    """Number of frames from one body of theirs that is learned from to the next."""
+
+    # How movements are learned (movement_training).
+    action_gaussians: int = 3
+    """Number of Gaussians of an action."""
+    idle_gaussians: int = 60
+    """Number of Gaussians of people who use nothing, who may do anything."""
+    within_limits_share: float = 0.98
+    """Share of the frames of people left out that are within the limits of all movements."""
+    within_reach_share: float = 0.3
+    """Share of the frames of people left out that are within the reach of their own action."""
+    shrinkage: float = 0.05
+    """Share of the identity in the covariance of standardised features."""
+    groups: int = 5
+    """Number of groups of participants, at the most, each of which is left out once."""
+    prior_frames: float = 1.0
+    """Number of frames of every class that a Gaussian is taken to have beforehand."""
+    tempers: tuple[float, ...] = (0.01, 0.02, 0.05, 0.1, 0.2, 0.4)
+    """Shares of each frame's evidence that are new, of which training chooses the best one."""
+
+    # How body poses are learned (svm_training).
+    svm_poses: int = 5000
+    """Number of body poses, evenly spaced, at the most: time grows with its square."""
+    svm_cost: float = 1.0
+    """Cost C of a body pose on the wrong side; LIBSVM's default."""
+    svm_folds: int = 5
+    """Number of folds of the cross-validation that gives probabilities; LIBSVM's."""
+    svm_seed: int = 0
+    """Seed of the draw of these folds."""
+    sigmoid_steps: int = 100
+    """Number of Newton steps, at the most, to a sigmoid (Lin, Lin and Weng 2007)."""
+
+    # How it is learned what a tracker's support is worth (presence_training).
+    looks_at: tuple[float, ...] = (0.02, 0.35, 0.7)
+    """Shares of a recording after which every object is looked for: at first most lie untouched."""
+    look_frames: int = 2
+    """Number of successive frames of a look: the second one finds more."""
+    prior_looks: float = 4.0
+    """Number of looks that are taken to have had the usual support beforehand."""
+    prior_part_looks: float = 15.0
+    """Number of looks that are taken to have had the usual spreads of its parts beforehand."""
+    least_support_spread: float = 3.0
+    """Standard deviation of an object's support at the least, as a log-likelihood ratio."""
+
+
+DEFAULT_TRAINING = TrainingParameters()

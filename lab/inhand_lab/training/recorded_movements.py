@@ -1,0 +1,94 @@
+"""Reads people's recordings as a tracker would: body poses and movement features by frame."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from inhand_tracker.body.reader import Body, BodyReader
+from inhand_tracker.body.skeleton import (
+    body_pose,
+    mirror_joints,
+    part_lengths,
+    pelvis_basis,
+    stature,
+)
+from inhand_tracker.geometry.arrays import Array, Indices
+from inhand_tracker.people.following import PersonFollower
+from inhand_tracker.recognition.movement_window import MovementWindow
+from inhand_tracker.wire.conversion import joints_of
+
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.people.joint_sequence import JointSequence
+from inhand_lab.training.parameters import DEFAULT_TRAINING
+
+
+@dataclass(frozen=True)
+class UsualPoses:
+    """Body poses (N, 60) of people, by which a reader fills in what is not seen of another one."""
+
+    body_poses: Array
+
+
+@dataclass(frozen=True)
+class RecordedMovement:
+    """What is learned from N bodies of a recording: their poses (N, 60), their movement features
+    (N, D), and the numbers (N,) of their frames."""
+
+    body_poses: Array
+    features: Array
+    frames: Indices
+
+
+def read_joints(dataset: Dataset, entry: DatasetEntry) -> JointSequence:
+    """Read the joints of a recording's person; raises DatasetError or RecordingError."""
+    frames = load_frames(dataset.path(entry), entry.object)
+    joints = np.full((len(frames), 20, 3), np.nan)
+    follower = PersonFollower()
+    for index, frame in enumerate(frames):
+        person = follower.choose(frame.people, frame.time_ns)
+        if person is not None:
+            joints[index] = joints_of(person)
+    times_ns = np.array([frame.time_ns for frame in frames], np.int64)
+    left_handed = entry.handedness == "left"
+    return JointSequence(entry.interaction, entry.participant, left_handed, joints, times_ns)
+
+
+def usual_poses(people: Sequence[JointSequence]) -> UsualPoses:
+    """Choose some of the whole bodies in recordings; raises DatasetError where there is none."""
+    poses = [_whole_poses(one)[:: DEFAULT_TRAINING.usual_pose_step] for one in people]
+    finite = [some[np.isfinite(some).all(axis=1)] for some in poses]
+    if not sum(map(len, finite)):
+        raise DatasetError("no recording shows a whole body: nothing can be learned from them")
+    return UsualPoses(np.concatenate(finite))
+
+
+def read_bodies(sequence: JointSequence, usual: UsualPoses) -> list[Body | None]:
+    """Read the bodies of T frames one after the other, as a tracker does."""
+    reader = BodyReader(usual, left_handed=sequence.left_handed)
+    return [reader.read(joints) for joints in sequence.joints]
+
+
+def read_movement(sequence: JointSequence, usual: UsualPoses, step: int) -> RecordedMovement:
+    """Read what is learned from the bodies in every ``step``-th frame."""
+    window = MovementWindow()
+    poses, features, frames = [], [], []
+    for index, body in enumerate(read_bodies(sequence, usual)):
+        if body is None:
+            continue
+        window.add(int(sequence.times_ns[index]), body.pose)
+        if index % step == 0:
+            poses.append(body.pose)
+            features.append(window.features())
+            frames.append(index)
+    return RecordedMovement(np.array(poses), np.array(features), np.array(frames, np.int64))
+
+
+def _whole_poses(sequence: JointSequence) -> Array:
+    """Return the body poses (N, 60) of the frames whose joints are all seen."""
+    joints = mirror_joints(sequence.joints) if sequence.left_handed else sequence.joints
+    whole = joints[np.isfinite(joints).all(axis=(1, 2))]
+    if not len(whole):
+        return np.empty((0, 60))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return body_pose(whole, pelvis_basis(whole), stature(part_lengths(whole)))
