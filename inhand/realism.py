@@ -1,11 +1,12 @@
-"""The realism table: what real sensors do beside what the simulated ones do."""
+"""Shows the realism table: what real sensors do beside what the simulated ones do."""
 
 import math
 import sys
 from pathlib import Path
 from typing import Any
 
-from inhand_lab.realism.comparison import CONFIDENCE, LEFT_OUT, STAGES, WITHIN, Comparison, compare
+from inhand_lab.realism.parameters import DEFAULT_REALISM
+from inhand_lab.realism.sensor_comparison import LEFT_OUT, STEPS, SensorComparison, compare_sensors
 from inhand_lab.world.random_streams import GENERATOR_VERSION
 from inhand_runtime.errors import SettingsError
 from rich.console import Console
@@ -19,10 +20,10 @@ REAL_SET = "utd-mhad"
 
 
 def show_realism(data: Path, seed: int, json_file: Path | None) -> int:
-    """Print the table of the world of a seed, and write it for machines; 1 where a property that
-    can be told is too far off.
+    """Print the table of the world of a seed, and write it for machines.
 
-    Raises SettingsError where the real recordings are missing, and DatasetError.
+    Return 1 where a judged property is too far off. Raises SettingsError where the real recordings
+    are missing, and DatasetError.
     """
     folder = data / REAL_SET if (data / REAL_SET).is_dir() else data
     if not folder.is_dir():
@@ -30,35 +31,40 @@ def show_realism(data: Path, seed: int, json_file: Path | None) -> int:
             f"there are no real recordings at {folder.resolve()}: "
             f"name the folder that holds {REAL_SET} with --data"
         )
-    with progress_bar("measuring", STAGES) as advance:
-        compared = compare(folder, seed, advance)
-    told = [one for one in compared if one.told]
-    untold = [one for one in compared if not one.told]
+    with progress_bar("measuring", STEPS) as advance:
+        compared = compare_sensors(folder, seed, advance)
+    judged = [one for one in compared if one.judged]
+    others = [one for one in compared if not one.judged]
     console = Console()
-    console.print(_table(f"world {GENERATOR_VERSION}, seed {seed}", told))
-    if untold:
-        console.print(_table("too few people to tell: not judged", untold))
+    console.print(_table(f"world {GENERATOR_VERSION}, seed {seed}", judged))
+    if others:
+        console.print(_table("too few people to tell: not judged", others))
     console.print("Knowingly left out:")
     for reason in LEFT_OUT:
         console.print(f"- {reason}")
     if json_file is not None:
         write_json(json_file, _result(compared, seed))
-    off = [one for one in told if not one.within]
-    console.print(
-        f"{len(told)} properties judged, {len(told) - len(off)} of them within a factor of "
-        f"{WITHIN}. {len(untold)} more are not judged: with eight other people the real figure "
-        f"itself might be off by more than that ({CONFIDENCE:.0%} interval of the bootstrap)."
-    )
+    off = [one for one in judged if not one.within]
+    console.print(_verdict(len(judged), len(off), len(others)))
     if off:
         print(
-            f"inhand simulate: {len(off)} of {len(told)} properties are off by more than a "
-            f"factor of {WITHIN}",
+            f"inhand simulate: {len(off)} of {len(judged)} properties are off by more than a "
+            f"factor of {DEFAULT_REALISM.within}",
             file=sys.stderr,
         )
     return int(bool(off))
 
 
-def _table(title: str, compared: list[Comparison]) -> Table:
+def _verdict(judged: int, off: int, others: int) -> str:
+    limits = DEFAULT_REALISM
+    return (
+        f"{judged} properties judged, {judged - off} of them within a factor of {limits.within}. "
+        f"{others} more are not judged: with eight other people the real figure itself might be "
+        f"off by more than that ({limits.confidence:.0%} interval of the bootstrap)."
+    )
+
+
+def _table(title: str, compared: list[SensorComparison]) -> Table:
     table = Table("property", "of", "real", "from", "to", "simulated", "ratio", title=title)
     for one in compared:
         unit = f", {one.unit}" if one.unit else ""
@@ -67,16 +73,18 @@ def _table(title: str, compared: list[Comparison]) -> Table:
             f"{one.name}{unit}",
             one.on,
             *(f"{number:.3g}" for number in numbers),
-            f"[bold red]{one.ratio:.2f}[/]" if one.told and not one.within else f"{one.ratio:.2f}",
+            f"[bold red]{one.ratio:.2f}[/]"
+            if one.judged and not one.within
+            else f"{one.ratio:.2f}",
         )
     return table
 
 
-def _result(compared: list[Comparison], seed: int) -> dict[str, Any]:
+def _result(compared: list[SensorComparison], seed: int) -> dict[str, Any]:
     return {
         "version": GENERATOR_VERSION,
         "seed": seed,
-        "within": WITHIN,
+        "within": DEFAULT_REALISM.within,
         "properties": [
             {
                 "property": one.name,
@@ -87,7 +95,7 @@ def _result(compared: list[Comparison], seed: int) -> dict[str, Any]:
                 "highest": _number(one.highest),
                 "simulated": _number(one.simulated),
                 "ratio": _number(one.ratio),
-                "judged": one.told,
+                "judged": one.judged,
             }
             for one in compared
         ],

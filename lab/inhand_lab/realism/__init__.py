@@ -1,1 +1,1 @@
-"""How near the simulated sensors are to real ones."""
+"""Compares the simulated sensors with real ones."""

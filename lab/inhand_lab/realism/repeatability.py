@@ -1,4 +1,4 @@
-"""How nearly a body pose comes back, in the same person and in others.
+"""Measures how nearly a body pose comes back, in the same person and in others.
 
 ``python -m inhand_lab.realism.repeatability DATASET`` shows the median distance, in body heights
 over all joints, from a body pose to the nearest one when the person does the same again, and to
@@ -27,15 +27,12 @@ from inhand_lab.datasets.dataset import Dataset, DatasetEntry, load_dataset
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.datasets.tracks import true_joints
-
-AGAIN_S = 1.5
-"""Within one recording a pose is done again when so much time has passed."""
-OTHERS = 5
+from inhand_lab.realism.parameters import DEFAULT_REALISM
 
 
 @dataclass(frozen=True)
-class Poses:
-    """The body poses b (T, 60) of a recording's frames whose joints are all known, and their times
+class BodyPoseSequence:
+    """Body poses b (T, 60) of a recording's frames whose joints are all known, and their times
     (T,) in seconds."""
 
     participant: str
@@ -43,24 +40,28 @@ class Poses:
     bodies: Array
 
 
-def poses_of(participant: str, frame_rate: float, handedness: str, joints: Array) -> Poses:
-    """The body poses of joints (T, 20, 3) in metres; left-handed people are mirrored."""
+def body_pose_sequence(
+    participant: str, frame_rate: float, handedness: str, joints: Array
+) -> BodyPoseSequence:
+    """Measure the body poses of joints (T, 20, 3) in metres; left-handed people are mirrored."""
     known = np.isfinite(joints).all(axis=(1, 2))
     seen = joints[known]
     if handedness == "left":
         seen = mirror_joints(seen)
     bodies = body_pose(seen, pelvis_basis(seen), stature(part_lengths(seen)))
-    return Poses(participant, np.flatnonzero(known) / frame_rate, bodies)
+    return BodyPoseSequence(participant, np.flatnonzero(known) / frame_rate, bodies)
 
 
-def again(recordings: Sequence[Poses]) -> float:
-    """The median distance to the same person's nearest pose, mean over recordings: in other
-    recordings, or later or earlier in this one where there is no other."""
+def return_distance(recordings: Sequence[BodyPoseSequence]) -> float:
+    """Median distance to the same person's nearest pose, the mean over recordings.
+
+    That is one of another recording, or earlier or later in this one where there is no other.
+    """
     return float(np.mean([np.median(np.linalg.norm(one, axis=1)) for one in _returns(recordings)]))
 
 
-def joints_again(recordings: Sequence[Poses]) -> Array:
-    """The same for each joint (20,) by itself, between the poses that are nearest as a whole."""
+def return_distance_by_joint(recordings: Sequence[BodyPoseSequence]) -> Array:
+    """Median distance of each joint (20,) between the poses that are nearest as a whole."""
     medians = []
     for returned in _returns(recordings):
         by_joint = np.linalg.norm(returned.reshape(len(returned), -1, 3), axis=2)
@@ -68,25 +69,27 @@ def joints_again(recordings: Sequence[Poses]) -> Array:
     return np.asarray(np.mean(medians, axis=0))
 
 
-def _returns(recordings: Sequence[Poses]) -> Iterator[Array]:
-    """For each recording what its poses (T, 60) differ by from the person's nearest other one."""
+def _returns(recordings: Sequence[BodyPoseSequence]) -> Iterator[Array]:
+    """Yield, for each recording, how its poses (T, 60) differ from the person's nearest other."""
     for one in recordings:
         rest = [r for r in recordings if r.participant == one.participant and r is not one]
         others = np.concatenate([r.bodies for r in rest]) if rest else one.bodies
         distances = cdist(one.bodies, others)
         if not rest:
-            distances[np.abs(one.seconds[:, None] - one.seconds) < AGAIN_S] = np.inf
+            distances[np.abs(one.seconds[:, None] - one.seconds) < DEFAULT_REALISM.again_s] = np.inf
         yield one.bodies - others[distances.argmin(axis=1)]
 
 
-def by_others(recordings: Sequence[Poses]) -> float:
-    """The median distance to the nearest pose of five others' first recordings, mean over
-    recordings."""
+def distance_to_others(recordings: Sequence[BodyPoseSequence]) -> float:
+    """Median distance to the nearest pose in first recordings of others, the mean over recordings.
+
+    Five other people are compared with at the most.
+    """
     firsts = {r.participant: r for r in reversed(recordings)}
     medians = []
     for one in recordings:
         others = [firsts[name].bodies for name in sorted(firsts) if name != one.participant]
-        distances = cdist(one.bodies, np.concatenate(others[:OTHERS]))
+        distances = cdist(one.bodies, np.concatenate(others[: DEFAULT_REALISM.others]))
         medians.append(np.median(distances.min(axis=1)))
     return float(np.mean(medians))
 
@@ -106,11 +109,11 @@ def main() -> None:
         for kind, joints in (("measured", measured), ("true", true)):
             if all(np.isfinite(one).all(axis=(1, 2)).any() for one in joints):
                 recordings = [
-                    poses_of(entry.participant, entry.frame_rate, entry.handedness, one)
+                    body_pose_sequence(entry.participant, entry.frame_rate, entry.handedness, one)
                     for entry, one in zip(entries, joints, strict=True)
                 ]
-                figures = again(recordings), by_others(recordings)
-                table.add_row(name, kind, *(f"{figure:.3f}" for figure in figures))
+                distances = return_distance(recordings), distance_to_others(recordings)
+                table.add_row(name, kind, *(f"{distance:.3f}" for distance in distances))
     Console().print(table)
 
 

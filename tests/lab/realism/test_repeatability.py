@@ -5,27 +5,35 @@ import sys
 
 import numpy as np
 import pytest
-from inhand_lab.realism.repeatability import Poses, again, by_others, joints_again, poses_of
+from inhand_lab.realism.repeatability import (
+    BodyPoseSequence,
+    body_pose_sequence,
+    distance_to_others,
+    return_distance,
+    return_distance_by_joint,
+)
 from inhand_tracker.body.skeleton import mirror_joints
 from waving import STANDING, waving, write_dataset
 
 RATE = 30.0
 
 
-def recording(participant: str, *places: float) -> Poses:
-    """Poses a second apart along one axis of body space."""
+def recording(participant: str, *places: float) -> BodyPoseSequence:
+    """BodyPoseSequence a second apart along one axis of body space."""
     bodies = np.zeros((len(places), 60))
     bodies[:, 0] = places
-    return Poses(participant, np.arange(len(places), dtype=float), bodies)
+    return BodyPoseSequence(participant, np.arange(len(places), dtype=float), bodies)
 
 
 def test_a_pose_is_done_again_in_another_recording_of_the_same_person() -> None:
     recordings = [recording("a", 0.0, 1.0), recording("a", 0.1, 1.3), recording("b", 0.0, 1.0)]
-    assert again(recordings[:2]) == pytest.approx(0.2)
+    assert return_distance(recordings[:2]) == pytest.approx(0.2)
 
 
 def test_within_one_recording_the_moments_around_a_pose_are_not_it_again() -> None:
-    assert again([recording("a", 0.0, 0.01, 0.5, 0.51)]) == pytest.approx(0.505, abs=0.006)
+    assert return_distance([recording("a", 0.0, 0.01, 0.5, 0.51)]) == pytest.approx(
+        0.505, abs=0.006
+    )
 
 
 def test_others_are_five_at_the_most_and_never_the_same_person() -> None:
@@ -33,29 +41,33 @@ def test_others_are_five_at_the_most_and_never_the_same_person() -> None:
     one, same, sixth = recording("a", 0.0), recording("a", 0.0), recording("z", 0.0)
     # Only the sixth has somebody in the very same place among the first five others.
     distances = [1.0] * 7 + [0.0]
-    assert by_others([one, same, *others, sixth]) == pytest.approx(np.mean(distances))
+    assert distance_to_others([one, same, *others, sixth]) == pytest.approx(np.mean(distances))
 
 
 def test_left_handed_people_are_compared_mirrored() -> None:
     joints, _, _ = waving(4, seed=0)
-    left = poses_of("a", RATE, "left", mirror_joints(joints))
-    np.testing.assert_allclose(left.bodies, poses_of("a", RATE, "right", joints).bodies, atol=1e-9)
+    left = body_pose_sequence("a", RATE, "left", mirror_joints(joints))
+    np.testing.assert_allclose(
+        left.bodies, body_pose_sequence("a", RATE, "right", joints).bodies, atol=1e-9
+    )
 
 
 def test_joints_come_back_as_nearly_as_the_whole_body_does() -> None:
     random = np.random.default_rng(3)
     wide = np.zeros((4, 60))
     wide[:, 33:36] = random.normal(size=(4, 3))
-    recordings = [Poses("a", np.arange(4.0), wide + 0.01 * number) for number in range(2)]
-    joints = joints_again(recordings)
+    recordings = [
+        BodyPoseSequence("a", np.arange(4.0), wide + 0.01 * number) for number in range(2)
+    ]
+    joints = return_distance_by_joint(recordings)
     np.testing.assert_allclose(joints, 0.01 * np.sqrt(3.0), atol=1e-12)
-    assert again(recordings) == pytest.approx(0.01 * np.sqrt(60.0))
+    assert return_distance(recordings) == pytest.approx(0.01 * np.sqrt(60.0))
 
 
 def test_frames_with_a_missing_joint_are_left_out_and_keep_their_times() -> None:
     joints = np.repeat(STANDING[None], 4, axis=0)
     joints[1, 7] = np.nan
-    seconds = poses_of("a", RATE, "right", joints).seconds
+    seconds = body_pose_sequence("a", RATE, "right", joints).seconds
     np.testing.assert_allclose(seconds, np.array([0, 2, 3]) / RATE)
 
 

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from inhand_lab.realism.skeletons import hand_bends
+from inhand_lab.realism.skeleton_properties import hand_bends
 from inhand_lab.sensing.skeleton_noise import (
     INFERRED,
     MISSING,

@@ -7,17 +7,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import DatasetError
-from inhand_lab.realism.comparison import (
+from inhand_lab.realism.depth_properties import DepthPair, depth_properties, measure_pair
+from inhand_lab.realism.measured_people import MeasuredPerson
+from inhand_lab.realism.parameters import DEFAULT_REALISM
+from inhand_lab.realism.sensor_comparison import (
     LEFT_OUT,
-    WITHIN,
-    Comparison,
-    Recorded,
-    compare,
-    figures_of,
-    interval,
+    SensorComparison,
+    compare_sensors,
+    property_intervals,
+    sensor_properties,
 )
-from inhand_lab.realism.depth import DepthPair, measure_depth, observe_depth
-from inhand_lab.realism.skeletons import Figure, Observed, hand_bends, measure_skeletons
+from inhand_lab.realism.skeleton_properties import (
+    ObservedSkeletons,
+    SensorProperty,
+    hand_bends,
+    skeleton_properties,
+)
 from inhand_schemas.joints import PARENTS, Joint
 from inhand_tracker.geometry.arrays import Array
 from numpy.typing import NDArray
@@ -42,12 +47,12 @@ def skeletons(trembling: float, seed: int = 0, drift: float = 0.0) -> list[Array
     return [still + trembling * random.normal(size=still.shape) for _ in range(2)]
 
 
-def measured(recordings: list[Array]) -> list[Figure]:
+def measured(recordings: list[Array]) -> list[SensorProperty]:
     """Figures of one person's recordings."""
-    return measure_skeletons([[Observed.of(joints) for joints in recordings]])
+    return skeleton_properties([[ObservedSkeletons.of(joints) for joints in recordings]])
 
 
-def value(figures: list[Figure], name: str, on: str) -> float:
+def value(figures: list[SensorProperty], name: str, on: str) -> float:
     (found,) = [one.value for one in figures if (one.name, one.on) == (name, on)]
     return found
 
@@ -85,8 +90,8 @@ def test_bones_that_change_between_stretches_are_told_from_bones_that_tremble() 
     longer[450:, Joint.HEAD] += 0.02 * up[450:] / np.linalg.norm(up[450:], axis=1, keepdims=True)
     assert value(measured([steady, steady]), name, on) == pytest.approx(0.0, abs=1e-6)
     assert value(measured([longer]), name, on) == pytest.approx(10.0, rel=0.1)
-    other = [[Observed.of(steady)], [Observed.of(longer[450:])]]
-    assert value(measure_skeletons(other), name, on) == pytest.approx(0.0, abs=1e-6)
+    other = [[ObservedSkeletons.of(steady)], [ObservedSkeletons.of(longer[450:])]]
+    assert value(skeleton_properties(other), name, on) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_a_hand_that_points_back_is_bent_by_half_a_turn() -> None:
@@ -114,8 +119,8 @@ def depth_pairs(noise: float, step: int) -> list[DepthPair]:
     return [DepthPair((frame(), frame()), (joints, joints), 285.0, (160.0, 120.0))] * 3
 
 
-def depth_figures(noise: float, step: int) -> list[Figure]:
-    return measure_depth([observe_depth(pair) for pair in depth_pairs(noise, step)])
+def depth_figures(noise: float, step: int) -> list[SensorProperty]:
+    return depth_properties([measure_pair(pair) for pair in depth_pairs(noise, step)])
 
 
 def test_depth_figures_follow_steps_and_noise() -> None:
@@ -138,15 +143,15 @@ def test_holes_are_counted_with_and_without_a_hand_before_the_trunk() -> None:
     joints = pair.joints[0].copy()
     joints[Joint.HAND_LEFT] = 0.0, 0.0, 2.1
     before = replace(pair, joints=(joints, joints))
-    seen = measure_depth([observe_depth(pair)])
+    seen = depth_properties([measure_pair(pair)])
     assert value(seen, "holes", "trunk that faces the camera") > 1.0
     assert np.isnan(value(seen, "holes", "trunk behind a hand"))
-    assert value(measure_depth([observe_depth(before)]), "holes", "trunk behind a hand") > 1.0
+    assert value(depth_properties([measure_pair(before)]), "holes", "trunk behind a hand") > 1.0
 
 
-def compared_with(simulated: float, lowest: float = 1.8, highest: float = 2.2) -> Comparison:
+def compared_with(simulated: float, lowest: float = 1.8, highest: float = 2.2) -> SensorComparison:
     """A property whose real figure is 2."""
-    return Comparison("x", "mm", "all", 2.0, lowest, highest, simulated)
+    return SensorComparison("x", "mm", "all", 2.0, lowest, highest, simulated)
 
 
 def test_a_ratio_is_within_the_factor_either_way() -> None:
@@ -156,31 +161,33 @@ def test_a_ratio_is_within_the_factor_either_way() -> None:
 
 
 def test_a_figure_is_told_where_other_people_would_give_nearly_the_same() -> None:
-    assert compared_with(2.0, 1.4, 2.9).told
+    assert compared_with(2.0, 1.4, 2.9).judged
     for lowest, highest in ((1.3, 2.2), (1.8, 3.1), (0.0, 2.2), (1.8, np.inf)):
-        assert not compared_with(2.0, lowest, highest).told
-    assert not Comparison("x", "", "all", np.nan, 0.0, np.inf, 1.0).told
-    assert not Comparison("x", "", "all", 0.0, 0.0, 0.0, 1.0).told
+        assert not compared_with(2.0, lowest, highest).judged
+    assert not SensorComparison("x", "", "all", np.nan, 0.0, np.inf, 1.0).judged
+    assert not SensorComparison("x", "", "all", 0.0, 0.0, 0.0, 1.0).judged
 
 
-def people(spread: float) -> list[Recorded]:
+def people(spread: float) -> list[MeasuredPerson]:
     """Eight dolls that tremble, some more than others."""
     sizes = 0.0005 * np.exp(spread * np.linspace(-1.0, 1.0, 8))
-    depth = [observe_depth(pair) for pair in depth_pairs(2.0, 1)[:1]]
+    depth = [measure_pair(pair) for pair in depth_pairs(2.0, 1)[:1]]
     return [
-        Recorded([Observed.of(skeletons(size, seed)[0][:200])], depth, np.full(20, size))
+        MeasuredPerson(
+            [ObservedSkeletons.of(skeletons(size, seed)[0][:200])], depth, np.full(20, size)
+        )
         for seed, size in enumerate(sizes)
     ]
 
 
-def test_the_interval_is_wide_where_people_differ(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("inhand_lab.realism.comparison.RESAMPLES", 40)
+def test_the_interval_is_wide_where_people_differ() -> None:
+    parameters = replace(DEFAULT_REALISM, resamples=40)
     for spread, narrow in ((0.02, True), (1.5, False)):
         recorded = people(spread)
-        lowest, highest = interval(recorded)
-        names = [(one.name, one.on) for one in figures_of(recorded)]
+        lowest, highest = property_intervals(recorded, parameters)
+        names = [(one.name, one.on) for one in sensor_properties(recorded)]
         row = names.index(("head jitter, median", "still head"))
-        real = figures_of(recorded)[row].value
+        real = sensor_properties(recorded)[row].value
         assert lowest[row] <= real <= highest[row]
         ratio = float(highest[row] / lowest[row])
         assert ratio < 1.2 if narrow else ratio > 1.5
@@ -188,7 +195,7 @@ def test_the_interval_is_wide_where_people_differ(monkeypatch: pytest.MonkeyPatc
 
 def test_a_folder_without_recordings_is_named(tmp_path: Path) -> None:
     with pytest.raises(DatasetError, match="--data"):
-        compare(tmp_path, seed=0)
+        compare_sensors(tmp_path, seed=0)
 
 
 def test_without_the_real_data_one_line_says_where_they_should_be(
@@ -203,11 +210,11 @@ def test_the_table_goes_to_machines_too(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compared = [
-        Comparison("jitter", "mm", "still head", 1.0, 0.9, 1.2, 1.2),
-        Comparison("flips", "", "fast wrist", 1.0, 0.9, 1.2, np.nan),
-        Comparison("holes", "%", "trunk", 1.0, 0.1, 9.0, 7.0),
+        SensorComparison("jitter", "mm", "still head", 1.0, 0.9, 1.2, 1.2),
+        SensorComparison("flips", "", "fast wrist", 1.0, 0.9, 1.2, np.nan),
+        SensorComparison("holes", "%", "trunk", 1.0, 0.1, 9.0, 7.0),
     ]
-    monkeypatch.setattr("inhand.realism.compare", lambda *_: compared)
+    monkeypatch.setattr("inhand.realism.compare_sensors", lambda *_: compared)
     result = tmp_path / "realism.json"
     assert main(["simulate", "--realism", "--data", str(tmp_path), "--json", str(result)]) == 1
     shown = capsys.readouterr()
@@ -216,7 +223,7 @@ def test_the_table_goes_to_machines_too(
     assert "Knowingly left out" in shown.out
     assert "1 of 2" in shown.err
     written = json.loads(result.read_text())
-    assert written["within"] == WITHIN
+    assert written["within"] == DEFAULT_REALISM.within
     assert [one["ratio"] for one in written["properties"]] == [1.2, None, 7.0]
     assert [one["judged"] for one in written["properties"]] == [True, True, False]
     assert written["left_out"] == list(LEFT_OUT)
@@ -225,7 +232,7 @@ def test_the_table_goes_to_machines_too(
 @pytest.mark.long
 @needs_real_data
 def test_what_is_known_of_real_sensors_is_within_a_factor() -> None:
-    judged = [one for one in compare(DATA / "utd-mhad", seed=0) if one.told]
+    judged = [one for one in compare_sensors(DATA / "utd-mhad", seed=0) if one.judged]
     assert len(judged) > 110
     off = [f"{one.name} of {one.on}: {one.ratio:.2f}" for one in judged if not one.within]
     assert off == []

@@ -1,4 +1,4 @@
-"""What recorded depth of one person tells of the sensor that measured it."""
+"""Measures what recorded depth of one person shows of the sensor that took it."""
 
 from __future__ import annotations
 
@@ -11,20 +11,11 @@ from inhand_tracker.geometry.arrays import Array, Indices
 from numpy.typing import NDArray
 from scipy.ndimage import binary_erosion, median_filter
 
-from inhand_lab.realism.skeletons import Figure
+from inhand_lab.realism.parameters import DEFAULT_REALISM
+from inhand_lab.realism.skeleton_properties import SensorProperty
 
-PATCH = 6
-"""Half the width of the patch on the chest, in pixels of an image 320 wide."""
-RESTING = 0.002
-"""A chest that moves less than this, in metres, between two frames is at rest."""
-SMOOTHED = 5
-"""Width, in pixels, of the median that an outline is ragged against."""
 CHEST = (Joint.SPINE, Joint.SHOULDER_CENTER)
 HANDS = (Joint.WRIST_LEFT, Joint.HAND_LEFT, Joint.WRIST_RIGHT, Joint.HAND_RIGHT)
-REACHING = 0.15
-"""A hand is before the trunk from this far in front of the shoulders, metres."""
-UPRIGHT, FACING = 25, 10
-"""Pixels of an image 320 wide that the trunk is high and the hips are wide at least."""
 
 
 @dataclass(frozen=True)
@@ -39,9 +30,13 @@ class DepthPair:
 
 
 @dataclass(frozen=True)
-class SeenDepth:
-    """What two frames in a row tell: the distances (L,) in the first one, and the rest as in the
-    figures, nothing where it cannot be told."""
+class DepthMeasures:
+    """What is measured in two frames in a row; None where it cannot be measured.
+
+    ``levels`` (L,) are the distances in the first frame. ``roughness``, ``changed`` (a share of
+    pixels) and ``deviation`` are those of the chest, ``holes`` is the share of the trunk's pixels
+    without depth, which a hand is before if ``behind_hand``; ``ragged`` is a share of the outline.
+    """
 
     levels: NDArray[np.uint16]
     roughness: float | None
@@ -52,90 +47,98 @@ class SeenDepth:
     ragged: float
 
 
-def observe_depth(pair: DepthPair) -> SeenDepth:
-    """What is measured of a pair, once."""
+def measure_pair(pair: DepthPair) -> DepthMeasures:
+    """Measure a pair, once for all properties."""
     roughness, changed, deviation = _chest(pair)
     trunk, behind_hand = _trunk(pair)
     person = pair.depths[0] > 0
     outline = np.count_nonzero(person & ~binary_erosion(person))
-    ragged = np.count_nonzero(person ^ median_filter(person, SMOOTHED)) / outline
+    ragged = (
+        np.count_nonzero(person ^ median_filter(person, DEFAULT_REALISM.smoothed_pixels)) / outline
+    )
     holes = float(np.mean(trunk == 0)) if trunk.size else None
     levels = np.unique(pair.depths[0])
-    return SeenDepth(levels, roughness, changed, deviation, holes, behind_hand, ragged)
+    return DepthMeasures(levels, roughness, changed, deviation, holes, behind_hand, ragged)
 
 
-def measure_depth(seen: Sequence[SeenDepth]) -> list[Figure]:
-    """Figures of pairs of frames, the same in the same order for any pairs."""
+def depth_properties(seen: Sequence[DepthMeasures]) -> list[SensorProperty]:
+    """Sum up pairs of frames: the same properties in the same order for any pairs."""
     return [*_steps(seen), *_noise(seen), *_silhouette(seen)]
 
 
-def _steps(seen: Sequence[SeenDepth]) -> Iterator[Figure]:
-    """Between the distances that are measured at all, over the distance squared."""
+def _steps(seen: Sequence[DepthMeasures]) -> Iterator[SensorProperty]:
+    """Measure the steps between distances that occur at all, over the distance squared."""
     levels = np.unique(np.concatenate([one.levels for one in seen]))
-    levels = levels[(levels > 2000) & (levels < 3400)].astype(float)
+    nearest, farthest = DEFAULT_REALISM.level_range_mm
+    levels = levels[(levels > nearest) & (levels < farthest)].astype(float)
     ratios = 1e6 * np.diff(levels) / levels[1:] ** 2
-    middle = 2700.0
+    middle = DEFAULT_REALISM.middle_level_mm
     for on, chosen in (
         ("2.0 to 2.7 m", levels[1:] < middle),
         ("2.7 to 3.4 m", levels[1:] > middle),
     ):
         value = float(np.median(ratios[chosen])) if chosen.any() else np.nan
-        yield Figure("depth step over squared distance", "mm/m²", on, value)
+        yield SensorProperty("depth step over squared distance", "mm/m²", on, value)
 
 
-def _noise(seen: Sequence[SeenDepth]) -> Iterator[Figure]:
+def _noise(seen: Sequence[DepthMeasures]) -> Iterator[SensorProperty]:
+    """Measure the noise of depth on the chest, in space and time."""
     rough = [one.roughness for one in seen if one.roughness is not None]
     value = float(np.median(rough)) if rough else np.nan
-    yield Figure("depth roughness", "mm", "chest, less its curvature", value)
+    yield SensorProperty("depth roughness", "mm", "chest, less its curvature", value)
     deviation = _mean(one.deviation for one in seen)
-    yield Figure("depth deviation in time", "mm", "resting chest", deviation)
+    yield SensorProperty("depth deviation in time", "mm", "resting chest", deviation)
     changed = 100.0 * _mean(one.changed for one in seen)
-    yield Figure("pixels that change", "%", "resting chest", changed)
+    yield SensorProperty("pixels that change", "%", "resting chest", changed)
 
 
-def _silhouette(seen: Sequence[SeenDepth]) -> Iterator[Figure]:
+def _silhouette(seen: Sequence[DepthMeasures]) -> Iterator[SensorProperty]:
+    """Measure holes in the trunk, and how ragged the person's outline is."""
     holes = 100.0 * _mean(one.holes for one in seen)
-    yield Figure("holes", "%", "trunk that faces the camera", holes)
+    yield SensorProperty("holes", "%", "trunk that faces the camera", holes)
     behind = 100.0 * _mean(one.holes for one in seen if one.behind_hand)
-    yield Figure("holes", "%", "trunk behind a hand", behind)
+    yield SensorProperty("holes", "%", "trunk behind a hand", behind)
     ragged = 100.0 * _mean(one.ragged for one in seen)
-    yield Figure("ragged pixels", "%", "person's outline", ragged)
+    yield SensorProperty("ragged pixels", "%", "person's outline", ragged)
 
 
 def _mean(values: Iterable[float | None]) -> float:
-    told = [value for value in values if value is not None]
-    return float(np.mean(told)) if told else np.nan
+    """Mean of the values that could be measured; NaN where there is none."""
+    measured = [value for value in values if value is not None]
+    return float(np.mean(measured)) if measured else np.nan
 
 
 def _chest(pair: DepthPair) -> tuple[float | None, float | None, float | None]:
-    """Roughness, share of pixels that change and deviation in time of a patch of the chest; the
-    last two only of a chest at rest."""
+    """Measure a patch of the chest: its roughness, share of pixels that change, and deviation in
+    time; the last two of a chest at rest."""
     before, after = (_patch(pair, frame) for frame in (0, 1))
     if before is None or after is None:
         return None, None, None
     moved = np.subtract(*pair.joints)[[Joint.HIP_CENTER, *CHEST]]
-    if np.linalg.norm(moved, axis=1).max() >= RESTING:
+    if np.linalg.norm(moved, axis=1).max() >= DEFAULT_REALISM.resting_m:
         return _roughness(before), None, None
     changed, deviation = float(np.mean(before != after)), float(np.std(after - before))
     return _roughness(before), changed, deviation / np.sqrt(2.0)
 
 
 def _trunk(pair: DepthPair) -> tuple[NDArray[np.uint16], bool]:
-    """The depth from the shoulders' centre to the hips', and no wider than the hips, and whether a
-    hand is before it; nothing of people who bend or stand sideways."""
+    """Cut out the trunk, from the shoulders' centre to the hips' and as wide as these; say whether
+    a hand is before it. It is empty for people who bend or stand sideways."""
     joints = pair.joints[0]
     u, v = _project(pair, joints)
     rows = slice(v[Joint.SHOULDER_CENTER], v[Joint.HIP_CENTER])
     columns = slice(*sorted(u[[Joint.HIP_LEFT, Joint.HIP_RIGHT]]))
-    if rows.stop - rows.start < UPRIGHT or columns.stop - columns.start < FACING:
+    upright = rows.stop - rows.start >= DEFAULT_REALISM.least_trunk_pixels
+    facing = columns.stop - columns.start >= DEFAULT_REALISM.least_hips_pixels
+    if not (upright and facing):
         return np.zeros((0, 0), np.uint16), False
     inside = (rows.start <= v) & (v < rows.stop) & (columns.start <= u) & (u < columns.stop)
-    before = joints[:, 2] < joints[Joint.SHOULDER_CENTER, 2] - REACHING
+    before = joints[:, 2] < joints[Joint.SHOULDER_CENTER, 2] - DEFAULT_REALISM.reaching_m
     return pair.depths[0][rows, columns], bool((inside & before)[list(HANDS)].any())
 
 
 def _project(pair: DepthPair, points: Array) -> tuple[Indices, Indices]:
-    """Columns and rows (N,) of points (N, 3)."""
+    """Return the columns and rows (N,) of points (N, 3)."""
     x, y, z = points.T
     u = np.rint(pair.centre[0] + pair.focal_length * x / z).astype(np.int64)
     v = np.rint(pair.centre[1] + pair.focal_length * y / z).astype(np.int64)
@@ -143,16 +146,18 @@ def _project(pair: DepthPair, points: Array) -> tuple[Indices, Indices]:
 
 
 def _patch(pair: DepthPair, frame: int) -> Array | None:
-    """Depth around the middle of the chest, or nothing where a pixel of it is missing."""
+    """Cut out the depth around the middle of the chest; None where a pixel of it is missing."""
     (u,), (v,) = _project(pair, pair.joints[0][list(CHEST)].mean(axis=0, keepdims=True))
-    patch = pair.depths[frame][v - PATCH : v + PATCH + 1, u - PATCH : u + PATCH + 1]
-    whole = patch.shape == (2 * PATCH + 1, 2 * PATCH + 1) and patch.all()
+    half = DEFAULT_REALISM.patch_pixels
+    patch = pair.depths[frame][v - half : v + half + 1, u - half : u + half + 1]
+    whole = patch.shape == (2 * half + 1, 2 * half + 1) and patch.all()
     return patch.astype(float) if whole else None
 
 
 def _roughness(patch: Array) -> float:
-    """Deviation in millimetres from the nearest quadratic surface."""
-    y, x = np.mgrid[-PATCH : PATCH + 1, -PATCH : PATCH + 1].reshape(2, -1).astype(float)
+    """Deviation in millimetres of a patch from the nearest quadratic surface."""
+    half = DEFAULT_REALISM.patch_pixels
+    y, x = np.mgrid[-half : half + 1, -half : half + 1].reshape(2, -1).astype(float)
     basis = np.stack([np.ones_like(x), x, y, x * x, x * y, y * y], axis=1)
     fitted, *_ = np.linalg.lstsq(basis, patch.ravel(), rcond=None)
     return float(np.std(patch.ravel() - basis @ fitted))
