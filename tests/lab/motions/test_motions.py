@@ -1,16 +1,15 @@
 """Interactions: movement that a body can make, and objects that stay in the hand."""
 
-from itertools import pairwise
+from functools import cache
 
 import numpy as np
 import pytest
-from inhand_lab.motions.performance import ContactKind, mouth
-from inhand_lab.motions.timeline import Move, Pause, Plan, minimum_jerk, schedule
-from inhand_lab.objects.mug import MUG_HEIGHT, MUG_RADIUS
-from inhand_lab.people.kinematics import BALL_HEIGHT, place_trunk
+from inhand_lab.motions.performance import ContactKind, Performance
+from inhand_lab.people.kinematics import BALL_HEIGHT
 from inhand_lab.people.person import sample_person
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_schemas.joints import PARENTS, Joint
+from inhand_tracker.geometry.arrays import Array
 from performers import FRAME_RATE, angles_at, depth_in_head, object_points, performed
 from solids import placed, surface_points
 
@@ -33,6 +32,27 @@ everybody = pytest.mark.parametrize(
     ("interaction", "participant"),
     [(interaction, number) for interaction in INTERACTIONS for number in PARTICIPANTS],
 )
+
+
+@cache
+def object_depths(interaction: str, participant: int) -> dict[str, float]:
+    """How deep an object goes into the floor, the head and the furniture at most, metres."""
+    person, performance, body = performed(interaction, participant)
+    points = object_points(interaction, performance.world_from_object)
+    return {
+        "floor": -float(points[..., 2].min()),
+        "head": float(depth_in_head(person, body, points).max()),
+        "furniture": depth_in_furniture(performance, points),
+    }
+
+
+def depth_in_furniture(performance: Performance, points: Array) -> float:
+    """How deep points (T, V, 3) go into the performance's furniture at most, metres."""
+    depths = [
+        (0.5 * np.array(cuboid.size) - np.abs(points - np.array(cuboid.centre))).min(axis=2).max()
+        for cuboid in performance.furniture
+    ]
+    return float(max(depths))
 
 
 @everybody
@@ -112,9 +132,8 @@ def test_an_object_at_rest_stays_where_it_is(interaction: str, participant: int)
 
 @everybody
 def test_nothing_goes_through_the_head(interaction: str, participant: int) -> None:
-    person, performance, body = performed(interaction, participant)
-    points = object_points(interaction, performance.world_from_object)
-    assert depth_in_head(person, body, points).max() < 0.01
+    person, _, body = performed(interaction, participant)
+    assert object_depths(interaction, participant)["head"] < 0.01
     arms = [Joint.ELBOW_LEFT, Joint.WRIST_LEFT, Joint.HAND_LEFT]
     arms += [Joint.ELBOW_RIGHT, Joint.WRIST_RIGHT, Joint.HAND_RIGHT]
     assert depth_in_head(person, body, body.joints[:, arms]).max() < -0.02
@@ -122,18 +141,14 @@ def test_nothing_goes_through_the_head(interaction: str, participant: int) -> No
 
 @everybody
 def test_the_object_stays_above_the_floor(interaction: str, participant: int) -> None:
-    _, performance, _ = performed(interaction, participant)
-    assert object_points(interaction, performance.world_from_object)[..., 2].min() > -0.005
+    assert object_depths(interaction, participant)["floor"] < 0.005
 
 
 @everybody
 def test_nothing_goes_through_the_furniture(interaction: str, participant: int) -> None:
     _, performance, body = performed(interaction, participant)
-    points = object_points(interaction, performance.world_from_object)
-    for box in performance.furniture:
-        for solid in (points, body.joints):
-            outside = np.abs(solid - np.array(box.centre)) - 0.5 * np.array(box.size)
-            assert -outside.max(axis=2).min() < 0.01
+    assert object_depths(interaction, participant)["furniture"] < 0.01
+    assert depth_in_furniture(performance, body.joints) < 0.01
 
 
 def test_people_do_it_differently_and_one_person_never_twice_the_same() -> None:
@@ -148,59 +163,3 @@ def test_people_do_it_differently_and_one_person_never_twice_the_same() -> None:
         for number in (0, 1)
     )
     assert np.abs(first - second).max() > 0.05
-
-
-@pytest.mark.parametrize("participant", PARTICIPANTS)
-def test_drinking_brings_the_rim_to_the_lips_and_tilts_the_mug(participant: int) -> None:
-    person, performance, _ = performed("drinkFromMug", participant)
-    mug = performance.world_from_object
-    up = mug.rotation[:, 2, 2]
-    deepest = int(np.argmin(up))
-    assert up[deepest] < np.cos(0.5)
-    lips = mouth(person, place_trunk(person, performance.posture))[deepest]
-    local = mug[deepest].rotation.T @ (lips - mug[deepest].translation)
-    assert np.hypot(local[0], local[1]) == pytest.approx(MUG_RADIUS, abs=1e-3)
-    assert local[2] == pytest.approx(MUG_HEIGHT / 2, abs=1e-3)
-
-
-@pytest.mark.parametrize("participant", PARTICIPANTS)
-def test_worn_glasses_turn_with_the_head(participant: int) -> None:
-    _, performance, body = performed("putOnGlasses", participant)
-    worn = performance.contact == ContactKind.WORN
-    assert worn.sum() > FRAME_RATE
-    head_from_glasses = (body.from_head.inverse() @ performance.world_from_object)[worn]
-    assert np.ptp(head_from_glasses.translation, axis=0).max() < 1e-9
-    assert np.ptp(head_from_glasses.rotation, axis=0).max() < 1e-9
-
-
-@pytest.mark.parametrize("participant", PARTICIPANTS)
-def test_sweeping_repeats_strokes_over_the_floor_with_both_hands(participant: int) -> None:
-    _, performance, _ = performed("sweepFloor", participant)
-    working = performance.contact == ContactKind.BOTH_HANDS
-    points = object_points("sweepFloor", performance.world_from_object)
-    brush = points[working][:, points[0, :, 2].argmin()]
-    lowest = points[working][..., 2].min(axis=1)
-    assert np.ptp(brush[:, 0]) > 0.3
-    turns = np.count_nonzero(np.diff(np.sign(brush[:, 0] - np.median(brush[:, 0]))))
-    assert turns >= 4
-    assert np.mean(lowest < 0.01) > 0.3
-    assert lowest.max() > 0.04
-
-
-def test_a_schedule_fills_its_time_and_repeats_the_use() -> None:
-    person, random = sample_person(0, 0), np.random.default_rng(0)
-    opening, closing = (Pause("wait", 0.5), Move("reach", 1.0)), (Move("leave", 1.0),)
-    plan = Plan(opening, (Move("do", 1.0), Pause("hold", 0.5)), closing)
-    stages = schedule(person, random, 30.0, plan)
-    assert stages[0].start == 0.0
-    assert stages[-1].end == pytest.approx(30.0)
-    assert all(a.end == b.start for a, b in pairwise(stages))
-    assert sum(stage.name == "do" for stage in stages) > 10
-
-
-def test_minimum_jerk_starts_and_ends_at_rest() -> None:
-    progress = minimum_jerk(np.linspace(-0.5, 1.5, 2001))
-    assert progress[0] == 0.0
-    assert progress[-1] == 1.0
-    assert np.abs(np.diff(progress, 2)).max() < 1e-5
-    assert np.diff(progress).min() >= 0.0

@@ -1,5 +1,7 @@
 """Golf and tennis: swings as fast and as even as people's, beside measured ones."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from inhand_lab.geometry.transforms import Transform
@@ -21,6 +23,7 @@ PARTICIPANTS = range(6)
 PERSON_FROM_MEASURED = np.array([[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
+@cache
 def swung(interaction: str, participant: int) -> tuple[BodyMotion, Transform, Bytes]:
     """BodyMotion, world_from_object and contact over 12 s at 240 Hz."""
     person = sample_person(20, participant)
@@ -66,6 +69,7 @@ def judged(joints: Array, head: Array) -> dict[str, float]:
     }
 
 
+@cache
 def simulated_swings(participant: int) -> list[dict[str, float]]:
     """Figures of every golf swing of a participant: the club is fastest once in each."""
     body, club, _ = swung("hitGolfBall", participant)
