@@ -11,6 +11,7 @@ from inhand_lab.people.person import SimulatedPerson, sample_person
 from inhand_lab.people.solids import head_radii
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_tracker.geometry.arrays import Array
+from solids import placed
 
 SEED = 20
 FRAME_RATE = 15.0
@@ -38,9 +39,7 @@ def perform(
 
 def object_points(interaction: str, world_from_object: Transform) -> Array:
     """The object's vertices (T, V, 3) in the world."""
-    vertices = INTERACTIONS[interaction].object_model().vertices
-    turned = np.einsum("tij,vj->tvi", world_from_object.rotation, vertices)
-    return np.asarray(turned + world_from_object.translation[:, None])
+    return placed(world_from_object, INTERACTIONS[interaction].object_model().vertices)
 
 
 def angles_at(joints: Array, first: int, middle: int, last: int) -> Array:
@@ -54,6 +53,6 @@ def angles_at(joints: Array, first: int, middle: int, last: int) -> Array:
 def depth_in_head(person: SimulatedPerson, body: BodyMotion, points: Array) -> Array:
     """How far (T, V) points (T, V, 3) are inside the head's ellipsoid, metres, along the ray."""
     offset = points - body.from_head.translation[:, None]
-    local = np.einsum("tji,tvj->tvi", body.from_head.rotation, offset)
+    local = offset @ body.from_head.rotation
     level = np.linalg.norm(local / head_radii(person), axis=2)
     return np.asarray((1.0 / level - 1.0) * np.linalg.norm(local, axis=2))

@@ -84,7 +84,7 @@ def surface_points(interaction: str) -> Array:
 
 def placed(world_from_object: Transform, points: Array) -> Array:
     """Points (V, 3) of an object as (T, V, 3) in the world."""
-    turned = np.einsum("tij,vj->tvi", world_from_object.rotation, points)
+    turned = points @ np.swapaxes(world_from_object.rotation, 1, 2)
     return np.asarray(turned + world_from_object.translation[:, None])
 
 
@@ -92,7 +92,7 @@ def _depth_in_ellipsoid(
     world_from_part: Transform, centre: Array, radii: Array, points: Array
 ) -> Array:
     offset = points - world_from_part.translation[:, None]
-    local = np.einsum("tji,tvj->tvi", world_from_part.rotation, offset) - centre
+    local = offset @ world_from_part.rotation - centre
     level = np.linalg.norm(local / radii, axis=2)
     slope = np.linalg.norm(local / radii**2, axis=2)
     return np.asarray(level * (1.0 - level) / np.maximum(slope, 1e-9))

@@ -48,11 +48,14 @@ def object_depths(interaction: str, participant: int) -> dict[str, float]:
 
 def depth_in_furniture(performance: Performance, points: Array) -> float:
     """How deep points (T, V, 3) go into the performance's furniture at most, metres."""
-    depths = [
-        (0.5 * np.array(cuboid.size) - np.abs(points - np.array(cuboid.centre))).min(axis=2).max()
-        for cuboid in performance.furniture
-    ]
-    return float(max(depths))
+    deepest = -np.inf
+    for cuboid in performance.furniture:
+        depths = [
+            0.5 * size - np.abs(points[..., axis] - centre)
+            for axis, (centre, size) in enumerate(zip(cuboid.centre, cuboid.size, strict=True))
+        ]
+        deepest = max(deepest, float(np.min(depths, axis=0).max()))
+    return deepest
 
 
 @everybody
