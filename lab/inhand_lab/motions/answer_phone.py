@@ -43,9 +43,8 @@ APART = 0.055
 
 EAR = normalised([0.97, 0.20, -0.08])
 """Where the phone touches the head's right, in units of the head's radii."""
-EAR_UP = 0.022
-"""The touching point above the phone's middle."""
-EARPIECE_GAP = 0.004
+EAR_UP, EARPIECE_GAP = 0.022, 0.004
+"""The touching point above the phone's middle, and the phone off the head, metres."""
 BESIDE_EAR = Transform(np.array([0.11, 0.09, -0.07]), np.eye(3))
 """Where the phone passes on its way to the right ear, from its place on it, in the head's frame."""
 AROUND_TABLE = (0.04, -0.12, 0.14)
@@ -58,7 +57,7 @@ PLUGGED = 0.006
 
 
 @dataclass(frozen=True)
-class Change:
+class HandChange:
     """A look at the phone during which it passes to a hand: 1 the right one, -1 the left one.
 
     In the look's middle third both hands hold it.
@@ -86,15 +85,13 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     posture, trunk = script.stand(_stance(script, sides))
     furniture, docked = _dock(script)
     carried = _carry(script, trunk, script.still(docked), sides)
-    apart = APART * _changing(script, changes)
-    slant = _slant(script)
+    apart, slant = APART * _changing(script, changes), _slant(script)
     right_held = carried @ _grip(script, slant, -apart)
     left_held = carried @ _grip(script, slant, apart).mirrored()
     right_rest, left_rest = hanging_hands(person, trunk, random)
     right_hand = _right_hand(script, changes, right_rest, right_held)
-    left_hand = move_through(
-        times, [Key(0.0, left_rest), *_pass(changes, left_rest, left_held, -1)]
-    )
+    left_keys = [Key(0.0, left_rest), *_pass(changes, left_rest, left_held, side=-1)]
+    left_hand = move_through(times, left_keys)
     contact = carried_by(script, *_contacts(changes))
     return Performance(posture, right_hand, left_hand, carried, contact, furniture)
 
@@ -105,10 +102,10 @@ def _sides(script: Script) -> list[float]:
     return [1.0, *(float(side) for side in np.where(others < CHANGE_SHARE, -1.0, 1.0)), 1.0]
 
 
-def _changes(script: Script, sides: list[float]) -> list[Change]:
+def _changes(script: Script, sides: list[float]) -> list[HandChange]:
     """The looks at which the phone changes hands."""
     return [
-        Change(look, after)
+        HandChange(look, after)
         for look, (before, after) in zip(script.every("look"), pairwise(sides), strict=True)
         if before != after
     ]
@@ -210,14 +207,14 @@ def _at_right_ear(script: Script) -> Transform:
     return Transform(touched + gap * outwards - EAR_UP * rotation[:, 2], rotation)
 
 
-def _changing(script: Script, changes: list[Change]) -> Array:
+def _changing(script: Script, changes: list[HandChange]) -> Array:
     """How far (T,), 0 to 1, hands make room for each other on the phone."""
     shares = [script.around(change.look, 0.8, 0.8) for change in changes]
     return np.sum([np.zeros(len(script.times)), *shares], axis=0)
 
 
 def _right_hand(
-    script: Script, changes: list[Change], rest: Transform, held: Transform
+    script: Script, changes: list[HandChange], rest: Transform, held: Transform
 ) -> Transform:
     """The right hand, world_from_hand (T), which fetches the phone and puts it back."""
     reach, withdraw = script.stage("reach"), script.stage("withdraw")
@@ -231,7 +228,7 @@ def _right_hand(
     return move_through(script.times, keys)
 
 
-def _pass(changes: list[Change], rest: Transform, held: Transform, side: int) -> list[Key]:
+def _pass(changes: list[HandChange], rest: Transform, held: Transform, side: int) -> list[Key]:
     """How a hand, 1 the right and -1 the left, takes the phone from the other or gives it away."""
     beside = Transform(held.translation + np.array([side * 0.26, 0.16, 0.0]), held.rotation)
     keys = []
@@ -244,7 +241,7 @@ def _pass(changes: list[Change], rest: Transform, held: Transform, side: int) ->
     return keys
 
 
-def _contacts(changes: list[Change]) -> Iterator[tuple[float, ContactKind]]:
+def _contacts(changes: list[HandChange]) -> Iterator[tuple[float, ContactKind]]:
     """When the phone passes from a hand to both, and to the other."""
     for change in changes:
         yield change.taken, ContactKind.BOTH_HANDS
