@@ -1,0 +1,50 @@
+"""A sender that invents ever new keys fills no file's channels, and is told."""
+
+import threading
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from inhand_recorder import service
+from inhand_recorder.journal import Journal
+from inhand_recorder.recording_file import Limits
+from inhand_runtime.health import HealthBoard
+from inhand_runtime.inbox import Inbox, Received
+from inhand_runtime.recording import read_recording
+from inhand_schemas.keys import Site
+from inhand_schemas.topics import POSE
+from recordings import START_NS, frame_messages
+
+
+@dataclass
+class Daemon:
+    """What the recorder needs of its daemon; it stops when all was read."""
+
+    health: HealthBoard = field(default_factory=lambda: HealthBoard("recorder", "disk"))
+    inbox: Inbox = field(default_factory=Inbox)
+    stop: threading.Event = field(default_factory=threading.Event)
+
+    def receive(self, _timeout_s: float) -> Received | None:
+        sample = self.inbox.get(0)
+        if sample is None:
+            self.stop.set()
+        return sample
+
+
+def test_keys_beyond_the_bound_are_counted_and_the_others_recorded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(service, "MOST_KEYS", 5)
+    daemon = Daemon()
+    lane = daemon.inbox.lane(samples=100, on_drop=daemon.health.dropped)
+    payload = frame_messages(0, 1)[2][2]
+    for number in range(8):
+        key = POSE.key(Site(), f"thing_{number}")
+        lane.put(Received(key, payload, POSE.encoding, START_NS + number))
+    journal = Journal(tmp_path, "rig", Limits(), daemon.health.drops)
+    service._Recorder(daemon, journal).run()  # type: ignore[arg-type]
+    (path,) = tmp_path.glob("*.mcap")
+    assert len(list(read_recording(path))) == 5
+    report = daemon.health.report()
+    assert sum(topic.dropped for topic in report.topics.values()) == 3
+    assert any("more than 5 keys are published" in trouble for trouble in report.troubles)
