@@ -71,7 +71,7 @@ def test_jitter_grows_as_the_trembling_does() -> None:
     assert small == pytest.approx(1.54 * np.sqrt(6.0) * 0.3, rel=0.05)
 
 
-def test_a_drift_is_told_from_a_tremble() -> None:
+def test_a_drift_is_measured_apart_from_a_tremble() -> None:
     name, on = "wrist drift over jitter", "still wrist"
     assert value(measured(skeletons(0.0005)), name, on) == pytest.approx(1.0, abs=0.1)
     drifting = measured(skeletons(1e-6, drift=0.001))
@@ -82,7 +82,7 @@ def test_what_was_never_recorded_is_no_number() -> None:
     assert np.isnan(value(measured(skeletons(0.0)), "hand turned by 90°", "fast wrist"))
 
 
-def test_bones_that_change_between_stretches_are_told_from_bones_that_tremble() -> None:
+def test_bones_that_change_between_stretches_are_measured_apart_from_bones_that_tremble() -> None:
     name, on = "head bone, deviation between stretches", "1.5 s of one person"
     steady = skeletons(0.0)[0]
     longer = steady.copy()
@@ -160,7 +160,7 @@ def test_a_ratio_is_within_the_factor_either_way() -> None:
     assert not compared_with(np.nan).within
 
 
-def test_a_figure_is_told_where_other_people_would_give_nearly_the_same() -> None:
+def test_a_property_is_judged_where_other_people_would_give_nearly_the_same() -> None:
     assert compared_with(2.0, 1.4, 2.9).judged
     for lowest, highest in ((1.3, 2.2), (1.8, 3.1), (0.0, 2.2), (1.8, np.inf)):
         assert not compared_with(2.0, lowest, highest).judged
@@ -181,7 +181,7 @@ def people(spread: float) -> list[MeasuredPerson]:
 
 
 def test_the_interval_is_wide_where_people_differ() -> None:
-    parameters = replace(DEFAULT_REALISM, resamples=40)
+    parameters = replace(DEFAULT_REALISM, resamples=20)
     for spread, narrow in ((0.02, True), (1.5, False)):
         recorded = people(spread)
         lowest, highest = property_intervals(recorded, parameters)

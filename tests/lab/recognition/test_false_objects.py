@@ -26,11 +26,11 @@ def use(monkeypatch: pytest.MonkeyPatch, parameters: RecognitionEvaluationParame
 def count(folder: Path, result: Path, *more: str) -> dict[str, dict[str, float]]:
     command = ["recognise", str(folder), "--false-objects", "--unseen", "p02"]
     assert main([*command, "--json", str(result), *more]) == 0
-    told: dict[str, dict[str, float]] = json.loads(result.read_text())
-    for shares in (told["nothing_in_use"], told["others"], told["never_trained"]):
+    counted: dict[str, dict[str, float]] = json.loads(result.read_text())
+    for shares in (counted["nothing_in_use"], counted["others"], counted["never_trained"]):
         assert all(0.0 <= share <= 1.0 for share in shares.values())
-    assert tuple(told["never_trained"]) == ACTIONS
-    return told
+    assert tuple(counted["never_trained"]) == ACTIONS
+    return counted
 
 
 def test_without_images_skeletons_alone_are_looked_at(
@@ -41,10 +41,10 @@ def test_without_images_skeletons_alone_are_looked_at(
         tmp_path / "set", GenerationSettings(ACTIONS, 3, 5, 90, images=False), lambda: None
     )
     assert not has_images(people)
-    told = count(people.folder, tmp_path / "result.json")
-    assert told["images"] is False
-    assert set(told["nothing_in_use"]) == {"stand", "walkOnSpot", "walkAbout", "gesture"}
-    assert told["nothing_in_use"]["stand"] == 0.0
+    counted = count(people.folder, tmp_path / "result.json")
+    assert counted["images"] is False
+    assert set(counted["nothing_in_use"]) == {"stand", "walkOnSpot", "walkAbout", "gesture"}
+    assert counted["nothing_in_use"]["stand"] == 0.0
     shown = capsys.readouterr().out
     assert "skeletons alone" in shown
     assert "with images" not in shown
@@ -63,11 +63,11 @@ def test_with_images_the_cascade_sees_idle_people_strangers_and_untaught_actions
         lambda: None,
     )
     assert has_images(people)
-    told = count(people.folder, tmp_path / "result.json", "--others", str(strangers.folder))
-    assert told["images"] is True
-    assert told["others_images"] is False
-    assert told["nothing_in_use"] == {"stand": 0.0}
-    assert set(told["others"]) == {"sweepFloor"}
+    counted = count(people.folder, tmp_path / "result.json", "--others", str(strangers.folder))
+    assert counted["images"] is True
+    assert counted["others_images"] is False
+    assert counted["nothing_in_use"] == {"stand": 0.0}
+    assert set(counted["others"]) == {"sweepFloor"}
     shown = capsys.readouterr().out
     assert "with images" in shown
     assert "skeletons alone" in shown

@@ -45,8 +45,8 @@ def test_objects_are_seen_better_where_they_are(
     again = presence_of(look_around(people, people.entries, ACTIONS, models), ACTIONS)
     np.testing.assert_array_equal(own_supports(again), own_supports(presence))
     blind = replace(people, entries=())
-    untold = learn_presence(blind, (), ACTIONS, models)
-    np.testing.assert_allclose(own_supports(untold), own_supports(usual_presence(2)))
+    usual = learn_presence(blind, (), ACTIONS, models)
+    np.testing.assert_allclose(own_supports(usual), own_supports(usual_presence(2)))
 
     files = [tmp_path / f"{action}.model" for action in ACTIONS]
     for model, file in zip(models, files, strict=True):
@@ -62,10 +62,10 @@ def test_objects_are_seen_better_where_they_are(
     assert "--models has none of 'drinkFromMug'" in capsys.readouterr().err
 
 
-def test_looks_of_one_action_fewer_tell_the_same_of_the_others() -> None:
+def test_looks_of_one_action_fewer_teach_the_same_of_the_others() -> None:
     random = np.random.default_rng(4)
     actions = ("sweep", "drink", "call")
-    looks = [
+    samples = [
         SupportSample(
             done,
             {
@@ -78,20 +78,20 @@ def test_looks_of_one_action_fewer_tell_the_same_of_the_others() -> None:
         for done in actions
         for _ in range(6)
     ]
-    looks.append(SupportSample("drink", {}))
-    of_all, of_two = presence_of(looks, actions), presence_of(looks, actions[:2])
+    samples.append(SupportSample("drink", {}))
+    of_all, of_two = presence_of(samples, actions), presence_of(samples, actions[:2])
     np.testing.assert_array_equal(own_supports(of_all)[:2], own_supports(of_two))
-    kept = presence_of([look for look in looks if look.action != "call"], actions[:2])
+    kept = presence_of([sample for sample in samples if sample.action != "call"], actions[:2])
     np.testing.assert_array_equal(kept.supports, of_two.supports)
     np.testing.assert_array_equal(kept.spread, of_two.spread)
     np.testing.assert_array_equal(kept.parts, of_two.parts)
     np.testing.assert_array_equal(kept.part_spreads, of_two.part_spreads)
 
 
-def test_the_object_that_resembles_another_is_told_from_those_that_do_not() -> None:
+def test_the_object_that_resembles_another_is_learned_apart_from_those_that_do_not() -> None:
     actions = ("hammer", "brush", "call")
     resemblance = {("hammer", "brush"): 18.0, ("brush", "hammer"): 16.0}
-    looks = [
+    samples = [
         SupportSample(
             done,
             {
@@ -104,13 +104,13 @@ def test_the_object_that_resembles_another_is_told_from_those_that_do_not() -> N
         for seen in actions
         for _ in range(20)
     ]
-    supports = presence_of(looks, actions).supports
+    supports = presence_of(samples, actions).supports
     expected = [[25.0, 18.0, 0.0], [16.0, 25.0, 0.0], [0.0, 0.0, 25.0]]
     np.testing.assert_allclose(supports, expected, atol=3.5)
 
 
 def test_the_parts_of_an_objects_support_are_those_in_images_of_itself() -> None:
-    looks = [
+    samples = [
         SupportSample(
             "drink",
             {
@@ -120,7 +120,7 @@ def test_the_parts_of_an_objects_support_are_those_in_images_of_itself() -> None
         )
         for off in (-6.0, 6.0) * 200
     ]
-    told = presence_of(looks, ("drink", "call"))
-    np.testing.assert_allclose(told.parts, [[4.0, 12.0, 2.0, 9.0], [-np.inf] * 4])
-    assert told.part_spreads[0, 1] == pytest.approx(6.0, rel=0.05)
-    np.testing.assert_allclose(told.part_spreads[1], usual_presence(1).part_spreads[0])
+    learned = presence_of(samples, ("drink", "call"))
+    np.testing.assert_allclose(learned.parts, [[4.0, 12.0, 2.0, 9.0], [-np.inf] * 4])
+    assert learned.part_spreads[0, 1] == pytest.approx(6.0, rel=0.05)
+    np.testing.assert_allclose(learned.part_spreads[1], usual_presence(1).part_spreads[0])
