@@ -68,7 +68,7 @@ class Stage:
 
     def at(self, share: float) -> float:
         """The time, in seconds, when that share of the stage is over."""
-        return (1.0 - share) * self.start + share * self.end
+        return self.start + share * (self.end - self.start)
 
     def part(self, first: float, last: float) -> Stage:
         """What is between two shares of it."""
