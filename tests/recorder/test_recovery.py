@@ -34,22 +34,12 @@ from recordings import (
     RGBD_KEY,
     START_NS,
     contents,
+    damaged_copy,
     flaws,
     frame_messages,
     write_frame,
     write_recording,
 )
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_recording(tmp_path_factory.mktemp("whole") / "walk.mcap")
-
-
-def damaged_copy(whole: Path, folder: Path, data: bytes) -> Path:
-    path = folder / "damaged.mcap"
-    path.write_bytes(data)
-    return path
 
 
 def is_subsequence(part: list[object], sequence: list[object]) -> bool:
@@ -79,7 +69,7 @@ def test_metadata_is_kept_and_the_origin_told(whole: Path, tmp_path: Path) -> No
 
 def test_a_recording_cut_in_half_gives_its_first_half(whole: Path, tmp_path: Path) -> None:
     data = whole.read_bytes()
-    cut = damaged_copy(whole, tmp_path, data[: len(data) // 2])
+    cut = damaged_copy(tmp_path, data[: len(data) // 2])
     with pytest.raises(RecordingError, match="was cut off: `inhand recording recover"):
         list(read_recording(cut))
     report = recover_recording(cut, tmp_path / "saved.mcap")
@@ -95,7 +85,7 @@ def test_a_recording_cut_in_half_gives_its_first_half(whole: Path, tmp_path: Pat
 def test_a_cut_at_any_byte_gives_a_prefix(share: float, whole: Path, tmp_path: Path) -> None:
     data = whole.read_bytes()
     length = round(share * len(data))
-    cut = damaged_copy(whole, tmp_path, data[:length])
+    cut = damaged_copy(tmp_path, data[:length])
     output = tmp_path / "saved.mcap"
     output.unlink(missing_ok=True)
     everything = contents(whole)
@@ -120,7 +110,7 @@ def test_a_changed_byte_costs_at_most_its_chunk_and_is_noticed(
     data = bytearray(whole.read_bytes())
     place = int(share * len(data))
     data[place] ^= flip
-    damaged = damaged_copy(whole, tmp_path, bytes(data))
+    damaged = damaged_copy(tmp_path, bytes(data))
     assert verify_recording(damaged) != []
     output = tmp_path / "saved.mcap"
     output.unlink(missing_ok=True)
@@ -135,7 +125,7 @@ def test_overwritten_structure_is_skipped_to_the_next_chunk(whole: Path, tmp_pat
     data = bytearray(whole.read_bytes())
     second = [s for s in scan(bytes(data)) if len(s.records) > 1][1]
     data[second.offset : second.offset + 60] = b"\xff" * 60
-    report = recover_recording(damaged_copy(whole, tmp_path, bytes(data)), tmp_path / "saved.mcap")
+    report = recover_recording(damaged_copy(tmp_path, bytes(data)), tmp_path / "saved.mcap")
     everything = contents(whole)
     assert contents(report.output) == everything[:30] + everything[60:]
     assert report.skipped_bytes >= second.length
@@ -148,7 +138,7 @@ def test_damage_that_looks_like_records_takes_no_longer(
     data = whole.read_bytes()
     third = [s for s in scan(data) if len(s.records) > 1][2]
     filler = noise * (4_000_000 // len(noise))
-    noisy = damaged_copy(whole, tmp_path, data[: third.offset] + filler + data[third.offset :])
+    noisy = damaged_copy(tmp_path, data[: third.offset] + filler + data[third.offset :])
     start = time.monotonic()
     report = recover_recording(noisy, tmp_path / "saved.mcap")
     assert time.monotonic() - start < 30
@@ -159,7 +149,7 @@ def test_damage_that_looks_like_records_takes_no_longer(
 def test_zeros_at_the_end_of_a_crashed_disk_are_no_messages(whole: Path, tmp_path: Path) -> None:
     data = whole.read_bytes()
     position = data.index(frame_messages(25, 200)[0][2])
-    cut = damaged_copy(whole, tmp_path, data[:position] + bytes(100_000))
+    cut = damaged_copy(tmp_path, data[:position] + bytes(100_000))
     report = recover_recording(cut, tmp_path / "saved.mcap")
     assert contents(report.output) == contents(whole)[:75]
     assert flaws(report.output) == []
@@ -263,7 +253,7 @@ def test_a_folder_is_no_recording(tmp_path: Path) -> None:
 
 
 def test_a_cut_recording_can_be_inspected(whole: Path, tmp_path: Path) -> None:
-    cut = damaged_copy(whole, tmp_path, whole.read_bytes()[:-600])
+    cut = damaged_copy(tmp_path, whole.read_bytes()[:-600])
     info, full = inspect_recording(cut), inspect_recording(whole)
     assert (info.complete, full.complete) == (False, True)
     assert full.metadata["session"] == info.metadata["session"]

@@ -23,28 +23,17 @@ from recordings import (
     RGBD_KEY,
     START_NS,
     contents,
+    damaged_copy,
     frame_messages,
     write_frame,
-    write_recording,
 )
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return write_recording(tmp_path_factory.mktemp("whole") / "walk.mcap")
-
-
-def damaged_copy(whole: Path, folder: Path, data: bytes) -> Path:
-    path = folder / "damaged.mcap"
-    path.write_bytes(data)
-    return path
 
 
 def test_a_damaged_middle_is_skipped_and_its_bytes_are_told(whole: Path, tmp_path: Path) -> None:
     data = bytearray(whole.read_bytes())
     position = data.index(frame_messages(15, 200)[0][2])
     data[position + 100] ^= 0x40
-    damaged = damaged_copy(whole, tmp_path, bytes(data))
+    damaged = damaged_copy(tmp_path, bytes(data))
     with pytest.raises(RecordingError, match="is damaged"):
         list(read_recording(damaged))
     report = recover_recording(damaged, tmp_path / "saved.mcap")
@@ -59,7 +48,7 @@ def test_a_damaged_middle_is_skipped_and_its_bytes_are_told(whole: Path, tmp_pat
 def test_the_first_chunk_may_be_damaged_and_the_index_gone(whole: Path, tmp_path: Path) -> None:
     data = bytearray(whole.read_bytes()[:-500])
     data[data.index(frame_messages(2, 200)[0][2]) + 100] ^= 1
-    report = recover_recording(damaged_copy(whole, tmp_path, bytes(data)), tmp_path / "saved.mcap")
+    report = recover_recording(damaged_copy(tmp_path, bytes(data)), tmp_path / "saved.mcap")
     everything = contents(whole)
     assert contents(report.output) == everything[:6] + everything[7:]
 
@@ -72,7 +61,7 @@ def test_damage_in_every_chunk_costs_only_the_messages_that_it_hits(
     hit = set(range(4, len(everything), 15))
     for number in hit:
         data[data.index(everything[number][1]) + 3] ^= 0x10
-    report = recover_recording(damaged_copy(whole, tmp_path, bytes(data)), tmp_path / "saved.mcap")
+    report = recover_recording(damaged_copy(tmp_path, bytes(data)), tmp_path / "saved.mcap")
     kept = [one for number, one in enumerate(everything) if number not in hit]
     assert contents(report.output) == kept
     assert report.unchecked == 0
@@ -83,7 +72,7 @@ def test_a_broken_length_costs_no_message_behind_it(whole: Path, tmp_path: Path)
     everything = contents(whole)
     start = data.index(everything[50][1]) - MESSAGE_BYTES - HEADER_BYTES
     data[start + 1] ^= 0xFF
-    report = recover_recording(damaged_copy(whole, tmp_path, bytes(data)), tmp_path / "saved.mcap")
+    report = recover_recording(damaged_copy(tmp_path, bytes(data)), tmp_path / "saved.mcap")
     assert contents(report.output) == everything[:50] + everything[51:]
 
 
@@ -91,7 +80,7 @@ def test_a_flipped_bit_before_a_cut_is_left_out(whole: Path, tmp_path: Path) -> 
     data = bytearray(whole.read_bytes())
     everything = contents(whole)
     data[data.index(everything[75][1]) + 150] ^= 1
-    cut = damaged_copy(whole, tmp_path, bytes(data[: data.index(everything[85][1])]))
+    cut = damaged_copy(tmp_path, bytes(data[: data.index(everything[85][1])]))
     report = recover_recording(cut, tmp_path / "saved.mcap")
     assert contents(report.output) == everything[:75] + everything[76:85]
     assert report.unchecked == 0

@@ -59,6 +59,13 @@ def write_recording(
     return path
 
 
+def damaged_copy(folder: Path, data: bytes) -> Path:
+    """A recording of these bytes."""
+    path = folder / "damaged.mcap"
+    path.write_bytes(data)
+    return path
+
+
 def flaws(path: Path) -> list[str]:
     """What is wrong with a recording, but that these small ones have no camera's info."""
     return [line for line in verify_recording(path) if "have no camera info" not in line]
