@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from inhand_recorder.inspection import RecordingInfo, inspect_recording
+from inhand_recorder.missing_infos import add_infos
 from inhand_recorder.recovery import RecoveryReport, recover_recording
-from inhand_recorder.repair import add_infos
 from inhand_recorder.verification import examine_recording
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from inhand_recorder.repair import add_infos
+from inhand_recorder.missing_infos import add_infos
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import RecordingError, read_recording
 from inhand_schemas.topics import INFO
