@@ -32,7 +32,7 @@ from inhand_lab.realism.parameters import DEFAULT_REALISM
 
 @dataclass(frozen=True)
 class BodyPoseSequence:
-    """Body poses b (T, 60) of a recording's frames whose joints are all known, and their times
+    """Body poses b (T, 60) of a recording's frames whose joints are all seen, and their times
     (T,) in seconds."""
 
     participant: str
@@ -44,12 +44,12 @@ def body_pose_sequence(
     participant: str, frame_rate: float, handedness: str, joints: Array
 ) -> BodyPoseSequence:
     """Measure the body poses of joints (T, 20, 3) in metres; left-handed people are mirrored."""
-    known = np.isfinite(joints).all(axis=(1, 2))
-    seen = joints[known]
+    whole = np.isfinite(joints).all(axis=(1, 2))
+    seen = joints[whole]
     if handedness == "left":
         seen = mirror_joints(seen)
     bodies = body_pose(seen, pelvis_basis(seen), stature(part_lengths(seen)))
-    return BodyPoseSequence(participant, np.flatnonzero(known) / frame_rate, bodies)
+    return BodyPoseSequence(participant, np.flatnonzero(whole) / frame_rate, bodies)
 
 
 def return_distance(recordings: Sequence[BodyPoseSequence]) -> float:

@@ -96,9 +96,9 @@ def _share_at_dominant_hand(sequence: LabelledSequence) -> float:
     """Share of frames in which the object is nearer to the dominant hand than to the other."""
     hands = sequence.joints[:, [Joint.HAND_RIGHT, Joint.HAND_LEFT]]
     right, left = np.linalg.norm(hands - sequence.translations[:, None], axis=2).T
-    known = np.isfinite(right) & np.isfinite(left)
+    seen = np.isfinite(right) & np.isfinite(left)
     nearer = left < right if sequence.left_handed else right < left
-    return float(nearer[known].mean()) if known.any() else 0.5
+    return float(nearer[seen].mean()) if seen.any() else 0.5
 
 
 def _share(count: int, frames: int) -> str:
