@@ -20,8 +20,9 @@ def pytest_xdist_auto_num_workers() -> int:
 
 
 @pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config) -> FilesAndRigs:
-    return FilesAndRigs(config)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> FilesAndRigs:
+    # Without its parent's log the scheduler prints a line for each file.
+    return FilesAndRigs(config, log)
 
 
 @pytest.hookimpl(tryfirst=True)
