@@ -76,7 +76,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Where the things in people's hands are: live 6-DoF object poses over Zenoh.",
         epilog="verbs:\n"
         + "".join(f"  {verb:10} {text}\n" for verb, text in (DAEMONS | VERBS).items())
-        + "\n`inhand VERB --help` tells what a verb takes.",
+        + "\n`inhand VERB --help` says what a verb takes.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action=_Version, nargs=0, help="say the release, and end")

@@ -104,7 +104,7 @@ def add_looking_arguments(parser: argparse.ArgumentParser, seconds: float | None
 
 
 def positive_number(text: str) -> float:
-    """An argument above zero; raises ValueError, which argparse tells."""
+    """An argument above zero; raises ValueError, which argparse reports."""
     number = float(text)
     if not 0 < number < float("inf"):
         raise ValueError

@@ -79,7 +79,7 @@ def _camera(recording: Path, wish: str | None) -> str:
 
 @contextlib.contextmanager
 def _progress(arguments: argparse.Namespace, camera: str) -> Iterator[None]:
-    """A bar on a terminal: the messages of the camera's busiest key, as its health tells."""
+    """A bar on a terminal: the messages of the camera's busiest key, by its health."""
     console = Console(stderr=True)
     if not console.is_terminal:
         yield

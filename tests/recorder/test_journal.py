@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from inhand_recorder.gaps import GapTeller
+from inhand_recorder.gaps import GapReporter
 from inhand_recorder.journal import Journal
 from inhand_recorder.losses import LOSSES_RECORD, parse_losses
 from inhand_recorder.recording_file import Entry, Limits
@@ -142,8 +142,8 @@ def test_a_folder_that_cannot_be_made_loses_nothing_that_was_handed_in(tmp_path:
 
 def test_missing_messages_are_told_each_time_that_their_count_doubled() -> None:
     lines: list[str] = []
-    teller = GapTeller(lines.append)
+    teller = GapReporter(lines.append)
     for number in range(0, 20, 2):
         teller.count(RGBD_KEY, number)
-        teller.tell()
+        teller.report()
     assert [int(line.split()[0]) for line in lines] == [1, 2, 4, 8]

@@ -31,7 +31,7 @@ NOT_TRUSTED = 1e6
 
 
 @dataclass(frozen=True)
-class Variant:
+class FusionVariant:
     """``fusion`` with something taken out, or ``instead`` of it something else."""
 
     part: str
@@ -82,31 +82,35 @@ def _equally_weighted(prior: Prior) -> Prior:
     return replace(prior, translation_products=equal, rotation_products=equal)
 
 
-VARIANTS: tuple[Variant, ...] = (
-    Variant("", "nothing"),
-    Variant("prior", "all anchors but the trunk", changed=_only((0, 1, 2), ("trunk",))),
-    Variant("prior", "all anchors but the hand", changed=_only((0, 1, 2), ("right hand",))),
-    Variant("prior", "memory", changed=_only((0, 1), ANCHORS)),
-    Variant("prior", "memory, and the upper body by itself", changed=_only((0,), ANCHORS)),
-    Variant("prior", "weights by how well each predicts", changed=_equally_weighted),
+VARIANTS: tuple[FusionVariant, ...] = (
+    FusionVariant("", "nothing"),
+    FusionVariant("prior", "all anchors but the trunk", changed=_only((0, 1, 2), ("trunk",))),
+    FusionVariant("prior", "all anchors but the hand", changed=_only((0, 1, 2), ("right hand",))),
+    FusionVariant("prior", "memory", changed=_only((0, 1), ANCHORS)),
+    FusionVariant("prior", "memory, and the upper body by itself", changed=_only((0,), ANCHORS)),
+    FusionVariant("prior", "weights by how well each predicts", changed=_equally_weighted),
     *(
-        Variant("likelihood", term, terms=tuple(one for one in SIGHT_TERMS if one != term))
+        FusionVariant("likelihood", term, terms=tuple(one for one in SIGHT_TERMS if one != term))
         for term in SIGHT_TERMS
     ),
-    Variant("likelihood", "all of it", terms=()),
-    Variant("search", "what was seen before", parameters=replace(DEFAULT_FUSION, carries=False)),
-    Variant("search", "an object that was left", parameters=replace(DEFAULT_FUSION, leaves=False)),
-    Variant("search", "a second, nearer round", parameters=replace(DEFAULT_FUSION, rounds=1)),
-    Variant("search", "refinement", parameters=replace(DEFAULT_FUSION, refines=False)),
+    FusionVariant("likelihood", "all of it", terms=()),
+    FusionVariant(
+        "search", "what was seen before", parameters=replace(DEFAULT_FUSION, carries=False)
+    ),
+    FusionVariant(
+        "search", "an object that was left", parameters=replace(DEFAULT_FUSION, leaves=False)
+    ),
+    FusionVariant("search", "a second, nearer round", parameters=replace(DEFAULT_FUSION, rounds=1)),
+    FusionVariant("search", "refinement", parameters=replace(DEFAULT_FUSION, refines=False)),
 )
 
 
-def varied(settings: Sequence[str]) -> tuple[Variant, ...]:
+def varied(settings: Sequence[str]) -> tuple[FusionVariant, ...]:
     """Fusion as it is, and with each ``FIELD=VALUE`` by itself; raises SettingsError."""
     variants = [VARIANTS[0]]
     for setting in settings:
         parameters, usual = vary(setting)
-        variants.append(Variant("parameter", usual, setting, parameters))
+        variants.append(FusionVariant("parameter", usual, setting, parameters))
     return tuple(variants)
 
 
@@ -114,7 +118,7 @@ def varied(settings: Sequence[str]) -> tuple[Variant, ...]:
 class Worth:
     """A variant's mean vertex error in cm over interactions."""
 
-    variant: Variant
+    variant: FusionVariant
     vertex_error_cm: float
 
 
@@ -140,7 +144,7 @@ def ablate(
     return [Worth(one, 100.0 * float(m)) for one, m in zip(variants, means, strict=True)]
 
 
-def _variants(settings: Sequence[str]) -> tuple[Variant, ...]:
+def _variants(settings: Sequence[str]) -> tuple[FusionVariant, ...]:
     return varied(settings) if settings else VARIANTS
 
 
@@ -154,7 +158,7 @@ def _try_fold(task: tuple[Dataset, Fold, Sequence[str]]) -> Array:
 
 
 def _errors(
-    dataset: Dataset, entry: DatasetEntry, model: Model, variants: Sequence[Variant]
+    dataset: Dataset, entry: DatasetEntry, model: Model, variants: Sequence[FusionVariant]
 ) -> Iterator[float]:
     """The vertex error of each variant in one recording, in metres."""
     path = dataset.path(entry)

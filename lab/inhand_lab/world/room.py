@@ -85,7 +85,7 @@ def _clutter(random: np.random.Generator, wall: float) -> list[Surface]:
 
 
 def _colour(random: np.random.Generator) -> Rgb:
-    """Of a muted paint or fabric."""
+    """Draw the colour of a muted paint or fabric."""
     shade = random.uniform(40.0, 210.0) + random.normal(0.0, 22.0, 3)
     red, green, blue = (int(value) for value in np.clip(shade, 15.0, 240.0))
     return red, green, blue

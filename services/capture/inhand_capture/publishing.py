@@ -52,7 +52,7 @@ class CameraPublisher:
         self._sequence = 0
 
     def introduce(self, info: CameraInfo) -> None:
-        """Tell how the camera sees, to all who listen and will listen."""
+        """Publish how the camera sees, to all who listen and will listen."""
         time_ns = info.time_ns or time.time_ns()
         self._info.put(replace(info, sequence=self._introductions, time_ns=time_ns))
         self._introductions += 1

@@ -127,7 +127,7 @@ def has_checksums(data: Bytes) -> bool:
 
 
 def channels(data: Bytes) -> dict[int, Channel]:
-    """The channels by their number, from wherever the file still tells them."""
+    """The channels by their number, from wherever they still stand in the file."""
     found: dict[int, Channel] = {}
     doubtful: dict[int, Channel] = {}
     for start in (summary_start(data), len(MAGIC)):

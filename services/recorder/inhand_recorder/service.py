@@ -16,7 +16,7 @@ from inhand_schemas.topics import RGBD, TOPICS, topic_of
 from pydantic import AfterValidator, ByteSize, Field
 
 from inhand_recorder.clock import ClockWatch
-from inhand_recorder.gaps import GapTeller
+from inhand_recorder.gaps import GapReporter
 from inhand_recorder.journal import Journal
 from inhand_recorder.recording_file import Limits
 from inhand_recorder.stamps import entry_apart, entry_of
@@ -118,7 +118,7 @@ class _Recorder:
     def __init__(self, daemon: Daemon, journal: Journal) -> None:
         self._daemon = daemon
         self._journal = journal
-        self._gaps = GapTeller(daemon.health.error)
+        self._gaps = GapReporter(daemon.health.error)
         self._keys: set[str] = set()
         self._clock = ClockWatch()
         self._infos = InfoWatch(daemon.health)
@@ -157,7 +157,7 @@ class _Recorder:
                 if (step := self._clock.step()) is not None:
                     self._journal.note_clock_step(*step)
                 self._journal.sync()
-                self._gaps.tell()
+                self._gaps.report()
                 self._infos.check(time.monotonic())
                 next_sync = time.monotonic() + SYNC_PERIOD_S
 
@@ -177,7 +177,7 @@ class _Recorder:
         while (sample := self._daemon.inbox.get(0)) is not None:
             self._write(sample)
         self._journal.close()
-        self._gaps.tell()
+        self._gaps.report()
 
     def _write(self, sample: Received) -> None:
         try:

@@ -174,12 +174,12 @@ class _Messages:
 
 def _loss_problems(written: Mapping[str, str], counted: Mapping[str, Losses]) -> Iterator[str]:
     try:
-        told = parse_losses(written)
+        claimed = parse_losses(written)
     except ValueError as error:
         yield str(error)
         return
-    for key in sorted(told.keys() | counted.keys()):
-        there, here = told.get(key, Losses()), counted.get(key, Losses())
+    for key in sorted(claimed.keys() | counted.keys()):
+        there, here = claimed.get(key, Losses()), counted.get(key, Losses())
         for what in ("received", "lost", "restarts"):
             said, found = getattr(there, what), getattr(here, what)
             if said != found:

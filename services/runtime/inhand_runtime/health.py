@@ -14,7 +14,7 @@ from inhand_schemas.messages import Health, Latency, ServiceState, TopicHealth
 log = logging.getLogger(__name__)
 
 WINDOW_S = 10.0
-"""Seconds over which latencies are told: what is older says nothing of how things go."""
+"""Seconds over which latencies are reported: what is older says nothing of how things go."""
 LATENCY_SAMPLES = 1000
 MOST_KEYS = 1024
 OTHER_KEYS = "(other keys)"
@@ -69,7 +69,7 @@ class HealthBoard:
     def received(self, key: str, sequence: int | None = None) -> None:
         """Count a message taken out of the inbox, and those that its number shows as missing.
 
-        A number that goes back, or far ahead, tells of a publisher that began anew, and of no loss.
+        A number that goes back, or far ahead, means a publisher that began anew, and no loss.
         """
         key = self._count(self._received, key)
         if sequence is None or key == OTHER_KEYS:

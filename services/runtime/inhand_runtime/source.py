@@ -27,7 +27,7 @@ QUIET_S = 1.0
 
 
 class SourceError(Exception):
-    """A source that cannot start or go on; the message tells the user the mend."""
+    """A source that cannot start or go on; the message says the mend."""
 
 
 class SourceLostError(SourceError):
@@ -64,10 +64,10 @@ class Source(Protocol):
         """How it sees; capture fills in the sequence, and the time where it is 0."""
 
     def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured | None]:
-        """Moments at the pace at which they happen; ``wanted`` tells whether pixels are.
+        """Moments at the pace at which they happen; ``wanted`` says whether pixels are.
 
         While nothing happens it gives None at least once a second (``QUIET_S``), so that a source
-        that waits is told from one that hangs. Ends when the source has no more. Raises
+        that waits differs from one that hangs. Ends when the source has no more. Raises
         SourceLostError when a device went away, and SourceError when opening it again cannot help.
         """
 

@@ -38,7 +38,7 @@ DAMAGE = (
 
 
 class RecordingError(InhandError):
-    """A recording that cannot be written or read; the message tells the user the mend."""
+    """A recording that cannot be written or read; the message says the mend."""
 
 
 @dataclass(frozen=True)
