@@ -30,7 +30,7 @@ class Inbox:
     def lane(
         self, *, samples: int, size: int = UNBOUNDED, on_drop: Callable[[str], None]
     ) -> "Lane":
-        """A new lane for ``samples`` and ``size`` bytes at the most; ``on_drop`` gets drops' keys."""
+        """A new lane for ``samples`` and ``size`` bytes; ``on_drop`` gets the keys of drops."""
         lane = Lane(self, samples, size, on_drop)
         with self._changed:
             self._lanes.append(lane)
