@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
         "simulating people to learn from", DEFAULT_DEMONSTRATION.trained_participants
     ) as advance:
         model, model_path = train_demonstration(folder, arguments.interaction, advance)
-    config = write_rig_file(folder, arguments.interaction, model_path)
+    config = write_rig_file(folder.resolve(), arguments.interaction, model_path.resolve())
     _run_rig(config, arguments.seconds)
     recording = _only_recording(folder / "recordings")
     seen = review(recording, model.shape.name, model.shape.marked_vertices)

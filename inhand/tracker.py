@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from inhand_runtime.entry import daemon_main
-from inhand_tracker.service import TrackerSettings, run
+from inhand_tracker.service import TrackerSettings, check, run
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the daemon until SIGTERM or Ctrl-C; returns its exit code."""
-    return daemon_main("tracker", TrackerSettings, run, arguments)
+    return daemon_main("tracker", TrackerSettings, run, arguments, check=check)

@@ -175,7 +175,7 @@ def test_a_source_whose_package_is_missing_says_what_to_install(
 ) -> None:
     rig.configure('[capture.front]\nsource = "unusable"\n')
     daemon = capture()
-    assert daemon.wait() == 1
+    assert daemon.wait() == 2
     assert (
         "needs the package package_that_nobody_has, which is not installed: "
         "run pip install 'inhand[unusable]'" in daemon.stderr

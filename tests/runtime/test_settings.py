@@ -3,11 +3,11 @@
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 from inhand_runtime.errors import SettingsError
-from inhand_runtime.settings import Section, Settings, load_rig_file, load_settings
+from inhand_runtime.settings import FilePath, Section, Settings, load_rig_file, load_settings
 from inhand_schemas.keys import Site
 
 
@@ -16,6 +16,10 @@ class CameraSettings(Section):
 
     source: str
     rate: float = 1.0
+    mode: Literal["fast", "slow"] | Literal["exact"] = "fast"
+    serial: str | None = None
+    places: tuple[str, ...] = ()
+    file: FilePath = Path("camera.yaml")
     options: dict[str, Any] = {}
 
 
@@ -98,6 +102,22 @@ def test_without_a_file_an_instance_is_called_like_its_service() -> None:
             "rig.toml:2: capture.source stands in no instance: write it below [capture.NAME]",
         ),
         (
+            '[capture.front]\nsource = "x"\nmode = "fsat"\n',
+            "rig.toml:3: setting capture.front.mode: there is no 'fsat' (did you mean fast?)",
+        ),
+        (
+            '[capture.front]\nsource = "x"\nmode = 3\n',
+            "rig.toml:3: setting capture.front.mode: there is no 3 (there are: fast, slow, exact)",
+        ),
+        (
+            '[log]\nlevel = "INFO"\n',
+            "rig.toml:2: setting log.level: there is no 'INFO' (did you mean info?)",
+        ),
+        (
+            '[zenoh]\nmode = "client"\n',
+            'rig.toml:2: zenoh.mode = "client" needs zenoh.connect, the addresses of hubs',
+        ),
+        (
             "[log]\nxyz = 1\n",
             "rig.toml:2: unknown setting log.xyz (there are: format, level)",
         ),
@@ -155,14 +175,93 @@ def test_a_wrong_variable_is_told_by_its_name(
     assert str(refused.value) == line
 
 
-def test_a_list_in_the_environment_must_be_json(load: Load) -> None:
-    with pytest.raises(SettingsError, match="write lists and tables as JSON"):
-        load("", INHAND_ZENOH__CONNECT="tcp/10.0.0.1:7447")
+@pytest.mark.parametrize("text", ["tcp/10.0.0.1:7447", '["tcp/10.0.0.1:7447"'])
+def test_a_list_in_the_environment_must_be_json(load: Load, text: str) -> None:
+    with pytest.raises(SettingsError) as refused:
+        load("", INHAND_ZENOH__CONNECT=text)
+    assert str(refused.value) == (
+        "environment variable INHAND_ZENOH__CONNECT: setting zenoh.connect: "
+        'write lists and tables as JSON, such as ["a", "b"]'
+    )
+
+
+def test_lists_and_tables_are_read_from_json_at_every_depth(load: Load) -> None:
+    settings = load(
+        '[capture.front]\nsource = "x"\n[capture.front.options]\nkept = 1\n',
+        INHAND_ZENOH__CONNECT='["tcp/10.0.0.1:7447"]',
+        INHAND_CAPTURE__FRONT__PLACES='["door", "7"]',
+        INHAND_CAPTURE__FRONT__OPTIONS='{"gains": [1, 2]}',
+        INHAND_CAPTURE__FRONT__OPTIONS__LENS='{"k": [0.5]}',
+        INHAND_LOG='{"level": "debug"}',
+    )
+    assert settings.zenoh.connect == ("tcp/10.0.0.1:7447",)
+    assert settings.service.places == ("door", "7")
+    assert settings.service.options == {"kept": 1, "gains": [1, 2], "lens": {"k": [0.5]}}
+    assert settings.log.level == "debug"
+
+
+def test_digits_stay_text_where_text_is_wanted_and_become_numbers_where_numbers_are(
+    load: Load,
+) -> None:
+    settings = load(
+        '[capture.front]\nsource = "x"\n',
+        INHAND_CAPTURE__FRONT__SERIAL="1844301041",
+        INHAND_CAPTURE__FRONT__RATE="2.5",
+        INHAND_CAPTURE__FRONT__OPTIONS__SERIAL="1844301041",
+    )
+    assert settings.service.serial == "1844301041"
+    assert settings.service.rate == 2.5
+    assert settings.service.options == {"serial": "1844301041"}
+    assert type(settings.service.options["serial"]) is str
+
+
+def test_a_variable_below_what_is_no_table_is_refused(load: Load) -> None:
+    with pytest.raises(SettingsError, match="RIG__NAME sets nothing: 'rig' is no table"):
+        load('rig = "kitchen"\n', INHAND_RIG__NAME="x")
+
+
+def test_relative_paths_follow_the_files_folder(
+    load: Load, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    load('[capture.front]\nsource = "x"\nfile = "calibration/front.yaml"\n')
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    for config in (tmp_path / "rig.toml", Path("../rig.toml")):
+        settings = load_settings(config, "capture", CameraSettings)
+        assert settings.service.file == config.parent / "calibration/front.yaml"
+    monkeypatch.setenv("INHAND_CAPTURE__FRONT__FILE", "other.yaml")
+    settings = load_settings(tmp_path / "rig.toml", "capture", CameraSettings)
+    assert settings.service.file == tmp_path / "other.yaml"
+    monkeypatch.setenv("INHAND_CAPTURE__FRONT__FILE", "/absolute.yaml")
+    settings = load_settings(tmp_path / "rig.toml", "capture", CameraSettings)
+    assert settings.service.file == Path("/absolute.yaml")
+
+
+def test_without_a_file_relative_paths_follow_the_current_folder(load: Load) -> None:
+    load("", INHAND_CAPTURE__FRONT__SOURCE="x", INHAND_CAPTURE__FRONT__FILE="here.yaml")
+    assert load_settings(None, "capture", CameraSettings).service.file == Path("here.yaml")
+
+
+def test_a_byte_order_mark_is_passed_over(tmp_path: Path) -> None:
+    path = tmp_path / "rig.toml"
+    path.write_text('rig = "kitchen"\n', encoding="utf-8-sig")
+    assert load_rig_file(path).rig == "kitchen"
+    path.write_text("[zenho]\n", encoding="utf-8-sig")
+    with pytest.raises(SettingsError, match=r"rig\.toml:1: unknown setting zenho"):
+        load_rig_file(path)
+
+
+def test_a_file_in_another_encoding_is_told_as_such(tmp_path: Path) -> None:
+    path = tmp_path / "rig.toml"
+    path.write_text('rig = "kitchen"\n', encoding="utf-16")
+    with pytest.raises(SettingsError, match=r"rig\.toml is no UTF-8 text: save it as UTF-8"):
+        load_rig_file(path)
 
 
 def test_an_instance_that_the_file_does_not_name_is_refused(load: Load) -> None:
-    with pytest.raises(SettingsError, match=r"rig\.toml has no \[capture\.back\]"):
-        load('[capture.front]\nsource = "x"\n', "back")
+    with pytest.raises(SettingsError, match=r"has no \[capture\.fornt\] \(did you mean front\?\)"):
+        load('[capture.front]\nsource = "x"\n', "fornt")
 
 
 def test_a_missing_file_is_named() -> None:

@@ -4,7 +4,7 @@ import sys
 
 from inhand_runtime.entry import daemon_main
 
-from inhand_capture.service import CaptureSettings, run
+from inhand_capture.service import CaptureSettings, check, run
 
 if __name__ == "__main__":
-    sys.exit(daemon_main("capture", CaptureSettings, run))
+    sys.exit(daemon_main("capture", CaptureSettings, run, check=check))

@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
 from inhand_runtime.daemon import Daemon, running_daemon
@@ -53,14 +53,40 @@ class CaptureSettings(Section):
         return table
 
 
+def check(settings: Settings[CaptureSettings]) -> Mapping[str, Any]:
+    """Check all that can be known before a start, and return the source's options.
+
+    The source's class may say what its options are (``options_model``, a Section), and what of them
+    can never work (``check_options``): see ``inhand_runtime.source``. Raises SettingsError.
+    """
+    chosen, origin = settings.service, settings.origin
+    try:
+        factory = source_factory(chosen.source)
+    except SourceError as error:
+        raise origin.refusal("source", str(error)) from None
+    options: Mapping[str, Any] = chosen.options
+    model: type[Section] | None = getattr(factory, "options_model", None)
+    if model is not None:
+        options = origin.checked(options, model, "options").model_dump(exclude_unset=True)
+    try:
+        getattr(factory, "check_options", _nothing)(options)
+    except SourceError as error:
+        raise origin.refusal("options", str(error)) from None
+    return options
+
+
 def run(settings: Settings[CaptureSettings]) -> None:
-    """Publish until the source ends or a signal comes; raises InhandError."""
-    chosen = settings.service
+    """Publish until the source ends or a signal comes; raises SettingsError or InhandError."""
+    chosen, options = settings.service, check(settings)
     with running_daemon("capture", settings) as daemon:
         try:
-            _publish(daemon, chosen, lambda: source_factory(chosen.source)(chosen.options))
+            _publish(daemon, chosen, lambda: source_factory(chosen.source)(options))
         except SourceError as error:
             raise InhandError(f"source {chosen.source}: {error}") from error
+
+
+def _nothing(_options: Mapping[str, Any]) -> None:
+    """Stands for the check that a source does not have."""
 
 
 def _publish(daemon: Daemon, chosen: CaptureSettings, open_source: Callable[[], Source]) -> None:

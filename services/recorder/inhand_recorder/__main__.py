@@ -4,7 +4,7 @@ import sys
 
 from inhand_runtime.entry import daemon_main
 
-from inhand_recorder.service import RecorderSettings, run
+from inhand_recorder.service import RecorderSettings, check, run
 
 if __name__ == "__main__":
-    sys.exit(daemon_main("recorder", RecorderSettings, run))
+    sys.exit(daemon_main("recorder", RecorderSettings, run, check=check))

@@ -1,6 +1,5 @@
 """The recorder's daemon: takes what arrives, and keeps the disk's troubles from what receives."""
 
-import tempfile
 import time
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +9,9 @@ from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.inbox import Received
 from inhand_runtime.recording import RecordingError
-from inhand_runtime.settings import Section, Settings
+from inhand_runtime.settings import FilePath, Section, Settings
+from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.writable import try_folder
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.topics import RGBD, TOPICS, topic_of
 from pydantic import AfterValidator, ByteSize, Field
@@ -32,12 +33,14 @@ REFUSED_KEYS_LAST_S = 5.0
 FRAMES_WEIGHT = 3 * (len(TOPICS) - 1)
 SMALLEST_SPLIT_BYTES = 1 << 20
 SMALLEST_SPLIT_S = 1.0
+SPLIT_S = 3600.0
+"""Seconds after which a new file begins, unless the settings say otherwise."""
 
 
 def _known_streams(streams: tuple[str, ...]) -> tuple[str, ...]:
     for stream in streams:
         if stream not in TOPICS:
-            raise ValueError(f"there is no stream {stream!r}; there are: {', '.join(TOPICS)}")
+            raise ValueError(f"there is no stream {stream!r}" + suggestion(stream, TOPICS))
     return streams
 
 
@@ -56,20 +59,33 @@ def _zero_or_a_second(seconds: float) -> float:
 class RecorderSettings(Section):
     """``[recorder.NAME]``.
 
-    A new file begins after ``split_bytes`` or ``split_seconds``; 0 means never. What the disk
-    cannot take at once waits in memory, ``queue_bytes`` at the most; then the oldest is dropped
-    and counted.
+    A new file begins after ``split_bytes`` or ``split_seconds``; 0 means never. Without a word it
+    is each hour, so that no file grows for ever, and what is copied or recovered is an hour at the
+    most. What the disk cannot take at once waits in memory, ``queue_bytes`` at the most; then the
+    oldest is dropped and counted.
     """
 
-    folder: Path = Path("recordings")
+    folder: FilePath = Field(default=Path("recordings"), validate_default=True)
     streams: Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_known_streams)] = (
         tuple(TOPICS)
     )
     split_bytes: Annotated[ByteSize, Field(ge=0), AfterValidator(_zero_or_a_mebibyte)] = ByteSize(0)
     split_seconds: Annotated[
         float, Field(ge=0, allow_inf_nan=False), AfterValidator(_zero_or_a_second)
-    ] = 0.0
+    ] = SPLIT_S
     queue_bytes: Annotated[ByteSize, Field(ge=1 << 20)] = ByteSize(256 << 20)
+
+
+def check(settings: Settings[RecorderSettings]) -> None:
+    """Check all that can be known before a start; raises SettingsError."""
+    folder = settings.service.folder
+    try:
+        try_folder(folder)
+    except OSError as error:
+        raise SettingsError(
+            f"cannot write to the folder {folder}: {error.strerror}: change folder in the "
+            "recorder's settings"
+        ) from None
 
 
 def run(settings: Settings[RecorderSettings]) -> None:
@@ -79,7 +95,7 @@ def run(settings: Settings[RecorderSettings]) -> None:
     RecordingError when the end could not be written.
     """
     chosen = settings.service
-    _require_writable(chosen.folder)
+    check(settings)
     with running_daemon("recorder", settings) as daemon:
         journal = Journal(
             chosen.folder,
@@ -100,18 +116,6 @@ def queue_shares(streams: tuple[str, ...], queue_bytes: int) -> dict[str, int]:
     weights = {stream: FRAMES_WEIGHT if stream == RGBD.stream else 1 for stream in streams}
     total = sum(weights.values())
     return {stream: queue_bytes * weight // total for stream, weight in weights.items()}
-
-
-def _require_writable(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise SettingsError(
-            f"cannot write to the folder {folder}: {error.strerror}: change folder in the "
-            "recorder's settings"
-        ) from None
 
 
 class _Recorder:

@@ -18,15 +18,21 @@ def daemon_main(
     model: type[S],
     run: Callable[[Settings[S]], None],
     arguments: Sequence[str] | None = None,
+    *,
+    check: Callable[[Settings[S]], object] | None = None,
 ) -> int:
     """Run one daemon until it ends; returns its exit code, after one line about what failed.
 
-    ``arguments`` are the process's own unless given. Wrong arguments end the process with 2.
+    ``arguments`` are the process's own unless given. ``check`` is what ``run`` does first as well:
+    it raises SettingsError for all that can be known before a start. Wrong arguments end the
+    process with 2.
     """
     chosen = _parser(service).parse_args(arguments)
     try:
         settings = load_settings(chosen.config, service, model, chosen.name)
         if chosen.check_config:
+            if check is not None:
+                check(settings)
             print(f"{service} {settings.instance}: the settings are valid")
         else:
             run(settings)

@@ -1,28 +1,23 @@
 """Settings: one TOML file a rig, overridden by the environment, checked before anything starts.
 
 Every daemon reads the same file, and its own table in it: ``[capture.front]`` is the settings of
-the capture instance ``front``. ``INHAND_CAPTURE__FRONT__SOURCE=replay`` overrides one value.
+the capture instance ``front``. Relative paths follow the file's folder.
 """
 
-import os
 import re
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Generic, Literal, TypeVar
 
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import Site, require_name
-from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
-from pydantic_settings import (
-    BaseSettings,
-    PydanticBaseSettingsSource,
-    SettingsConfigDict,
-)
-from pydantic_settings import SettingsError as UnreadableVariableError
+from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError, ValidationInfo
 
 from inhand_runtime.errors import SettingsError
-from inhand_runtime.settings_errors import ENVIRONMENT_PREFIX, NESTED, explain, suggestion
+from inhand_runtime.settings_environment import texts_read, with_environment
+from inhand_runtime.settings_errors import ENCODING, explain, place, suggestion
 
 SERVICES = ("capture", "tracker", "recorder")
 
@@ -48,6 +43,14 @@ def _address(text: str) -> str:
 Address = Annotated[str, AfterValidator(_address)]
 
 
+def _beside_the_file(path: Path, info: ValidationInfo) -> Path:
+    return info.context["folder"] / path if info.context else path
+
+
+FilePath = Annotated[Path, AfterValidator(_beside_the_file)]
+"""A path of a settings file: a relative one follows the file's folder."""
+
+
 class ZenohSettings(Section):
     """How to reach the other processes.
 
@@ -68,12 +71,8 @@ class LogSettings(Section):
     level: Literal["debug", "info", "warning", "error"] = "info"
 
 
-class RigFile(BaseSettings):
+class RigFile(Section):
     """The whole file; the tables of a service are checked by that service."""
-
-    model_config = SettingsConfigDict(
-        extra="forbid", frozen=True, env_prefix=ENVIRONMENT_PREFIX, env_nested_delimiter=NESTED
-    )
 
     realm: str = "inhand"
     rig: str = "rig"
@@ -83,21 +82,33 @@ class RigFile(BaseSettings):
     tracker: Tables = {}
     recorder: Tables = {}
 
-    @classmethod
-    def settings_customise_sources(
-        cls,
-        settings_cls: type[BaseSettings],
-        init_settings: PydanticBaseSettingsSource,
-        env_settings: PydanticBaseSettingsSource,
-        dotenv_settings: PydanticBaseSettingsSource,
-        file_secret_settings: PydanticBaseSettingsSource,
-    ) -> tuple[PydanticBaseSettingsSource, ...]:
-        """The environment goes over the file."""
-        return env_settings, init_settings
-
 
 S = TypeVar("S", bound=Section)
 S_co = TypeVar("S_co", bound=Section, covariant=True)
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where the settings of an instance stand: the file, and the table in it."""
+
+    path: Path | None = None
+    table: tuple[str, ...] = ()
+    instances: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Names of the instances of each service in the file."""
+
+    def checked(self, values: Mapping[str, Any], model: type[S], *below: str) -> S:
+        """Check a table of the instance, ``below`` its own; raises SettingsError."""
+        location = (*self.table, *below)
+        context = None if self.path is None else {"folder": self.path.parent}
+        try:
+            return model.model_validate(texts_read(dict(values), model), context=context)
+        except ValidationError as error:
+            raise SettingsError(explain(error, self.path, location, model)) from None
+
+    def refusal(self, setting: str, reason: str) -> SettingsError:
+        """Make the error for a setting of the instance that cannot work."""
+        location = (*self.table, *setting.split("."))
+        return SettingsError(f"{place(self.path, location)}setting {'.'.join(location)}: {reason}")
 
 
 @dataclass(frozen=True)
@@ -109,31 +120,24 @@ class Settings(Generic[S_co]):
     log: LogSettings
     instance: str
     service: S_co
+    origin: Origin = field(default_factory=Origin)
 
 
 def load_rig_file(path: Path | None) -> RigFile:
     """Read a file, or take the defaults; raises SettingsError naming file, line and mend."""
-    values: dict[str, Any] = {}
-    if path is not None:
-        try:
-            values = tomllib.loads(path.read_text(encoding="utf-8"))
-        except OSError as error:
-            raise SettingsError(f"cannot read {path}: {error.strerror}") from None
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise SettingsError(f"{path} is no TOML: {error}") from None
-    _refuse_unknown_variables()
+    values = with_environment({} if path is None else _read(path), RigFile)
     try:
-        rig_file = RigFile(**values)
+        rig_file = RigFile.model_validate(values)
         Site(rig_file.realm, rig_file.rig)
     except ValidationError as error:
         raise SettingsError(explain(error, path, (), RigFile)) from None
-    except UnreadableVariableError as error:
-        raise SettingsError(
-            f"an {ENVIRONMENT_PREFIX} environment variable cannot be read ({error}): "
-            "write lists and tables as JSON"
-        ) from None
     except KeyFormatError as error:
         raise SettingsError(f"{path or 'settings'}: {error}") from None
+    if rig_file.zenoh.mode == "client" and not rig_file.zenoh.connect:
+        raise SettingsError(
+            f'{place(path, ("zenoh", "mode"))}zenoh.mode = "client" needs zenoh.connect, the '
+            "addresses of hubs"
+        )
     _refuse_shared_names(rig_file, path)
     return rig_file
 
@@ -156,7 +160,9 @@ def load_settings(
             )
         instance = next(iter(tables), service)
     elif tables and instance not in tables:
-        raise SettingsError(f"{where} has no [{service}.{instance}]")
+        raise SettingsError(
+            f"{where} has no [{service}.{instance}]" + suggestion(instance, sorted(tables))
+        )
     return instance_settings(rig_file, path, service, model, instance)
 
 
@@ -168,13 +174,22 @@ def instance_settings(
         require_name("instance", instance)
     except KeyFormatError as error:
         raise SettingsError(f"{path or 'settings'}: {error}") from None
-    table = getattr(rig_file, service).get(instance, {})
-    try:
-        checked = model(**table)
-    except ValidationError as error:
-        raise SettingsError(explain(error, path, (service, instance), model)) from None
+    instances = {one: tuple(getattr(rig_file, one)) for one in SERVICES}
+    origin = Origin(path, (service, instance), instances)
+    checked = origin.checked(getattr(rig_file, service).get(instance, {}), model)
     site = Site(rig_file.realm, rig_file.rig)
-    return Settings(site, rig_file.zenoh, rig_file.log, instance, checked)
+    return Settings(site, rig_file.zenoh, rig_file.log, instance, checked, origin)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding=ENCODING))
+    except OSError as error:
+        raise SettingsError(f"cannot read {path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise SettingsError(f"{path} is no UTF-8 text: save it as UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        raise SettingsError(f"{path} is no TOML: {error}") from None
 
 
 def _refuse_shared_names(rig_file: RigFile, path: Path | None) -> None:
@@ -188,14 +203,3 @@ def _refuse_shared_names(rig_file: RigFile, path: Path | None) -> None:
                     "give each its own"
                 )
             services[instance] = service
-
-
-def _refuse_unknown_variables() -> None:
-    for variable in os.environ:
-        if variable.upper().startswith(ENVIRONMENT_PREFIX):
-            first = variable[len(ENVIRONMENT_PREFIX) :].split(NESTED)[0].lower()
-            if first not in RigFile.model_fields:
-                raise SettingsError(
-                    f"environment variable {variable} sets nothing: {first!r} is no setting"
-                    + suggestion(first, RigFile)
-                )

@@ -3,76 +3,96 @@
 import difflib
 import os
 import re
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
+from inhand_runtime.settings_annotations import (
+    Location,
+    annotation_at,
+    choices,
+    members,
+    model_in,
+)
+
 ENVIRONMENT_PREFIX = "INHAND_"
 NESTED = "__"
+ENCODING = "utf-8-sig"
+"""UTF-8, with or without a byte-order mark."""
+
+_NO_COLLECTION = ("tuple_type", "list_type", "set_type", "dict_type", "model_type")
 
 
 def explain(
     error: ValidationError, path: Path | None, prefix: tuple[str, ...], model: type[BaseModel]
 ) -> str:
     """The faults of the table at ``prefix`` of the file at ``path``, checked by ``model``."""
-    return "; ".join(_explain_one(detail, path, prefix, model) for detail in error.errors())
+    faults: dict[Location, ErrorDetails] = {}
+    for detail in error.errors():
+        faults.setdefault(_setting(model, detail["loc"]), detail)
+    return "; ".join(
+        _explain_one(detail, location, path, prefix, model) for location, detail in faults.items()
+    )
 
 
-def suggestion(name: str, model: type[BaseModel]) -> str:
-    """The setting that was meant, or all that there are, in brackets."""
-    close = difflib.get_close_matches(name, model.model_fields, 1)
-    if close:
-        return f" (did you mean {close[0]}?)"
-    return f" (there are: {', '.join(model.model_fields)})"
+def suggestion(name: str, names: Iterable[str]) -> str:
+    """The name that was meant, or all that there are, in brackets."""
+    names = list(names)
+    close = difflib.get_close_matches(name.lower(), names, 1)
+    return f" (did you mean {close[0]}?)" if close else f" (there are: {', '.join(names)})"
 
 
-def _explain_one(
-    detail: ErrorDetails, path: Path | None, prefix: tuple[str, ...], model: type[BaseModel]
-) -> str:
-    location = (*prefix, *(str(part) for part in detail["loc"]))
-    name = ".".join(location)
-    where = _place(path, location)
-    reason = detail["msg"].removeprefix("Value error, ")
-    match detail["type"]:
-        case "extra_forbidden":
-            owner = _model_at(model, detail["loc"][:-1])
-            return f"{where}unknown setting {name}" + suggestion(location[-1], owner)
-        case "missing":
-            return f"{where}setting {name} is missing"
-        case "dict_type" if len(location) == 2:
-            service = location[0]
-            return f"{where}{name} stands in no instance: write it below [{service}.NAME]"
-    if not detail["loc"]:
-        return f"{where}[{name}]: {reason}"
-    return f"{where}setting {name}: {reason}"
-
-
-def _model_at(model: type[BaseModel], location: tuple[int | str, ...]) -> type[BaseModel]:
-    """The model that checks the table at a location, through lists and dictionaries of models."""
-    for part in location:
-        field = model.model_fields.get(str(part))
-        if field is not None:
-            model = _model_in(field.annotation) or model
-    return model
-
-
-def _model_in(annotation: Any) -> type[BaseModel] | None:
-    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    return next(filter(None, map(_model_in, get_args(annotation))), None)
-
-
-def _place(path: Path | None, location: tuple[str, ...]) -> str:
+def place(path: Path | None, location: tuple[str, ...]) -> str:
+    """Where a setting stands: the variable that sets it, or the line of the file."""
+    variables = {variable.upper(): variable for variable in os.environ}
     for depth in range(len(location), 0, -1):
-        variable = ENVIRONMENT_PREFIX + NESTED.join(location[:depth]).upper()
-        if variable in os.environ:
+        variable = variables.get(ENVIRONMENT_PREFIX + NESTED.join(location[:depth]).upper())
+        if variable is not None:
             return f"environment variable {variable}: "
     if path is None:
         return ""
-    line = _line_of(path.read_text(encoding="utf-8"), location)
+    line = _line_of(path.read_text(encoding=ENCODING), location)
     return f"{path}: " if line is None else f"{path}:{line}: "
+
+
+def _setting(model: type[BaseModel], location: Location) -> tuple[str | int, ...]:
+    """The setting that a fault is of: all members of a union have their say about one value."""
+    for depth in range(len(location)):
+        if len(members(annotation_at(model, location[:depth]))) > 1:
+            return tuple(location[:depth])
+    return tuple(location)
+
+
+def _explain_one(
+    detail: ErrorDetails,
+    setting: Location,
+    path: Path | None,
+    prefix: tuple[str, ...],
+    model: type[BaseModel],
+) -> str:
+    location = (*prefix, *map(str, setting))
+    name = ".".join(location)
+    where = place(path, location)
+    reason = detail["msg"].removeprefix("Value error, ")
+    kind = detail["type"]
+    if kind == "extra_forbidden":
+        owner = model_in(annotation_at(model, setting[:-1])) or model
+        return f"{where}unknown setting {name}" + suggestion(location[-1], owner.model_fields)
+    if kind == "missing":
+        return f"{where}setting {name} is missing"
+    if kind == "literal_error":
+        wanted = choices(annotation_at(model, setting))
+        value = detail["input"]
+        reason = f"there is no {value!r}" + suggestion(str(value), map(str, wanted))
+    elif kind in _NO_COLLECTION and where.startswith("environment"):
+        reason = 'write lists and tables as JSON, such as ["a", "b"]'
+    elif kind == "dict_type" and len(location) == 2:
+        return f"{where}{name} stands in no instance: write it below [{location[0]}.NAME]"
+    if not setting:
+        return f"{where}[{name}]: {reason}"
+    return f"{where}setting {name}: {reason}"
 
 
 def _line_of(text: str, location: tuple[str, ...]) -> int | None:

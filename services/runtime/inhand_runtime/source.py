@@ -2,6 +2,10 @@
 
 A source is made by calling the entry point with the free-form table that the user wrote under
 ``[capture.NAME.options]``; it raises SourceError when that cannot work.
+
+So that what can be known is checked before a start, a source's class may have ``options_model``,
+a ``Section`` that checks that table (paths in it are ``FilePath``), and ``check_options``, called
+with the table as checked: it raises SourceError for what can never work, and opens no device.
 """
 
 from collections.abc import Callable, Iterator, Mapping

@@ -4,7 +4,7 @@ import sys
 
 from inhand_runtime.entry import daemon_main
 
-from inhand_tracker.service import TrackerSettings, run
+from inhand_tracker.service import TrackerSettings, check, run
 
 if __name__ == "__main__":
-    sys.exit(daemon_main("tracker", TrackerSettings, run))
+    sys.exit(daemon_main("tracker", TrackerSettings, run, check=check))

@@ -4,14 +4,14 @@ import logging
 import time
 from collections import Counter
 from collections.abc import Callable, Mapping
-from pathlib import Path
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.inbox import Received
 from inhand_runtime.session import Publisher
-from inhand_runtime.settings import Section, Settings
+from inhand_runtime.settings import FilePath, Section, Settings
+from inhand_runtime.settings_errors import suggestion
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo, Name, ObjectPose, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
@@ -27,7 +27,7 @@ from inhand_tracker.methods.registry import (
     MethodName,
     new_tracker,
 )
-from inhand_tracker.model.model import Model
+from inhand_tracker.model.model import Model, ModelError
 from inhand_tracker.model.model_file import load_model
 from inhand_tracker.people.following import PeopleWatched, worth_publishing
 from inhand_tracker.people.watching import (
@@ -62,14 +62,14 @@ class TrackerSettings(Section):
     recognised; without one every object is in use.
     """
 
-    model: Path | None = None
-    models: tuple[Path, ...] = ()
+    model: FilePath | None = None
+    models: tuple[FilePath, ...] = ()
     camera: Name = "camera"
     method: MethodName = DEFAULT_METHOD
     left_handed: bool = False
     likelihood: tuple[AnyTerm, ...] | None = None
     particles: PositiveInt | None = None
-    recogniser: Path | None = None
+    recogniser: FilePath | None = None
     people: PositiveInt = 1
     seed: int = Field(default=0, ge=0)
 
@@ -196,9 +196,9 @@ class TrackerService:
 
 
 def run(settings: Settings[TrackerSettings]) -> None:
-    """Run until a signal; raises SettingsError or ModelError before anything starts."""
+    """Run until a signal; raises SettingsError before anything starts."""
     chosen = settings.service
-    first = load_watcher(settings.instance, chosen)
+    first = check(settings)
     with running_daemon("tracker", settings) as daemon:
         log.info("tracking %s with %s", ", ".join(first.names), chosen.method)
         loaded = [first]
@@ -207,6 +207,45 @@ def run(settings: Settings[TrackerSettings]) -> None:
             return loaded.pop() if loaded else load_watcher(settings.instance, chosen)
 
         TrackerService(daemon, chosen, new_watcher).run()
+
+
+def check(settings: Settings[TrackerSettings]) -> Watcher:
+    """Check all that can be known before a start, and load it; raises SettingsError."""
+    _require_camera(settings)
+    _require_files(settings)
+    try:
+        return load_watcher(settings.instance, settings.service)
+    except ModelError as error:
+        raise SettingsError(f"[tracker.{settings.instance}]: {error}") from None
+
+
+def _require_camera(settings: Settings[TrackerSettings]) -> None:
+    """Raise SettingsError for a camera that no table names.
+
+    A file without cameras, and one that joins other machines, follow cameras of elsewhere.
+    """
+    cameras = settings.origin.instances.get("capture", ())
+    camera, zenoh = settings.service.camera, settings.zenoh
+    if not cameras or camera in cameras or zenoh.connect or zenoh.listen:
+        return
+    raise settings.origin.refusal(
+        "camera", f"there is no table [capture.{camera}]" + suggestion(camera, cameras)
+    )
+
+
+def _require_files(settings: Settings[TrackerSettings]) -> None:
+    """Raise SettingsError for a file that is not there."""
+    chosen = settings.service
+    for setting, files, made_by in (
+        ("model", (chosen.model,), "inhand train"),
+        ("models", chosen.models, "inhand train"),
+        ("recogniser", (chosen.recogniser,), "inhand train --recogniser"),
+    ):
+        for file in files:
+            if file is not None and not file.exists():
+                raise settings.origin.refusal(
+                    setting, f"{file} does not exist: check the path; `{made_by}` makes it"
+                )
 
 
 def load_watcher(instance: str, settings: TrackerSettings) -> Watcher:

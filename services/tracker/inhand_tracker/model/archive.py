@@ -43,13 +43,14 @@ class ArchiveKind:
 
 
 def write_archive(
-    kind: ArchiveKind, path: Path, description: dict[str, Any], arrays: Arrays
+    kind: ArchiveKind, path: Path | str, description: dict[str, Any], arrays: Arrays
 ) -> None:
     """Write a file; an existing one is replaced only when all is written.
 
     Raises ModelError.
     """
     identity = {"format": kind.format, "version": kind.version}
+    path = Path(path)
     entries: Arrays = {kind.entry: np.array(json.dumps(identity | description)), **arrays}
     temporary = path.with_name(path.name + ".part")
     try:
@@ -64,13 +65,14 @@ def write_archive(
 
 
 def read_archive(
-    kind: ArchiveKind, path: Path, assemble: Callable[[dict[str, Any], Arrays], Content]
+    kind: ArchiveKind, path: Path | str, assemble: Callable[[dict[str, Any], Arrays], Content]
 ) -> Content:
     """Return what ``assemble`` makes of a file's description and arrays.
 
     Raises ModelError for a missing, foreign, newer or damaged file; a file of which ``assemble``
     can make nothing is a damaged one.
     """
+    path = Path(path)
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             if kind.entry not in archive:

@@ -28,7 +28,7 @@ _SHAPE_ARRAYS = ("vertices", "faces", "marked_vertices", "mirror_normal")
 _MAPPING_ARRAYS = tuple(field.name for field in fields(Mapping) if field.name != "participants")
 
 
-def save_model(model: Model, path: Path) -> None:
+def save_model(model: Model, path: Path | str) -> None:
     """Write a model; an existing file is replaced only when all is written. Raises ModelError."""
     description = {
         "interaction": model.interaction,
@@ -54,7 +54,7 @@ def save_model(model: Model, path: Path) -> None:
     write_archive(MODEL_FILE, path, description, arrays)
 
 
-def load_model(path: Path) -> Model:
+def load_model(path: Path | str) -> Model:
     """Read a model; raises ModelError for a missing, foreign, newer or damaged file."""
     return read_archive(MODEL_FILE, path, _assemble)
 

@@ -22,7 +22,7 @@ _ARRAYS = {
 }
 
 
-def save_recogniser(recogniser: Recogniser, path: Path) -> None:
+def save_recogniser(recogniser: Recogniser, path: Path | str) -> None:
     """Write a recogniser; an existing file is replaced only when all is written.
 
     Raises ModelError.
@@ -38,7 +38,7 @@ def save_recogniser(recogniser: Recogniser, path: Path) -> None:
     write_archive(RECOGNISER_FILE, path, description, arrays)
 
 
-def load_recogniser(path: Path) -> Recogniser:
+def load_recogniser(path: Path | str) -> Recogniser:
     """Read a recogniser; raises ModelError for a missing, foreign, newer or damaged file."""
     return read_archive(RECOGNISER_FILE, path, _assemble)
 
