@@ -7,10 +7,12 @@ import os
 import sys
 from collections.abc import Sequence
 from keyword import iskeyword
+from pathlib import Path
 from typing import Any
 
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED, INTERRUPTED, WRONG_USAGE
+from inhand_runtime.writable import require_writable_file, require_writable_folder
 
 DAEMONS = {
     "capture": "publish frames and skeletons of one camera",
@@ -28,7 +30,7 @@ VERBS = {
     "train": "learn a model from a labelled dataset",
     "evaluate": "measure methods on people that were not trained on",
     "recognise": "measure tracking where the object is not given, and recognition alone",
-    "bench": "measure what things cost, and what each part is worth",
+    "bench": "measure tracker and training, check likelihood and constants, and do an ablation",
     "recording": "info, verify, recover and repair recordings",
     "topics": "list what a running site publishes",
     "echo": "print messages",
@@ -36,6 +38,11 @@ VERBS = {
     "status": "list the live instances and their health",
 }
 """Verbs whose module has ``add_arguments(parser)`` and ``run(arguments) -> int``."""
+
+
+WRITTEN_FILES = ("json", "output", "sheet")
+WRITTEN_FOLDERS = ("out", "report", "folder")
+"""Names of the arguments that say where a verb writes."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -63,7 +70,21 @@ def _run(verb: str, arguments: list[str]) -> int:
         return int(module.main(arguments))
     parser = argparse.ArgumentParser(prog=f"inhand {verb}", description=_sentence(module.__doc__))
     module.add_arguments(parser)
-    return int(module.run(parser.parse_args(arguments)))
+    chosen = parser.parse_args(arguments)
+    _require_writable(chosen)
+    return int(module.run(chosen))
+
+
+def _require_writable(chosen: argparse.Namespace) -> None:
+    """Raise SettingsError for a place that cannot be written, before the work of hours."""
+    for names, require in (
+        (WRITTEN_FILES, require_writable_file),
+        (WRITTEN_FOLDERS, require_writable_folder),
+    ):
+        for name in names:
+            path = getattr(chosen, name, None)
+            if isinstance(path, Path):
+                require(path)
 
 
 def _sentence(docstring: str | None) -> str:

@@ -1,4 +1,4 @@
-"""``inhand bench``: what things cost here, in time and memory, as ratios to a named reference."""
+"""``inhand bench``: measure what things cost here, and check what they are worth."""
 
 import argparse
 from collections.abc import Callable, Sequence
@@ -29,7 +29,12 @@ from inhand.results import write_json
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's arguments."""
-    parser.add_argument("subject", choices=SUBJECTS, metavar="SUBJECT", help=", ".join(SUBJECTS))
+    parser.add_argument(
+        "subject",
+        choices=SUBJECTS,
+        metavar="SUBJECT",
+        help="; ".join(f"{subject}: {text}" for subject, text in SUBJECTS_HELP.items()),
+    )
     parser.add_argument(
         "source",
         nargs="?",
@@ -244,6 +249,14 @@ _TRAINING_ROWS: dict[str, Callable[[TrainingCost], float]] = {
     "its cluster, ms, p50": lambda cost: cost.asking.cluster_ms.p50,
     "its cluster, ms, p99": lambda cost: cost.asking.cluster_ms.p99,
     "linear search, ms, p50": lambda cost: cost.asking.linear_ms,
+}
+
+SUBJECTS_HELP = {
+    "ablation": "the error of fusion without each of its parts",
+    "constants": "its error with each number halved and doubled",
+    "likelihood": "how true poses score, and refine, on real frames of YCB-Video",
+    "tracker": "poses weighed in a second, and what a frame costs",
+    "training": "time and memory of training by its size",
 }
 
 MEASURED_ON = ("likelihood", "ablation", "constants")

@@ -16,6 +16,7 @@ from inhand.looking import (
     add_looking_arguments,
     nothing_heard,
     open_look,
+    positive_count,
     stream_and_name,
     unreadable,
 )
@@ -26,7 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "topic", nargs="?", metavar="STREAM[/NAME]", help="pose/mug, say (default: everything)"
     )
-    parser.add_argument("--count", type=int, metavar="N", help="end after so many messages")
+    parser.add_argument(
+        "--count", type=positive_count, metavar="N", help="end after so many messages"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object a line")
     add_looking_arguments(parser, None)
 

@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.inbox import Inbox, Received
@@ -14,10 +14,12 @@ from inhand_runtime.session import Session, open_session, subscribe, watch_insta
 from inhand_runtime.settings import load_rig_file
 from inhand_runtime.signals import set_on_signals
 from inhand_schemas.errors import KeyFormatError, MessageError
-from inhand_schemas.keys import VERSION, Site
+from inhand_schemas.keys import VERSION, Site, require_name
 from inhand_schemas.messages import Health
 from inhand_schemas.topics import BULK, HEALTH, TOPICS, AnyTopic, topic_of
 from rich.console import Console
+
+N = TypeVar("N", int, float)
 
 QUEUE_BYTES = 64 << 20
 QUEUE_SAMPLES = 10_000
@@ -104,10 +106,22 @@ def add_looking_arguments(parser: argparse.ArgumentParser, seconds: float | None
 
 
 def positive_number(text: str) -> float:
-    """An argument above zero; raises ValueError, which argparse reports."""
-    number = float(text)
-    if not 0 < number < float("inf"):
-        raise ValueError
+    """Read an argument above zero; raises ArgumentTypeError, which argparse shows."""
+    return _above(0.0, text, float, "a number above 0")
+
+
+def positive_count(text: str) -> int:
+    """Read an argument of 1 or more; raises ArgumentTypeError, which argparse shows."""
+    return _above(0, text, int, "a whole number, 1 or more")
+
+
+def _above(least: N, text: str, kind: Callable[[str], N], wanted: str) -> N:
+    try:
+        number = kind(text)
+    except ValueError:
+        number = least
+    if not least < number < float("inf"):
+        raise argparse.ArgumentTypeError(f"write {wanted}, not {text!r}")
     return number
 
 
@@ -117,12 +131,16 @@ def unreadable(sample: Received) -> str | None:
         topic, _ = topic_of(sample.key)
     except KeyFormatError as error:
         return str(error)
-    if sample.encoding != topic.encoding:
-        return (
-            f"{sample.key} carries {sample.encoding!r}, and this release reads "
-            f"{topic.encoding!r}: update the older side"
-        )
-    return None
+    if sample.encoding == topic.encoding:
+        return None
+    what = f"{sample.key} carries {sample.encoding!r}, and this release reads {topic.encoding!r}"
+    if _without_version(sample.encoding) == _without_version(topic.encoding):
+        return f"{what}: update the older side"
+    return f"{what}: a program that is not Inhand's publishes there"
+
+
+def _without_version(encoding: str) -> str:
+    return encoding.rpartition(".v")[0]
 
 
 def nothing_heard(site: Site, seconds: float | None) -> InhandError:
@@ -139,7 +157,13 @@ def stream_and_name(text: str) -> tuple[AnyTopic, str | None]:
     stream, _, name = text.partition("/")
     if stream not in TOPICS:
         raise SettingsError(f"there is no stream {stream!r}; there are: {', '.join(TOPICS)}")
-    return TOPICS[stream], name or None
+    if not name:
+        return TOPICS[stream], None
+    try:
+        require_name("name", name)
+    except KeyFormatError as error:
+        raise SettingsError(f"{text!r} is no STREAM/NAME: {error}") from None
+    return TOPICS[stream], name
 
 
 def output() -> Console:

@@ -1,8 +1,10 @@
 """``inhand rate``: measure rates, sizes, delays and gaps of what a site publishes."""
 
 import argparse
+import contextlib
 import statistics
 from collections import deque
+from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -12,6 +14,7 @@ import msgspec
 from inhand_recorder.losses import LossCounter
 from inhand_runtime.inbox import Received
 from inhand_schemas.messages import Message
+from inhand_schemas.topics import topic_of
 from rich.live import Live
 from rich.table import Table
 
@@ -24,9 +27,12 @@ from inhand.looking import (
     stream_and_name,
     unreadable,
 )
-from inhand.results import write_json
+from inhand.results import listing, write_json
 
 WINDOW_SAMPLES = 300
+LONGEST_DELAY_MS = 60_000.0
+"""Milliseconds from which on a delay is no delay: a recording is replayed, or a clock is wrong."""
+NO_DELAY = "-"
 
 _decoder = msgspec.msgpack.Decoder(Message)
 
@@ -48,8 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
             look.follow_all()
         else:
             look.follow(*stream_and_name(arguments.topic))
-        renderable = partial(_table, meter)
-        with Live(console=output(), get_renderable=renderable, refresh_per_second=2):
+        with _shown(meter):
             for sample in look.samples(arguments.seconds):
                 if sample is not None and unreadable(sample) is None:
                     meter.add(sample)
@@ -79,7 +84,10 @@ class Meter:
         window.append((sample.received_ns, stamp.time_ns, len(sample.payload)))
 
     def rates(self) -> dict[str, dict[str, Any]]:
-        """By key: messages, rate in Hz, longest pause and median delay in ms, bytes, losses."""
+        """Return by key: messages, rate in Hz, longest pause and median delay in ms, bytes, losses.
+
+        The delay is None where it says nothing of the way from the publisher to here.
+        """
         losses = self._losses.losses()
         rates = {}
         for key, window in sorted(self._window.items()):
@@ -90,25 +98,59 @@ class Meter:
                 "messages": losses[key].received,
                 "rate_hz": len(pauses) / seconds if seconds > 0 else 0.0,
                 "longest_pause_ms": max(pauses, default=0) / 1e6,
-                "delay_ms": statistics.median(map(int.__sub__, received, captured)) / 1e6,
+                "delay_ms": _delay_ms(key, received, captured),
                 "bytes": round(statistics.mean(sizes)),
                 "lost": losses[key].lost,
             }
         return rates
 
 
-def _table(meter: Meter) -> Table:
-    table = Table("topic", "messages", "Hz", "pause ms", "delay ms", "bytes", "lost")
-    for column in table.columns[1:]:
-        column.justify = "right"
-    for key, rate in meter.rates().items():
+def _delay_ms(key: str, received: Sequence[int], captured: Sequence[int]) -> float | None:
+    """Median time since capture; None for a kept value, which is handed to whoever comes later, and
+    for what was captured at another time."""
+    topic, _ = topic_of(key)
+    if topic.delivery.kept:
+        return None
+    delay_ms = statistics.median(map(int.__sub__, received, captured)) / 1e6
+    return delay_ms if abs(delay_ms) < LONGEST_DELAY_MS else None
+
+
+@contextlib.contextmanager
+def _shown(meter: Meter) -> Iterator[None]:
+    """Show what is measured: all the time on a terminal, and once at the end elsewhere."""
+    console = output()
+    if console.is_terminal:
+        renderable = partial(_so_far, meter)
+        with Live(console=console, get_renderable=renderable, refresh_per_second=2):
+            yield
+        return
+    try:
+        yield
+    finally:
+        if rates := meter.rates():
+            console.print(rates_table(rates))
+
+
+def _so_far(meter: Meter) -> Table | str:
+    rates = meter.rates()
+    return rates_table(rates) if rates else "nothing heard yet"
+
+
+def rates_table(rates: dict[str, dict[str, Any]]) -> Table:
+    """One row a key; no key is cut on a narrow terminal."""
+    numbers = ("messages", "Hz", "pause\nms", "delay\nms", "bytes", "lost")
+    table = listing(("topic",), numbers)
+    for key, rate in rates.items():
+        delay_ms = rate["delay_ms"]
         table.add_row(
             short_key(key),
             str(rate["messages"]),
             f"{rate['rate_hz']:.1f}",
             f"{rate['longest_pause_ms']:.1f}",
-            f"{rate['delay_ms']:.1f}",
+            NO_DELAY if delay_ms is None else f"{delay_ms:.1f}",
             f"{rate['bytes']:,}",
             str(rate["lost"]),
         )
+        if delay_ms is None:
+            table.caption = f"{NO_DELAY}: a kept value, or of another time, as in a replay"
     return table

@@ -14,7 +14,7 @@ from inhand_runtime.recording.part_file import PART_SUFFIX
 from rich.table import Table
 
 from inhand.looking import output
-from inhand.results import write_json
+from inhand.results import listing, write_json
 
 RECOVERED_SUFFIX = ".recovered.mcap"
 REPAIRED_SUFFIX = ".repaired.mcap"
@@ -115,15 +115,10 @@ def _result(arguments: argparse.Namespace, name: str, value: Any) -> None:
 
 def _info_table(info: RecordingInfo) -> Table:
     state = "complete" if info.complete else "NOT COMPLETE: `inhand recording recover` saves it"
-    table = Table(
-        "key",
-        "message",
-        "messages",
-        "Hz",
-        "bytes",
-        "lost",
-        title=f"{info.path}: {info.bytes:,} bytes, {info.duration_s:.3f} s, {state}",
-        title_justify="left",
+    table = listing(
+        ("key", "message"),
+        ("messages", "Hz", "bytes", "lost"),
+        f"{info.path}: {info.bytes:,} bytes, {info.duration_s:.3f} s, {state}",
     )
     for key in info.keys:
         table.add_row(

@@ -55,9 +55,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _rate(text: str) -> float:
-    rate = float(text)
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = -1.0
     if not 0 <= rate < float("inf"):
-        raise ValueError
+        raise argparse.ArgumentTypeError(f"write a number, 0 or more, not {text!r}")
     return rate
 
 

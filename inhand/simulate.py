@@ -85,6 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _write_sheet(arguments: argparse.Namespace, interactions: Sequence[str]) -> None:
+    arguments.sheet.parent.mkdir(parents=True, exist_ok=True)
     with progress_bar("drawing", len(interactions)) as advance:
         write_sheet(arguments.sheet, interactions, arguments.seed, on_progress=advance)
     Console().print(f"{len(interactions)} interactions in {arguments.sheet}")

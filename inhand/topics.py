@@ -2,12 +2,16 @@
 
 import argparse
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from inhand_schemas.errors import KeyFormatError
+from inhand_schemas.keys import Site
 from inhand_schemas.topics import topic_of
 from rich.table import Table
 
+from inhand.instances import short_key
 from inhand.looking import (
     add_looking_arguments,
     nothing_heard,
@@ -15,7 +19,7 @@ from inhand.looking import (
     output,
     unreadable,
 )
-from inhand.results import write_json
+from inhand.results import listing, write_json
 
 SECONDS = 3.0
 
@@ -42,13 +46,21 @@ def run(arguments: argparse.Namespace) -> int:
         {"key": key, "type": _type_name(key), "messages": messages[key], "remark": remarks[key]}
         for key in sorted(messages)
     ]
-    table = Table("key", "message", "heard", "remark")
-    for topic in topics:
-        table.add_row(*("" if value is None else str(value) for value in topic.values()))
-    output().print(table)
+    output().print(topics_table(look.site, topics))
     if arguments.json is not None:
         write_json(arguments.json, {"topics": topics})
     return 0
+
+
+def topics_table(site: Site, topics: Sequence[dict[str, Any]]) -> Table:
+    """One row a key; those of this release as ``stream/name``."""
+    table = listing(
+        ("topic", "message", "remark"), ("heard",), f"rig {site.rig} of realm {site.realm}"
+    )
+    for topic in topics:
+        texts = (short_key(topic["key"]), topic["type"] or "", topic["remark"] or "")
+        table.add_row(*texts, str(topic["messages"]))
+    return table
 
 
 def _type_name(key: str) -> str | None:
