@@ -1,0 +1,64 @@
+"""What the pages say can be done as they say it."""
+
+import importlib.metadata
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from inhand_capture.service import CaptureSettings
+from inhand_recorder.service import RecorderSettings
+from inhand_tracker.service import TrackerSettings
+from running_rig import ROOT, RunningRig
+
+PAGES = sorted((ROOT / "docs").glob("*.md"))
+
+
+def blocks(page: str, language: str) -> list[str]:
+    """The fenced blocks of a page that are in a language."""
+    text = (ROOT / "docs" / page).read_text()
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_no_page_speaks_of_a_release_that_is_not_there(page: Path) -> None:
+    newest = tuple(map(int, importlib.metadata.version("inhand").split(".")))[:2]
+    named = re.findall(r"[Rr]elease (\d+)\.(\d+)", page.read_text())
+    assert all((int(major), int(minor)) <= newest for major, minor in named)
+
+
+def test_the_recorders_page_shows_what_is_so_without_a_word() -> None:
+    (text,) = blocks("recorder.md", "toml")
+    defaults = RecorderSettings()
+    for name, value in tomllib.loads(text)["recorder"]["disk"].items():
+        line = next(line for line in text.splitlines() if line.startswith(f"{name} ="))
+        if "(the default)" in line and "0 = never (the default)" not in line:
+            assert getattr(defaults, name) == value
+    assert defaults.split_seconds == 3600
+    assert defaults.split_bytes == 0
+
+
+def test_the_tutorials_rig_is_valid_and_follows_whom_the_model_does_not_know() -> None:
+    (text,) = blocks("tutorial.md", "toml")
+    rig = tomllib.loads(text)
+    followed = rig["capture"]["front"]["options"]["participant"]
+    page = (ROOT / "docs/tutorial.md").read_text()
+    assert f"inhand train people --without p{followed:02} " in page
+    CaptureSettings(**rig["capture"]["front"])
+    TrackerSettings(**rig["tracker"]["mug"])
+    RecorderSettings(**rig["recorder"]["disk"])
+
+
+@pytest.mark.long
+def test_the_reader_of_formats_md_prints_poses_and_ends(rig: RunningRig) -> None:
+    (program,) = blocks("formats.md", "python")
+    for text in ("tcp/127.0.0.1:7447", "/kitchen/"):
+        assert text in program
+    program = program.replace("tcp/127.0.0.1:7447", rig.meeting).replace("/kitchen/", "/rig/")
+    rig.publisher()
+    rig.inhand("echo", "rgbd/front", "--config", rig.config)  # the publisher waits for readers
+    reader = rig.python("-c", program)
+    assert reader.wait() == 0, reader.stderr
+    lines = reader.stdout.splitlines()
+    assert len(lines) == 10
+    assert all(line.startswith("mug ") for line in lines)
