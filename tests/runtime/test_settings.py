@@ -257,6 +257,12 @@ def test_a_file_in_another_encoding_is_told_as_such(tmp_path: Path) -> None:
     path.write_text('rig = "kitchen"\n', encoding="utf-16")
     with pytest.raises(SettingsError, match=r"rig\.toml is no UTF-8 text: save it as UTF-8"):
         load_rig_file(path)
+    path.write_text('rig = "küche"\n', encoding="latin-1")
+    with pytest.raises(SettingsError, match="save it as UTF-8"):
+        load_rig_file(path)
+    path.write_bytes(b"PK\x03\x04\x00\x00\xff")
+    with pytest.raises(SettingsError, match=r"is no text: name the rig's settings \(TOML\)"):
+        load_rig_file(path)
 
 
 def test_an_instance_that_the_file_does_not_name_is_refused(load: Load) -> None:

@@ -4,6 +4,7 @@ Every daemon reads the same file, and its own table in it: ``[capture.front]`` i
 the capture instance ``front``. Relative paths follow the file's folder.
 """
 
+import codecs
 import re
 import tomllib
 from collections.abc import Mapping
@@ -22,6 +23,8 @@ from inhand_runtime.settings_errors import ENCODING, explain, place, suggestion
 SERVICES = ("capture", "tracker", "recorder")
 
 MEETING = "tcp/127.0.0.1:7447"
+
+UTF_16_MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 _ADDRESS = re.compile(r"[a-z][a-z-]*/[^\s/?#]+:\d+")
 
@@ -186,7 +189,9 @@ def _read(path: Path) -> dict[str, Any]:
         return tomllib.loads(path.read_text(encoding=ENCODING))
     except OSError as error:
         raise SettingsError(f"cannot read {path}: {error.strerror}") from None
-    except UnicodeDecodeError:
+    except UnicodeDecodeError as error:
+        if b"\0" in error.object and not error.object.startswith(UTF_16_MARKS):
+            raise SettingsError(f"{path} is no text: name the rig's settings (TOML)") from None
         raise SettingsError(f"{path} is no UTF-8 text: save it as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         raise SettingsError(f"{path} is no TOML: {error}") from None
