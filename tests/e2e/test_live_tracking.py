@@ -200,7 +200,7 @@ def test_a_damaged_model_is_one_line_and_nothing_starts(rig: RunningRig, tmp_pat
     model.write_bytes(model.read_bytes()[: model.stat().st_size // 2])
     rig.configure(f'[tracker.mug]\nmodel = "{model}"')
     ended = rig.done("tracker", "--config", rig.config)
-    assert ended.popen.returncode == 1
+    assert ended.popen.returncode == 2
     (line,) = ended.stderr.splitlines()
     assert f"{model} is damaged" in line
     assert "inhand train" in line
