@@ -1,17 +1,23 @@
 """What all tests share."""
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 from running_rig import RunningRig
-from scheduling import FilesAndRigs, ordered, usable_cores
+from scheduling import ONE_THREAD, FilesAndRigs, ordered, usable_cores
 from wire import Wire
 
 # Example times on a busy machine say nothing about the code; each test has its own timeout.
 settings.register_profile("inhand", deadline=None)
 settings.load_profile("inhand")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("numprocesses", None):
+        os.environ.update(ONE_THREAD)
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -27,7 +27,10 @@ def die(task: int) -> int:
     return task
 
 
-def test_results_come_in_the_order_of_the_tasks_from_workers_of_one_thread() -> None:
+def test_results_come_in_the_order_of_the_tasks_from_workers_of_one_thread(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "2")
     before = dict(os.environ)
     done: list[int] = []
     results = in_processes(describe, range(6), 2, lambda result: done.append(result[0]))

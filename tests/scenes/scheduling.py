@@ -9,6 +9,9 @@ from xdist.scheduler.loadscope import LoadScopeScheduling
 RIG = "rig"
 """Tests of a rig's real processes are one group: two rigs at once would starve each other."""
 
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""Environment of workers: threads of one that wait for each other take the others' cores."""
+
 
 def usable_cores() -> int:
     """Number of cores that this process may use."""

@@ -93,14 +93,22 @@ def _depth_in_ellipsoid(
 ) -> Array:
     offset = points - world_from_part.translation[:, None]
     local = offset @ world_from_part.rotation - centre
-    level = np.linalg.norm(local / radii, axis=2)
-    slope = np.linalg.norm(local / radii**2, axis=2)
+    squares = local * local
+    level = np.sqrt(squares @ radii**-2.0)
+    slope = np.sqrt(squares @ radii**-4.0)
     return np.asarray(level * (1.0 - level) / np.maximum(slope, 1e-9))
 
 
 def _depth_in_capsule(start: Array, end: Array, root: float, tip: float, points: Array) -> Array:
-    axis = (end - start)[:, None]
+    axis = end - start
     offset = points - start[:, None]
-    share = np.clip(np.sum(offset * axis, axis=2) / np.sum(axis**2, axis=2), 0.0, 1.0)
-    distance = np.linalg.norm(offset - share[..., None] * axis, axis=2)
-    return np.asarray(root + share * (tip - root) - distance)
+    length = _squared(axis)[:, None]
+    along = (offset @ axis[:, :, None])[..., 0]
+    share = np.clip(along / length, 0.0, 1.0)
+    square = _squared(offset) - share * (2.0 * along - share * length)
+    return np.asarray(root + share * (tip - root) - np.sqrt(np.maximum(square, 0.0)))
+
+
+def _squared(vectors: Array) -> Array:
+    """Squared lengths (...) of vectors (..., 3)."""
+    return np.asarray((vectors * vectors) @ np.ones(3))

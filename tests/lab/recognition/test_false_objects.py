@@ -1,16 +1,21 @@
 """``inhand recognise --false-objects`` on small simulated worlds, without and with images."""
 
 import json
+import pickle
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.datasets.recorded_frames import has_images
+from inhand_lab.recognition import false_objects_by_movement
 from inhand_lab.recognition.parameters import (
     DEFAULT_RECOGNITION_EVALUATION,
     RecognitionEvaluationParameters,
 )
+from inhand_lab.workers import in_processes
 
 from inhand.__main__ import main
 
@@ -21,6 +26,14 @@ ACTIONS = ("hammerNail", "putOnShoe", "drinkFromMug")
 
 def use(monkeypatch: pytest.MonkeyPatch, parameters: RecognitionEvaluationParameters) -> None:
     monkeypatch.setattr("inhand.recognise.DEFAULT_RECOGNITION_EVALUATION", parameters)
+
+
+def in_this_process(
+    function: Callable[[Any], Any], tasks: list[Any], _: int, on_done: Callable[[Any], None]
+) -> list[Any]:
+    """What goes to other processes and back, but here, where what idle people do is shared."""
+    function, tasks = pickle.loads(pickle.dumps((function, tasks)))
+    return in_processes(function, tasks, 1, on_done)
 
 
 def count(folder: Path, result: Path, *more: str) -> dict[str, dict[str, float]]:
@@ -37,6 +50,7 @@ def test_without_images_skeletons_alone_are_looked_at(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     use(monkeypatch, replace(DEFAULT_RECOGNITION_EVALUATION, idle_people_by_movement=1))
+    monkeypatch.setattr(false_objects_by_movement, "in_processes", in_this_process)
     people = generate(
         tmp_path / "set", GenerationSettings(ACTIONS, 3, 5, 90, images=False), lambda: None
     )

@@ -1,0 +1,69 @@
+"""Results of slow functions, made once a run and shared by the tests of all its workers.
+
+The functions give the same for the same arguments, so what is asked for again is read from a file
+instead. The folder is the run's own: nothing is left from a run of other sources.
+"""
+
+import fcntl
+import functools
+import hashlib
+import importlib
+import os
+import pickle
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import ParamSpec, TypeVar
+
+import pytest
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+SHARED = (
+    ("inhand_lab.training.model_training", "find_viewpoints"),
+    ("inhand_lab.training.model_training", "learn_prior"),
+    ("inhand_lab.evaluation.fold_model", "find_viewpoints"),
+    ("inhand_lab.evaluation.fold_model", "learn_prior"),
+    ("inhand_lab.benchmarks.fusion_cost", "find_viewpoints"),
+    ("inhand_lab.benchmarks.tracker_speed", "find_viewpoints"),
+    ("inhand_lab.benchmarks.likelihood_check", "find_viewpoints"),
+    ("inhand_lab.training.recogniser_training", "watch_idle"),
+    ("inhand_lab.training.recogniser_training", "read_movement"),
+)
+"""Where the slow functions are called that many tests call with the same arguments. Their own tests
+call them elsewhere."""
+
+
+def run_folder(factory: pytest.TempPathFactory) -> Path:
+    """The folder that all workers of a run share."""
+    own = factory.getbasetemp()
+    return own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+
+
+@contextmanager
+def results_shared(folder: Path) -> Iterator[None]:
+    """While this lasts, the functions of SHARED keep their results in a folder."""
+    folder.mkdir(exist_ok=True)
+    with pytest.MonkeyPatch.context() as patch:
+        for module, name in SHARED:
+            called = importlib.import_module(module)
+            patch.setattr(called, name, sharing(getattr(called, name), folder))
+        yield
+
+
+def sharing(function: Callable[Arguments, Result], folder: Path) -> Callable[Arguments, Result]:
+    """The function, but each result is made by one worker while others wait for its file."""
+
+    @functools.wraps(function)
+    def shared(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
+        asked = pickle.dumps((function.__module__, function.__qualname__, args, kwargs))
+        path = folder / hashlib.sha256(asked).hexdigest()
+        with path.with_suffix(".lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not path.exists():
+                path.write_bytes(pickle.dumps(function(*args, **kwargs)))
+        result: Result = pickle.loads(path.read_bytes())
+        return result
+
+    return shared
