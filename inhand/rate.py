@@ -14,7 +14,7 @@ import msgspec
 from inhand_recorder.losses import LossCounter
 from inhand_runtime.inbox import Received
 from inhand_schemas.messages import Message
-from inhand_schemas.topics import topic_of
+from inhand_schemas.topics import AnyTopic, topic_of
 from rich.live import Live
 from rich.table import Table
 
@@ -91,6 +91,7 @@ class Meter:
         losses = self._losses.losses()
         rates = {}
         for key, window in sorted(self._window.items()):
+            topic, _ = topic_of(key)
             received, captured, sizes = zip(*window, strict=True)
             seconds = (received[-1] - received[0]) / 1e9
             pauses = [after - before for before, after in pairwise(received)]
@@ -98,17 +99,16 @@ class Meter:
                 "messages": losses[key].received,
                 "rate_hz": len(pauses) / seconds if seconds > 0 else 0.0,
                 "longest_pause_ms": max(pauses, default=0) / 1e6,
-                "delay_ms": _delay_ms(key, received, captured),
+                "delay_ms": _delay_ms(topic, received, captured),
                 "bytes": round(statistics.mean(sizes)),
-                "lost": losses[key].lost,
+                "lost": losses[key].lost if topic.gaps_are_losses else 0,
             }
         return rates
 
 
-def _delay_ms(key: str, received: Sequence[int], captured: Sequence[int]) -> float | None:
+def _delay_ms(topic: AnyTopic, received: Sequence[int], captured: Sequence[int]) -> float | None:
     """Median time since capture; None for a kept value, which is handed to whoever comes later, and
     for what was captured at another time."""
-    topic, _ = topic_of(key)
     if topic.delivery.kept:
         return None
     delay_ms = statistics.median(map(int.__sub__, received, captured)) / 1e6

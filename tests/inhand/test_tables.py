@@ -5,8 +5,8 @@ import io
 import pytest
 from inhand_runtime.inbox import Received
 from inhand_schemas.keys import Site
-from inhand_schemas.messages import CameraInfo, Skeletons
-from inhand_schemas.topics import INFO, SKELETONS
+from inhand_schemas.messages import CameraInfo, ObjectPose, Skeletons
+from inhand_schemas.topics import INFO, LABEL, POSE, SKELETONS
 from rich.console import Console, RenderableType
 from running_rig import RunningRig
 
@@ -77,6 +77,19 @@ def test_the_delay_of_a_kept_value_is_not_shown() -> None:
 def test_times_of_a_replay_are_no_delay(delay_ns: int, delay_ms: float | None) -> None:
     (rate,) = meter(delay_ns).rates().values()
     assert rate["delay_ms"] == delay_ms
+
+
+def test_what_a_tracker_leaves_out_is_no_loss() -> None:
+    measured = Meter()
+    for number in (0, 5):
+        pose = ObjectPose(
+            sequence=number, time_ns=NOW_NS, object="mug", camera="x", state="lost", confidence=0.0
+        )
+        for topic in (POSE, LABEL):
+            key = topic.key(SITE, "mug")
+            measured.add(Received(key, topic.encode(pose), topic.encoding, NOW_NS))
+    lost = {key.split("/")[3]: rate["lost"] for key, rate in measured.rates().items()}
+    assert lost == {"pose": 0, "label": 4}
 
 
 def shown_lines(table: RenderableType) -> list[str]:

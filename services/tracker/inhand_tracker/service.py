@@ -236,16 +236,11 @@ def _require_camera(settings: Settings[TrackerSettings]) -> None:
 def _require_files(settings: Settings[TrackerSettings]) -> None:
     """Raise SettingsError for a file that is not there."""
     chosen = settings.service
-    for setting, files, made_by in (
-        ("model", (chosen.model,), "inhand train"),
-        ("models", chosen.models, "inhand train"),
-        ("recogniser", (chosen.recogniser,), "inhand train --recogniser"),
-    ):
-        for file in files:
-            if file is not None and not file.exists():
-                raise settings.origin.refusal(
-                    setting, f"{file} does not exist: check the path; `{made_by}` makes it"
-                )
+    models = (("models", file) for file in chosen.models)
+    for setting, file in (("model", chosen.model), *models, ("recogniser", chosen.recogniser)):
+        if file is not None and not file.exists():
+            reason = f"{file} does not exist: check the path; `inhand train` makes it"
+            raise settings.origin.refusal(setting, reason)
 
 
 def load_watcher(instance: str, settings: TrackerSettings) -> Watcher:
