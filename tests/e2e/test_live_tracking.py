@@ -36,6 +36,12 @@ def simulated(folder: Path, *interactions: str, images: bool = False, frames: in
     return load_dataset(folder)
 
 
+@pytest.fixture(scope="module")
+def drinkers(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
+    """Four people with a mug, without images."""
+    return simulated(tmp_path_factory.mktemp("drinkers") / "people")
+
+
 SLOWLY = 0.15
 
 
@@ -103,11 +109,10 @@ def assert_live_equals_offline(
 @pytest.mark.long
 @pytest.mark.parametrize("handedness", ["right", "left"])
 def test_live_poses_equal_the_offline_evaluations(
-    rig: RunningRig, tmp_path: Path, handedness: str
+    rig: RunningRig, drinkers: Dataset, handedness: str
 ) -> None:
-    dataset = simulated(tmp_path / "people")
-    tested = next(entry for entry in dataset.entries if entry.handedness == handedness)
-    assert_live_equals_offline(rig, dataset, tested, ["mug"])
+    tested = next(entry for entry in drinkers.entries if entry.handedness == handedness)
+    assert_live_equals_offline(rig, drinkers, tested, ["mug"])
 
 
 @pytest.mark.long
@@ -158,10 +163,9 @@ def test_a_real_golf_swing_tracked_live_equals_the_offline_evaluation(
 @pytest.mark.long
 @needs_real_data
 def test_a_real_kinect_tennis_swing_with_depth_loses_no_frame(
-    rig: RunningRig, tmp_path: Path
+    rig: RunningRig, tmp_path: Path, drinkers: Dataset
 ) -> None:
-    dataset = simulated(tmp_path / "people")
-    model: Model = train(dataset, dataset.entries)
+    model: Model = train(drinkers, drinkers.entries)
     save_model(model, tmp_path / "mug.model")
     trial = DATA / "utd-mhad" / "a15_s1_t1_skeleton.mat"
     assert main(["import", "utd-mhad", str(trial), str(tmp_path / "tennis")]) == 0
@@ -193,10 +197,11 @@ def test_the_demonstration_tracks_a_stranger_and_loses_nothing(tmp_path: Path) -
     assert verify_recording(Path(told["recording"])) == []
 
 
-def test_a_damaged_model_is_one_line_and_nothing_starts(rig: RunningRig, tmp_path: Path) -> None:
-    dataset = simulated(tmp_path / "people")
+def test_a_damaged_model_is_one_line_and_nothing_starts(
+    rig: RunningRig, tmp_path: Path, drinkers: Dataset
+) -> None:
     model = tmp_path / "mug.model"
-    save_model(train(dataset, dataset.entries), model)
+    save_model(train(drinkers, drinkers.entries), model)
     model.write_bytes(model.read_bytes()[: model.stat().st_size // 2])
     rig.configure(f'[tracker.mug]\nmodel = "{model}"')
     ended = rig.done("tracker", "--config", rig.config)
