@@ -1,0 +1,34 @@
+"""A recorder's settings, and what is checked of them before a start."""
+
+from pathlib import Path
+
+import pytest
+from inhand_recorder.service import RecorderSettings, check
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.settings import Settings, load_settings
+
+
+def loaded(tmp_path: Path, text: str) -> Settings[RecorderSettings]:
+    config = tmp_path / "rig.toml"
+    config.write_text(f"[recorder.disk]\n{text}\n")
+    return load_settings(config, "recorder", RecorderSettings)
+
+
+@pytest.mark.parametrize("text", ["", 'folder = "recordings"'])
+def test_the_folder_is_beside_the_settings_file_and_checking_makes_nothing(
+    tmp_path: Path, text: str
+) -> None:
+    settings = loaded(tmp_path, text)
+    check(settings)
+    assert settings.service.folder == tmp_path / "recordings"
+    assert not settings.service.folder.exists()
+
+
+def test_a_folder_that_cannot_be_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="cannot write to the folder /proc/nowhere: "):
+        check(loaded(tmp_path, 'folder = "/proc/nowhere"'))
+
+
+def test_a_stream_that_is_not_there_is_told_with_what_was_meant(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match=r"there is no stream 'poses' \(did you mean pose\?\)"):
+        loaded(tmp_path, 'streams = ["poses"]')
