@@ -113,7 +113,12 @@ def test_a_kept_value_that_is_repeated_comes_once_and_a_new_one_again(
         heard = other.hear(INFO)
         publisher = wire.publisher(INFO, "front")
         publisher.put(INFO_MESSAGE)
-        eventually("the value", lambda: heard)
+
+        def came() -> bool:
+            publisher.repeat()
+            return bool(heard)
+
+        eventually("the value", came)
         for _ in range(5):
             publisher.repeat()
         publisher.put(replace(INFO_MESSAGE, sequence=1))
