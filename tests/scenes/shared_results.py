@@ -34,6 +34,9 @@ SHARED = (
 """Where the slow functions are called that many tests call with the same arguments. Their own tests
 call them elsewhere."""
 
+SHARING = "shares_results"
+"""Name of the attribute that marks a function which keeps its results in the folder."""
+
 
 def run_folder(factory: pytest.TempPathFactory) -> Path:
     """The folder that all workers of a run share."""
@@ -48,7 +51,11 @@ def results_shared(folder: Path) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         for module, name in SHARED:
             called = importlib.import_module(module)
-            patch.setattr(called, name, sharing(getattr(called, name), folder))
+            function = getattr(called, name)
+            # A worker may run tests of two folders that share: wrapped twice, a function would wait
+            # for the lock that it holds itself.
+            if not hasattr(function, SHARING):
+                patch.setattr(called, name, sharing(function, folder))
         yield
 
 
@@ -66,4 +73,5 @@ def sharing(function: Callable[Arguments, Result], folder: Path) -> Callable[Arg
         result: Result = pickle.loads(path.read_bytes())
         return result
 
+    setattr(shared, SHARING, True)
     return shared
