@@ -25,7 +25,7 @@ from inhand.looking import (
     open_look,
     output,
 )
-from inhand.results import write_json
+from inhand.results import listing, write_json
 
 SECONDS = 5.0
 
@@ -83,10 +83,7 @@ def _row(instance: Instance, heard: Heard | None) -> dict[str, Any]:
 
 
 def _table(living: dict[Instance, Heard | None]) -> Table:
-    table = Table("instance", "state", "up s", "MB", "latency ms", "msg/s", "unused")
-    table.columns[0].no_wrap = True
-    for column in table.columns[2:]:
-        column.justify = "right"
+    table = listing(("instance", "state"), ("up s", "MB", "latency\nms", "msg/s", "unused"))
     for instance, heard in living.items():
         if heard is None:
             table.add_row(" ".join(instance), "silent")

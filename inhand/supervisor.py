@@ -34,7 +34,7 @@ class Child:
     def __init__(self, name: str, command: Sequence[str]) -> None:
         self.name = name
         self.done = False
-        self._command = command
+        self.command = command
         self._process: subprocess.Popen[bytes] | None = None
         self._start_at = 0.0
         self._delay = FIRST_RESTART_S
@@ -49,7 +49,7 @@ class Child:
             if not self.done and now >= self._start_at:
                 self._start_at = now
                 self._process = subprocess.Popen(
-                    self._command,
+                    self.command,
                     stdin=subprocess.DEVNULL,
                     process_group=0,
                     preexec_fn=_ending_with(os.getpid()),

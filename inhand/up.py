@@ -2,15 +2,19 @@
 
 import argparse
 import sys
+import threading
 from pathlib import Path
 
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.exit_codes import DONE
 from inhand_runtime.logs import configure_logs
 from inhand_runtime.settings import RigFile, load_rig_file
+from inhand_runtime.signals import set_on_signals
 from inhand_schemas.messages import Health
 
 from inhand.instances import Roll
 from inhand.looking import open_look
+from inhand.starts import require_startable
 from inhand.supervisor import HANGS_AFTER_S, Child, Supervisor
 
 STOP_ORDER = ("capture", "tracker", "recorder")
@@ -19,6 +23,9 @@ STOP_ORDER = ("capture", "tracker", "recorder")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's arguments."""
     parser.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
+    parser.add_argument(
+        "--check-config", action="store_true", help="check the settings of all, and start nothing"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -30,6 +37,14 @@ def run(arguments: argparse.Namespace) -> int:
             f"{arguments.config or 'the settings'} names no process: add a table such as "
             "[capture.front], or give --config"
         )
+    commands = {child.name: child.command for stage in stages for child in stage}
+    stop = threading.Event()
+    with set_on_signals(stop):
+        require_startable(commands, stop)
+    if arguments.check_config:
+        print(f"{', '.join(commands)}: the settings are valid")
+    if stop.is_set() or arguments.check_config:
+        return DONE
     configure_logs(rig_file.log, "up")
     roll = Roll()
 

@@ -84,7 +84,7 @@ def test_a_replay_repeats_the_recorded_moments_and_ends(
         assert times == [START_NS + number * RECORDED_FRAME_NS for number in range(10)]
 
 
-def test_a_recording_that_was_cut_ends_the_daemon_with_its_line(
+def test_a_recording_that_was_cut_is_refused_before_a_start(
     rig: RunningRig, capture: Start
 ) -> None:
     recording = write(rig.folder / "ten.mcap", entries(10))
@@ -93,10 +93,10 @@ def test_a_recording_that_was_cut_ends_the_daemon_with_its_line(
         f'[capture.front]\nsource = "replay"\n[capture.front.options]\nfile = "{recording}"\n'
     )
     daemon = capture()
-    assert daemon.wait() == 1
-    assert daemon.stderr.splitlines()[-1] == (
-        f"capture: source replay: {recording} was cut off: "
-        f"`inhand recording recover {recording}` saves what is left"
+    assert daemon.wait() == 2
+    assert daemon.stderr == (
+        f"capture: {rig.config}:3: setting capture.front.options: {recording} was cut off: "
+        f"`inhand recording recover {recording}` saves what is left\n"
     )
 
 

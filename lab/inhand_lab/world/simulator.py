@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 from inhand_runtime.settings import Section
-from inhand_runtime.settings_errors import explain
+from inhand_runtime.settings_errors import explain, suggestion
 from inhand_runtime.source import Captured, Pixels, SourceError
 from inhand_schemas.messages import CameraInfo
 from pydantic import AfterValidator, Field, ValidationError
@@ -32,7 +32,7 @@ from then on."""
 
 def _known(interaction: str) -> str:
     if interaction not in INTERACTIONS:
-        raise ValueError(f"nobody knows {interaction!r}; there are: {', '.join(INTERACTIONS)}")
+        raise ValueError(f"nobody knows {interaction!r}" + suggestion(interaction, INTERACTIONS))
     return interaction
 
 
@@ -53,6 +53,8 @@ class SimulatorOptions(Section):
 
 class SimulatorSource:
     """A simulated participant before a simulated camera, in real time, with the truth."""
+
+    options_model = SimulatorOptions
 
     def __init__(self, options: Mapping[str, Any]) -> None:
         try:

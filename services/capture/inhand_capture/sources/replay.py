@@ -5,11 +5,10 @@ import logging
 import threading
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
-from pathlib import Path
 from typing import Annotated, Any
 
 from inhand_runtime.recording import RecordingError, read_recording
-from inhand_runtime.settings import Section
+from inhand_runtime.settings import FilePath, Section
 from inhand_runtime.settings_errors import explain
 from inhand_runtime.source import QUIET_S, Captured, SourceError
 from inhand_schemas.errors import KeyFormatError, MessageError
@@ -38,7 +37,7 @@ class ReplayOptions(Section):
     ``camera`` chooses one of a recording of several.
     """
 
-    file: Path
+    file: FilePath
     rate: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 1.0
     loop: bool = False
     camera: str | None = None
@@ -46,6 +45,13 @@ class ReplayOptions(Section):
 
 class ReplaySource:
     """Plays a recording with its original timing and capture times."""
+
+    options_model = ReplayOptions
+
+    @classmethod
+    def check_options(cls, options: Mapping[str, Any]) -> None:
+        """Raise SourceError for a recording that is not there, or cannot be played."""
+        cls(options)
 
     def __init__(self, options: Mapping[str, Any]) -> None:
         try:
