@@ -73,11 +73,13 @@ class ReplaySource:
         After a pause of the process, or where it cannot keep up, playback goes on from now: what
         was due meanwhile is not sent in a burst.
         """
-        due = time.monotonic()
+        due: float | None = None
         while True:
             before_ns: int | None = None
             with contextlib.closing(self._moments()) as recorded:
                 for captured in recorded:
+                    # The clock starts at the first moment: reading up to it took a while.
+                    due = time.monotonic() if due is None else due
                     due += self._played(self._step_s(before_ns, captured.time_ns))
                     before_ns = captured.time_ns
                     yield from self._wait_until(due)
@@ -86,7 +88,7 @@ class ReplaySource:
                     if time.monotonic() - due > LONGEST_DELAY_S:
                         due = time.monotonic()
                     yield captured
-            if before_ns is None or not self._options.loop:
+            if before_ns is None or due is None or not self._options.loop:
                 return
             due += self._played(1 / self._info.frame_rate)
 
