@@ -282,7 +282,7 @@ def recorded(rig: RunningRig, folder: str, play: Callable[[], object]) -> Path:
     play()
 
     def written() -> bool:
-        infos = [inspect_recording(path) for path in (rig.folder / folder).iterdir()]
+        infos = [inspect_recording(path) for path in (rig.folder / folder).glob("*")]
         return any(key.key == RGBD_KEY and key.messages == 30 for i in infos for key in i.keys)
 
     eventually("30 frames on the disk", written)
