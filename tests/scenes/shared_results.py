@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import ParamSpec, TypeVar
+from unittest import mock
 
 import pytest
 
@@ -60,17 +61,30 @@ def results_shared(folder: Path) -> Iterator[None]:
 
 
 def sharing(function: Callable[Arguments, Result], folder: Path) -> Callable[Arguments, Result]:
-    """The function, but each result is made by one worker while others wait for its file."""
+    """The function, but each result is made by one worker while others wait for its file.
+
+    Functions among its named arguments report progress: they are called as often as they were when
+    the result was made.
+    """
 
     @functools.wraps(function)
     def shared(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Result:
-        asked = pickle.dumps((function.__module__, function.__qualname__, args, kwargs))
-        path = folder / hashlib.sha256(asked).hexdigest()
+        reports = {name: value for name, value in kwargs.items() if callable(value)}
+        plain = {name: value for name, value in kwargs.items() if name not in reports}
+        asked = pickle.dumps((function.__module__, function.__qualname__, args, plain))
+        path = folder / hashlib.sha256(asked + repr(sorted(reports)).encode()).hexdigest()
         with path.with_suffix(".lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             if not path.exists():
-                path.write_bytes(pickle.dumps(function(*args, **kwargs)))
-        result: Result = pickle.loads(path.read_bytes())
+                calls = {name: mock.Mock() for name in reports}
+                made = function(*args, **plain, **calls)  # type: ignore[call-arg]
+                counts = {name: call.call_count for name, call in calls.items()}
+                path.write_bytes(pickle.dumps((made, counts)))
+        result: Result
+        result, counts = pickle.loads(path.read_bytes())
+        for name, count in counts.items():
+            for _ in range(count):
+                reports[name]()
         return result
 
     setattr(shared, SHARING, True)

@@ -13,7 +13,7 @@ from inhand_tracker.sight.appearance import learn_appearance
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.training.appearance_samples import appearance_samples
-from inhand_lab.training.model_training import checked_sequence
+from inhand_lab.training.model_training import checked_sequence, checked_shape
 from inhand_lab.training.recording_checks import check_hands
 
 
@@ -45,7 +45,7 @@ def _shape(dataset: Dataset, fold: Fold) -> ObjectShape:
     name = fold.trained[0].object
     if name is None:
         raise DatasetError(f"{fold.trained[0].file} is not labelled")
-    return dataset.shape(name)
+    return checked_shape(dataset, name)
 
 
 # Folds share recordings, and the objects, whose boundaries take seconds to find.

@@ -10,9 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
+from inhand_runtime.errors import InhandError
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import require_name
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.shape.mesh_file import read_mesh
 from inhand_tracker.shape.shape import ObjectShape
 
 from inhand_lab.datasets.dataset import DatasetError
@@ -43,13 +45,9 @@ def shape_of_mesh(name: str, path: Path, marked_vertices: Array | None = None) -
     Its extreme points are marked where no others are given.
     """
     try:
-        mesh = trimesh.load_mesh(path, process=False)
-        vertices = np.asarray(mesh.vertices, np.float64)
-        faces = np.asarray(mesh.faces, np.int64)
-    except Exception as error:  # noqa: BLE001 - a reader of foreign files may raise anything
-        raise DatasetError(f"{path} is no mesh that can be read: {error}") from None
-    if len(faces) == 0 or not np.isfinite(vertices).all():
-        raise DatasetError(f"{path} is no mesh that can be used: it has no finite triangles")
+        vertices, faces = read_mesh(path)
+    except InhandError as error:
+        raise DatasetError(str(error)) from None
     marked = extreme_points(vertices) if marked_vertices is None else marked_vertices
     return ObjectShape(name, vertices, faces, marked, MIRROR_NORMAL)
 

@@ -7,13 +7,15 @@ from inhand_tracker.mapping.learning import STAGES, LabelledSequence, UnusableSe
 from inhand_tracker.methods.registry import DEFAULT_METHOD, new_tracker
 from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior
-from inhand_tracker.shape.viewpoints import find_viewpoints
+from inhand_tracker.shape.shape import ObjectShape
+from inhand_tracker.shape.viewpoints import count_views, find_viewpoints
 from inhand_tracker.sight.appearance import learn_appearance
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.training.appearance_samples import appearance_samples
 from inhand_lab.training.recording_checks import check_hands, check_sequence
+from inhand_lab.training.shape_checks import check_shape
 
 READING, VIEWPOINTS, APPEARANCE, PRIOR = "recordings", "viewpoints", "appearance", "prior"
 
@@ -23,7 +25,7 @@ def model_stages(recordings: int) -> dict[str, int]:
     return {
         READING: recordings,
         **dict.fromkeys(STAGES, recordings),
-        VIEWPOINTS: 1,
+        VIEWPOINTS: count_views(),
         APPEARANCE: 1,
         PRIOR: 1,
     }
@@ -75,14 +77,13 @@ def train(
     Raises DatasetError or InhandError.
     """
     first = _first_of(dataset, entries)
-    shape = dataset.shape(str(first.object))
+    shape = checked_shape(dataset, str(first.object))
     sequences = _read(dataset, entries, on_step)
     try:
         mapping = learn(sequences, shape.mirror_normal, on_step)
     except UnusableSequenceError as error:
         raise DatasetError(f"{dataset.folder}: {error}") from None
-    viewpoints = find_viewpoints(shape)
-    on_step(VIEWPOINTS)
+    viewpoints = find_viewpoints(shape, on_view=lambda: on_step(VIEWPOINTS))
     appearance = learn_appearance(shape, appearance_samples(dataset, entries))
     on_step(APPEARANCE)
     prior = learn_prior(sequences, shape)
@@ -115,6 +116,13 @@ def _read(
         on_step(READING)
     check_hands(entries, sequences)
     return sequences
+
+
+def checked_shape(dataset: Dataset, name: str) -> ObjectShape:
+    """Read an object's shape for training; raises InhandError for one that cannot be meant."""
+    shape = dataset.shape(name)
+    check_shape(shape, dataset.folder / "objects" / name)
+    return shape
 
 
 def checked_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:

@@ -26,6 +26,31 @@ class TrainingParameters:
     clear_hand_share: float = 0.9
     """Share of frames in which an object is nearer to one hand from which it is that hand's."""
 
+    # Which meshes and marks are refused (shape_checks).
+    smallest_m: float = 0.005
+    """Size in metres of the smallest object: nothing smaller is tracked in a hand."""
+    largest_m: float = 4.0
+    """Size in metres of the largest object: more than a javelin or an oar, and less than a mug
+    whose inches, centimetres or millimetres were taken for metres."""
+    least_mark_spread_m: float = 0.001
+    """Root mean square distance in metres of marks from the line through them, at the least:
+    labels are no more exact."""
+    beyond_mesh_share: float = 0.02
+    """How far a mark may lie outside the box around the mesh, in sizes of the object, wherever the
+    surface is."""
+    farthest_mark_m: float = 0.015
+    """Distance in metres of a mark outside that box from the surface, at the most: measured
+    markers stand out by no more."""
+    farthest_mark_share: float = 0.12
+    """That distance in sizes of the object, where that is more: of the simulator's objects a
+    quarter turn moves all marks but those of symmetric ones by more."""
+    least_marked_share: float = 0.04
+    """Size of the box around the marks in sizes of the object, at the least: inches for metres
+    give 0.025."""
+
+    clear_unit_share: float = 0.2
+    """Size of marks in another unit, in sizes of the object, from which that unit is proposed."""
+
     # From how much the appearance of an object is learned (appearance_samples).
     appearance_recordings: int = 12
     """Number of recordings, evenly spaced, at the most: an object looks much the same in all."""

@@ -7,6 +7,7 @@ from shutil import copytree
 
 import msgspec
 import pytest
+import trimesh
 from inhand_lab.datasets.dataset import Dataset, DatasetError, load_dataset
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.training.model_summary import summarise_model
@@ -72,6 +73,20 @@ def test_a_mesh_without_marked_vertices_is_refused(dataset: Dataset) -> None:
     description.write_text('name = "mug"\n', encoding="utf-8")
     with pytest.raises(InhandError, match="marks 0 vertices"):
         train(dataset, dataset.entries)
+
+
+def test_a_mesh_in_millimetres_is_one_line_and_no_model(
+    dataset: Dataset, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = dataset.folder / "objects" / "mug" / "mesh.ply"
+    mesh = trimesh.load_mesh(path, process=False)
+    mesh.apply_scale(1000.0)
+    mesh.export(path)
+    assert main(["train", str(dataset.folder), "-o", str(tmp_path / "m")]) == 1
+    refusal = capsys.readouterr().err
+    assert refusal.count("\n") == 1
+    assert "121 m long" in refusal
+    assert not (tmp_path / "m").exists()
 
 
 def test_a_single_recording_is_too_few(dataset: Dataset) -> None:

@@ -80,6 +80,28 @@ def test_what_is_not_said_has_a_default(tmp_path: Path) -> None:
         (FIRST_LINE + "[[symmetries]]\naxis = [0, 0, 1]\norder = inf", "object.toml"),
         (FIRST_LINE + "symmetries = [1, 2]", "object.toml"),
         (FIRST_LINE + "symmetries = 4", "object.toml"),
+        (FIRST_LINE + "symmetries = [1, 2]", "write [[symmetries]]"),
+        (FIRST_LINE + "[[symmetries]]\norder = 2", "lacks its axis"),
+        (FIRST_LINE + "[[symmetries]]\naxis = [0, 0, 0]", "axis has no length"),
+        (FIRST_LINE + "[[symmetries]]\naxis = [0, 0, 1]\norder = -3", "order is -3: write a whole"),
+        (FIRST_LINE + "[[symmetries]]\naxis = [0, 0, 1]\norder = 2.7", "order is 2.7"),
+        (FIRST_LINE + "[[symmetries]]\naxis = [0, 0, 1]\norder = true", "order is True"),
+        (FIRST_LINE + '[[symmetries]]\naxis = [0, 0, 1]\norder = "2"', "order is '2'"),
+        (FIRST_LINE + "[[symmetries]]\naxis = [0, 0, 1]\norder = nan", "order is nan"),
+        (FIRST_LINE + 'units = "mm"', "unknown key units: mesh and marked_vertices are in metres"),
+        (FIRST_LINE + "Scale = 0.001", "unknown key Scale: mesh and marked_vertices are in metres"),
+        (
+            FIRST_LINE + "mirror_norml = [0, 1, 0]",
+            "unknown key mirror_norml (did you mean mirror_normal?)",
+        ),
+        (
+            FIRST_LINE + "colour = 3",
+            "colour (there are: name, mirror_normal, marked_vertices, symmetries)",
+        ),
+        (
+            FIRST_LINE + "[[symmetries]]\naxis = [0, 0, 1]\ncenter = [0, 0, 0]",
+            "unknown key symmetries.center (did you mean centre?)",
+        ),
         ("marked_vertices = [[", "no TOML"),
     ],
 )
@@ -89,6 +111,15 @@ def test_a_wrong_description_is_refused_with_its_file(
     with pytest.raises(InhandError, match=r"object\.toml") as caught:
         load_shape(folder_with(tmp_path, toml))
     assert message in str(caught.value)
+
+
+def test_a_description_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
+    assert load_shape(folder_with(tmp_path, "\ufeff" + FIRST_LINE)).name == "mug"
+
+
+def test_an_order_that_is_written_as_a_whole_float_is_read(tmp_path: Path) -> None:
+    toml = FIRST_LINE + "[[symmetries]]\naxis = [0, 0, 1]\norder = 2.0"
+    assert load_shape(folder_with(tmp_path, toml)).symmetries[0].order == 2
 
 
 def test_text_that_is_no_utf8_is_refused(tmp_path: Path) -> None:

@@ -8,7 +8,12 @@ import pytest
 import trimesh
 from inhand_tracker.shape.parameters import DEFAULT_SHAPE
 from inhand_tracker.shape.shape import ObjectShape
-from inhand_tracker.shape.viewpoints import Viewpoints, find_surfaces, find_viewpoints
+from inhand_tracker.shape.viewpoints import (
+    Viewpoints,
+    count_views,
+    find_surfaces,
+    find_viewpoints,
+)
 from people import wedge
 from scipy.spatial import ConvexHull
 from scipy.spatial.distance import cdist
@@ -61,6 +66,13 @@ def test_directions_go_all_around() -> None:
     asked /= np.linalg.norm(asked, axis=1, keepdims=True)
     nearest = np.arccos(np.clip((asked @ views.directions.T).max(axis=1), -1, 1))
     assert np.rad2deg(nearest).max() < 6.0
+
+
+def test_each_view_that_is_drawn_is_reported_before_the_next() -> None:
+    coarse = replace(DEFAULT_SHAPE, subdivisions=1, boundary_raster=20, contour_raster=24)
+    reports: list[None] = []
+    views = find_viewpoints(views_of("box")[0], coarse, lambda: reports.append(None))
+    assert len(reports) == count_views(coarse) == 2 * len(views.directions)
 
 
 def test_the_boundary_of_a_sphere_is_the_circle_across_the_view() -> None:

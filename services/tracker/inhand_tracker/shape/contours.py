@@ -5,6 +5,7 @@ with their normals and how thick the silhouette is there, points of the surface 
 normals, found once an object, so that a pose costs a look-up and some projections.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import lru_cache
 
@@ -42,10 +43,19 @@ class Contours:
 
 
 def find_contours(
-    shape: ObjectShape, directions: Array, parameters: ShapeParameters = DEFAULT_SHAPE
+    shape: ObjectShape,
+    directions: Array,
+    parameters: ShapeParameters = DEFAULT_SHAPE,
+    on_view: Callable[[], None] = lambda: None,
 ) -> Contours:
-    """Find the contours of a shape from directions (V, 3), as if seen from far away."""
-    views = [_look(shape, direction, parameters) for direction in directions]
+    """Find the contours of a shape from directions (V, 3), as if seen from far away.
+
+    ``on_view`` is called after each of them.
+    """
+    views = []
+    for direction in directions:
+        views.append(_look(shape, direction, parameters))
+        on_view()
     columns = {
         field.name: np.array([view[index] for view in views], np.float32)
         for index, field in enumerate(fields(Contours)[1:])

@@ -1,6 +1,6 @@
 """An object's shape, and the folder ``objects/NAME/`` that keeps it in a dataset.
 
-``mesh.ply`` (or any other ``mesh.*`` that trimesh reads) and ``object.toml``: the marked vertices
+``mesh.ply`` (or one other ``mesh.*`` that trimesh reads) and ``object.toml``: the marked vertices
 of the error score, the object's own plane of symmetry, and its axes of rotational symmetry.
 """
 
@@ -13,9 +13,15 @@ from typing import Any
 import numpy as np
 import trimesh
 from inhand_runtime.errors import InhandError
+from inhand_runtime.settings_errors import ENCODING, suggestion
 from inhand_schemas.keys import require_name
 
 from inhand_tracker.geometry.arrays import Array, Indices
+from inhand_tracker.shape.mesh_file import find_mesh, read_mesh
+
+_KEYS = ("name", "mirror_normal", "marked_vertices", "symmetries")
+_SYMMETRY_KEYS = ("axis", "centre", "order")
+_UNIT_KEYS = ("unit", "units", "scale", "scaling")
 
 
 @dataclass(frozen=True)
@@ -73,13 +79,13 @@ def load_shape(folder: Path) -> ObjectShape:
     """Read an object's folder; raises InhandError with the mend."""
     description = folder / "object.toml"
     try:
-        values = tomllib.loads(description.read_text(encoding="utf-8"))
+        values = tomllib.loads(description.read_text(encoding=ENCODING))
     except OSError as error:
         raise InhandError(f"cannot read {description}: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise InhandError(f"{description} is no TOML: {error}") from None
-    vertices, faces = _load_mesh(folder)
     try:
+        _require_keys(values, _KEYS)
         name = str(values.get("name", folder.name))
         require_name("object", name)
         marked = _vectors(values.get("marked_vertices", ()))
@@ -87,37 +93,44 @@ def load_shape(folder: Path) -> ObjectShape:
         symmetries = tuple(_symmetry(entry) for entry in values.get("symmetries", ()))
         if not np.linalg.norm(normal) > 0.0:
             raise ValueError("mirror_normal has no length")
-    except (ValueError, TypeError, KeyError, OverflowError) as error:
+    except (ValueError, TypeError, OverflowError) as error:
         raise InhandError(f"{description}: {error}") from None
     if len(marked) < 3:
         raise InhandError(
             f"{description} marks {len(marked)} vertices: the error score needs 3 or more; "
             "write marked_vertices = [[x, y, z], …] in metres"
         )
+    vertices, faces = read_mesh(find_mesh(folder))
     return ObjectShape(name, vertices, faces, marked, normal / np.linalg.norm(normal), symmetries)
 
 
-def _load_mesh(folder: Path) -> tuple[Array, Indices]:
-    formats = trimesh.available_formats()
-    found = sorted(path for path in folder.glob("mesh.*") if path.suffix[1:] in formats)
-    if not found:
-        raise InhandError(f"{folder} holds no mesh: add mesh.ply, mesh.obj or mesh.stl")
-    try:
-        mesh = trimesh.load_mesh(found[0], process=False)
-        vertices = np.asarray(mesh.vertices, np.float64)
-        faces = np.asarray(mesh.faces, np.int64)
-    except Exception as error:  # noqa: BLE001 - a reader of foreign files may raise anything
-        raise InhandError(f"{found[0]} is no mesh that can be read: {error}") from None
-    if len(faces) == 0 or not np.isfinite(vertices).all():
-        raise InhandError(f"{found[0]} is no mesh that can be used: it has no finite triangles")
-    if faces.min() < 0 or faces.max() >= len(vertices):
-        raise InhandError(f"{found[0]} is no mesh that can be used: a face has no such vertex")
-    return vertices, faces
+def _require_keys(values: Mapping[str, Any], keys: tuple[str, ...], owner: str = "") -> None:
+    for key in values:
+        if key.lower() in _UNIT_KEYS:
+            raise ValueError(
+                f"unknown key {owner}{key}: mesh and marked_vertices are in metres; scale them, "
+                "and take the key out"
+            )
+        if key not in keys:
+            raise ValueError(f"unknown key {owner}{key}" + suggestion(key, keys))
 
 
-def _symmetry(entry: Mapping[str, Any]) -> Symmetry:
-    axis, centre = _vectors([entry["axis"], entry.get("centre", (0.0, 0.0, 0.0))]).tolist()
-    return Symmetry(tuple(axis), tuple(centre), int(entry.get("order", 0)))
+def _symmetry(entry: Any) -> Symmetry:
+    if not isinstance(entry, Mapping):
+        raise TypeError("symmetries are tables: write [[symmetries]], and axis below it")
+    _require_keys(entry, _SYMMETRY_KEYS, "symmetries.")
+    if "axis" not in entry:
+        raise ValueError("a symmetry lacks its axis: write axis = [x, y, z]")
+    axis, centre = _vectors([entry["axis"], entry.get("centre", (0.0, 0.0, 0.0))])
+    if not np.linalg.norm(axis) > 0.0:
+        raise ValueError("symmetries.axis has no length: write a direction, such as [0, 0, 1]")
+    order = entry.get("order", 0)
+    if isinstance(order, bool) or not isinstance(order, int | float) or order < 0 or order % 1:
+        raise ValueError(
+            f"symmetries.order is {order!r}: write a whole number n for turns by 2π/n, or 0 for "
+            "turns by any angle"
+        )
+    return Symmetry(tuple(axis.tolist()), tuple(centre.tolist()), int(order))
 
 
 def _vectors(values: Any) -> Array:

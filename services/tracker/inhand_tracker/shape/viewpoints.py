@@ -5,6 +5,7 @@ points are found once for each direction, and a hypothesis costs a look-up and s
 (the sparse viewpoint model of contour trackers, Stoiber et al. 2020).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
@@ -35,18 +36,31 @@ class Viewpoints:
     contours: Contours | None = None
 
 
-def find_viewpoints(shape: ObjectShape, parameters: ShapeParameters = DEFAULT_SHAPE) -> Viewpoints:
-    """Find the boundaries, surfaces and contours of a shape from directions all around it."""
+def count_views(parameters: ShapeParameters = DEFAULT_SHAPE) -> int:
+    """Return the number of views that ``find_viewpoints`` draws: two from each direction."""
+    return 2 * (10 * 4**parameters.subdivisions + 2)
+
+
+def find_viewpoints(
+    shape: ObjectShape,
+    parameters: ShapeParameters = DEFAULT_SHAPE,
+    on_view: Callable[[], None] = lambda: None,
+) -> Viewpoints:
+    """Find the boundaries, surfaces and contours of a shape from directions all around it.
+
+    ``on_view`` is called after each of ``count_views`` views: of a fine mesh one takes a second.
+    """
     sphere = trimesh.creation.icosphere(parameters.subdivisions)
     directions = np.asarray(sphere.vertices, float)
     directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    views = [_see(shape, direction, parameters) for direction in directions]
-    return Viewpoints(
-        directions,
-        np.array([_boundary(shape, view, parameters.boundary_points) for view in views]),
-        np.array([_surface(view, parameters.surface_points) for view in views]),
-        find_contours(shape, directions, parameters),
-    )
+    boundaries, surfaces = [], []
+    for direction in directions:
+        view = _see(shape, direction, parameters)
+        boundaries.append(_boundary(shape, view, parameters.boundary_points))
+        surfaces.append(_surface(view, parameters.surface_points))
+        on_view()
+    contours = find_contours(shape, directions, parameters, on_view)
+    return Viewpoints(directions, np.array(boundaries), np.array(surfaces), contours)
 
 
 def find_surfaces(
