@@ -79,4 +79,4 @@ def test_a_report_that_cannot_be_written_is_one_line_before_anything_is_tracked(
     arguments = ["--no-images", "--methods", "gd-hand", "--report", str(tmp_path / "file")]
     assert main(["evaluate", str(tmp_path / "set"), *arguments]) == 2
     (told,) = capsys.readouterr().err.splitlines()
-    assert told.startswith(f"inhand evaluate: cannot write {tmp_path / 'file'}")
+    assert told.startswith(f"inhand evaluate: cannot write to {tmp_path / 'file'}")
