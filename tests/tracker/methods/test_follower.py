@@ -63,6 +63,34 @@ def test_frames_in_which_the_object_is_not_looked_for_are_remembered() -> None:
     assert tracker.step(joints[1], 2 * FRAME_NS).confidence == 0.75
 
 
+def test_frames_that_are_skipped_are_remembered_by_their_joints() -> None:
+    tracker, joints = HandTracker(), unseen_wave(2)
+    tracker.remember_joints(joints[0], FRAME_NS)
+    tracker.remember_joints(np.full((20, 3), np.nan), 2 * FRAME_NS)
+    assert tracker.step(joints[1], 3 * FRAME_NS).confidence == 0.75
+
+
+class Effort(InTheHand):
+    """As sure as the effort that it may take."""
+
+    def estimate(self, body: Body, time_ns: int, image: Image | None) -> Estimate:
+        return Estimate("tracked", self.effort, body.joints[HAND], UPRIGHT, np.eye(6))
+
+
+def test_a_step_takes_the_effort_that_the_tracker_has_and_a_frame_alone_takes_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(HandTracker, "_start", lambda self, alone: Effort(self.new_reader()))
+    tracker = HandTracker()
+    body = tracker.new_reader().read(STANDING)
+    assert tracker.step(STANDING, FRAME_NS).confidence == 1.0
+    tracker.effort = 0.25
+    assert tracker.step(STANDING, FRAME_NS).confidence == 0.25
+    tracker.restart()
+    assert tracker.step_body(body, 2 * FRAME_NS).confidence == 0.25
+    assert tracker.estimate_single_frame(STANDING).confidence == 1.0
+
+
 def test_the_reader_is_of_the_tracker_s_handedness() -> None:
     for left_handed in (False, True):
         body = HandTracker(left_handed=left_handed).new_reader().read(STANDING)

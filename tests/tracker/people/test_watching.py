@@ -32,6 +32,9 @@ class Scripted:
             raise answer
         return answer
 
+    def remember(self, *_: object) -> None:
+        self.step()
+
     def outline(self, *_: object) -> None:
         return None
 
@@ -91,11 +94,24 @@ def person(number: int, x: float) -> Person:
 
 
 class Still:
-    """A tracker of a thing that never moves."""
+    """A tracker of a thing that never moves; it keeps when, and with which effort."""
 
-    def restart(self) -> None: ...
+    effort = 1.0
 
-    def step(self, joints: object, *_: object) -> Estimate:
+    def __init__(self) -> None:
+        self.restart()
+
+    def restart(self) -> None:
+        self.stepped: list[tuple[int, float]] = []
+        self.remembered: list[int] = []
+
+    def remember_joints(self, joints: np.ndarray, time_ns: int) -> None:
+        if self.remembered:
+            raise ZeroDivisionError("a bug")
+        self.remembered.append(time_ns)
+
+    def step(self, joints: object, time_ns: int, *_: object) -> Estimate:
+        self.stepped.append((time_ns, self.effort))
         return LOST if joints is None else HERE
 
     def outline(self, *_: object) -> None:
@@ -115,3 +131,42 @@ def test_no_more_people_are_watched_than_asked_for_and_who_leaves_makes_room() -
     assert numbers(three[1:], 0.2) == {0, 1}
     assert numbers(three[1:], 2.0) == {0, 1}
     assert numbers(three[1:], 2.2) == {1, 2}
+
+
+def test_frames_that_are_skipped_are_remembered_by_whom_they_are_of() -> None:
+    trackers = {1: Still(), 2: Still()}
+    idle = list(trackers.values())
+    watched = PeopleWatched(lambda: GivenObjects({"mug": idle.pop(0)}), 2)
+    watched.see([person(1, 0.0)], CameraFrame(0), fail)
+    watched.remember([person(1, 0.0), person(2, 1.0)], FRAME_NS, fail)
+    assert [still.remembered for still in trackers.values()] == [[FRAME_NS], [FRAME_NS]]
+    watched.remember([], 2 * FRAME_NS, fail)
+    assert set(watched.see([], CameraFrame(3 * FRAME_NS), fail)) == {0, 1}
+
+
+def fail(name: str, error: Exception) -> None:
+    raise AssertionError(name) from error
+
+
+def test_an_object_that_cannot_remember_starts_afresh_and_stops_no_other() -> None:
+    failing, well, failures = Still(), Still(), []
+    failing.remembered = [0]
+    watcher = GivenObjects({"mug": failing, "pan": well})
+    watcher.remember(STANDING, FRAME_NS, lambda *told: failures.append(told))
+    assert [(name, str(error)) for name, error in failures] == [("mug", "a bug")]
+    assert (failing.remembered, well.remembered) == ([], [FRAME_NS])
+
+
+def test_a_cascade_that_cannot_remember_starts_afresh() -> None:
+    failing, failures = Scripted(ZeroDivisionError("a bug")), []
+    watcher = RecognisedObjects(failing, ["mug"])
+    watcher.remember(STANDING, FRAME_NS, lambda *told: failures.append(told))
+    assert (failing.restarts, len(failures)) == (1, 1)
+
+
+def test_trackers_take_the_effort_that_a_frame_is_worth() -> None:
+    still, cascade = Still(), Scripted(Recognition(np.array([0.9]), 0, HERE))
+    for watcher in (GivenObjects({"mug": still}), RecognisedObjects(cascade, ["mug"])):
+        watcher.see(STANDING, CameraFrame(FRAME_NS, effort=0.5), fail)
+    assert still.stepped == [(FRAME_NS, 0.5)]
+    assert cascade.effort == 0.5

@@ -24,6 +24,8 @@ STANDING_POSE = body_pose(STANDING, pelvis_basis(STANDING), STANDING_HEIGHT)[Non
 class AtPixel:
     """A tracker of an object whose box is a square around one pixel; it keeps what it saw."""
 
+    effort = 1.0
+
     def __init__(self, left: float) -> None:
         self.left = left
         self.confidence = 1.0
@@ -33,12 +35,14 @@ class AtPixel:
     def restart(self) -> None:
         self.seen: list[int] = []
         self.remembered: list[int] = []
+        self.efforts: list[float] = []
 
     def remember(self, body: object, time_ns: int) -> None:
         self.remembered.append(time_ns)
 
     def step_body(self, body: object, time_ns: int, image: object = None) -> Estimate:
         self.seen.append(time_ns)
+        self.efforts.append(self.effort)
         unturned = np.array([1.0, 0.0, 0.0, 0.0])
         return Estimate("tracked", self.confidence, np.zeros(3), unturned, np.eye(6))
 
@@ -63,6 +67,9 @@ def script(monkeypatch: pytest.MonkeyPatch, told: list) -> list[list[float]]:
 
         def restart(self) -> None:
             pass
+
+        def remember(self, time_ns: int, body: object) -> None:
+            told.append("remembered")
 
         def step(self, time_ns: int, body: object, seen: np.ndarray | None) -> np.ndarray:
             told.append(seen)
@@ -215,3 +222,21 @@ def test_a_second_without_images_is_told_as_no_image(script, told) -> None:
     support_all(trackers, None)
     run(cascade, 39, first=1)
     assert [one is None for one in told] == [False] * 31 + [True] * 9
+
+
+def test_a_frame_that_is_skipped_is_remembered_by_the_movement_and_all_trackers(
+    script: list, told: list
+) -> None:
+    cascade, trackers = new_cascade()
+    cascade.remember(STANDING, FRAME_NS)
+    cascade.remember(np.full((20, 3), np.nan), 2 * FRAME_NS)
+    assert told == ["remembered"]
+    assert [tracker.remembered for tracker in trackers] == [[FRAME_NS]] * ACTIONS
+
+
+def test_the_cascade_s_effort_is_its_trackers(script: list) -> None:
+    cascade, trackers = new_cascade()
+    cascade.effort = 0.5
+    script.append([0.7, 0.1, 0.1, 0.0])
+    cascade.step(STANDING, FRAME_NS)
+    assert trackers[0].efforts == [0.5]

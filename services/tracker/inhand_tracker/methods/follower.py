@@ -17,13 +17,17 @@ from inhand_tracker.sight.support import Support
 
 
 class Follower(ABC):
-    """Follows one object of one person, from when they came into view."""
+    """Follows one object of one person, from when they came into view.
+
+    ``effort`` is the share of its usual work that the next estimate may take.
+    """
 
     def __init__(self, reader: BodyReader) -> None:
         self._reader = reader
         self._estimate = LOST
         self._time_ns = 0
         self.support: Support | None = None
+        self.effort = 1.0
 
     @abstractmethod
     def estimate(self, body: Body, time_ns: int, image: Image | None) -> Estimate:
@@ -45,6 +49,11 @@ class Follower(ABC):
         self._time_ns = time_ns
         return self._estimate
 
+    def remember_joints(self, joints: Array, time_ns: int) -> None:
+        body = self._reader.read(joints)
+        if body is not None:
+            self.remember(body, time_ns)
+
     def _coast(self, time_ns: int) -> Estimate:
         predicted = aged(self._estimate, time_ns - self._time_ns)
         if predicted.state == "lost":
@@ -61,6 +70,7 @@ class FollowingTracker(ABC):
     def __init__(self, model: Model, *, left_handed: bool) -> None:
         self._mapping = model.mapping
         self._left_handed = left_handed
+        self.effort = 1.0
         self._outline = VisiblePoints(model.viewpoints.directions, model.viewpoints.boundaries)
         self._follower: Follower
 
@@ -78,10 +88,12 @@ class FollowingTracker(ABC):
         Missing joints are NaN. While the body is not seen the last pose stands for a second, as
         predicted; then the object is lost.
         """
+        self._follower.effort = self.effort
         return self._follower.step(joints, time_ns, image)
 
     def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
         """Take a frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
+        self._follower.effort = self.effort
         return self._follower.step_body(body, time_ns, image)
 
     @property
@@ -92,6 +104,10 @@ class FollowingTracker(ABC):
     def remember(self, body: Body, time_ns: int) -> None:
         """Take a frame in which the object is not looked for; what the body did counts later."""
         self._follower.remember(body, time_ns)
+
+    def remember_joints(self, joints: Array, time_ns: int) -> None:
+        """Take a frame, as ``remember``, of joints (20, 3) in the camera frame."""
+        self._follower.remember_joints(joints, time_ns)
 
     def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
         """Estimate the pose in a frame by itself; what is tracked is neither used nor changed."""

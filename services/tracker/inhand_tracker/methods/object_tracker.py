@@ -11,7 +11,13 @@ from inhand_tracker.sight.support import Support
 
 
 class ObjectTracker(Protocol):
-    """Follows one object of one person through the frames of one camera."""
+    """Follows one object of one person through the frames of one camera.
+
+    ``effort``, above 0 and up to 1, is the share of its usual work that a step may take: a method
+    that can do with less searches less, the others ignore it.
+    """
+
+    effort: float
 
     @property
     def support(self) -> Support | None:
@@ -31,6 +37,9 @@ class ObjectTracker(Protocol):
 
     def remember(self, body: Body, time_ns: int) -> None:
         """Take a frame in which the object is not looked for; what the body did counts later."""
+
+    def remember_joints(self, joints: Array, time_ns: int) -> None:
+        """Take a frame, as ``remember``, of joints (20, 3) in the camera frame."""
 
     def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
         """Estimate the pose in a frame by itself; what is tracked is neither used nor changed."""

@@ -58,8 +58,7 @@ class PeopleWatched:
         self, people: Sequence[Person], frame: CameraFrame, on_failure: OnFailure
     ) -> dict[int | None, list[WatchedObject]]:
         """Watch a frame: the objects of each watched person, by the person's number."""
-        choose = self._choose_one if self._most == 1 else self._choose_several
-        chosen = choose(people, frame.time_ns)
+        chosen = self._choose(people, frame.time_ns)
         if not chosen:
             return {None: [WatchedObject(name) for name in self.names]}
         return {
@@ -68,6 +67,17 @@ class PeopleWatched:
             )
             for number, person in chosen.items()
         }
+
+    def remember(self, people: Sequence[Person], time_ns: int, on_failure: OnFailure) -> None:
+        """Take a frame that is skipped: who is who, and what bodies did, counts later."""
+        for number, person in self._choose(people, time_ns).items():
+            if person is not None:
+                self._watchers[number].remember(joints_of(person), time_ns, on_failure)
+
+    def _choose(self, people: Sequence[Person], time_ns: int) -> dict[int | None, Person | None]:
+        """Choose who is watched, by their numbers; None for those out of view."""
+        choose = self._choose_one if self._most == 1 else self._choose_several
+        return choose(people, time_ns)
 
     def _choose_one(
         self, people: Sequence[Person], time_ns: int

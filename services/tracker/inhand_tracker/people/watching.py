@@ -18,11 +18,15 @@ OnFailure = Callable[[str, Exception], None]
 
 @dataclass(frozen=True)
 class CameraFrame:
-    """A frame of a camera without the people in it: when, the image and the camera, if known."""
+    """A frame of a camera without the people in it: when, the image and the camera, if known.
+
+    ``effort``, above 0 and up to 1, is the share of the trackers' usual work that it is worth.
+    """
 
     time_ns: int
     image: Image | None = None
     camera: Intrinsics | None = None
+    effort: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,10 @@ class Watcher(ABC):
         afresh, and is reported to ``on_failure``; it stops nothing else.
         """
 
+    @abstractmethod
+    def remember(self, joints: Array, time_ns: int, on_failure: OnFailure) -> None:
+        """Take a frame that is skipped: what the person's joints (20, 3) did counts later."""
+
 
 class GivenObjects(Watcher):
     """Watches objects that are all in use; each has its own tracker, by its name."""
@@ -80,10 +88,19 @@ class GivenObjects(Watcher):
                 objects.append(WatchedObject(name))
         return objects
 
+    def remember(self, joints: Array, time_ns: int, on_failure: OnFailure) -> None:
+        for name, tracker in self._trackers.items():
+            try:
+                tracker.remember_joints(joints, time_ns)
+            except Exception as error:  # noqa: BLE001 - one object must not stop the others
+                on_failure(name, error)
+                tracker.restart()
+
 
 def _track(
     name: str, tracker: ObjectTracker, joints: Array | None, frame: CameraFrame
 ) -> WatchedObject:
+    tracker.effort = frame.effort
     estimate = tracker.step(joints, frame.time_ns, frame.image)
     outline = None if frame.camera is None else tracker.outline(estimate, frame.camera)
     return WatchedObject(name, estimate, outline)
@@ -104,6 +121,7 @@ class RecognisedObjects(Watcher):
     def see(
         self, joints: Array | None, frame: CameraFrame, on_failure: OnFailure
     ) -> list[WatchedObject]:
+        self._cascade.effort = frame.effort
         try:
             recognition = self._cascade.step(joints, frame.time_ns, frame.image, frame.camera)
             outline = None
@@ -114,6 +132,13 @@ class RecognisedObjects(Watcher):
             self._cascade.restart()
             return [WatchedObject(name) for name in self.names]
         return self._objects_of(recognition, outline)
+
+    def remember(self, joints: Array, time_ns: int, on_failure: OnFailure) -> None:
+        try:
+            self._cascade.remember(joints, time_ns)
+        except Exception as error:  # noqa: BLE001 - one person must not stop the others
+            on_failure(", ".join(self.names), error)
+            self._cascade.restart()
 
     def _objects_of(self, recognition: Recognition, outline: Array | None) -> list[WatchedObject]:
         """All objects with their probabilities; the recognised one has a pose."""

@@ -27,7 +27,7 @@ from inhand_tracker.recognition.recognition import Recognition, outline_boxes, r
 
 class Cascade(ObjectRecogniser):
     """Follows whatever one person uses: ``trackers`` in the order of the recogniser's actions, each
-    of one object."""
+    of one object. ``effort`` is theirs, above 0 and up to 1."""
 
     def __init__(
         self,
@@ -42,6 +42,7 @@ class Cascade(ObjectRecogniser):
         self._movement = MovementRecogniser(recogniser.movements, recogniser.temper, parameters)
         self._looks = Looks(recogniser.presence, parameters)
         self._trackers = trackers
+        self.effort = 1.0
         self.restart()
 
     def restart(self) -> None:
@@ -54,6 +55,13 @@ class Cascade(ObjectRecogniser):
         self._used: int | None = None
         self._frames = 0
         self._seen_ns: int | None = None
+
+    def remember(self, joints: Array, time_ns: int) -> None:
+        """Take a frame in which nothing is looked for: joints (20, 3) in the camera frame."""
+        body = self._reader.read(joints)
+        if body is not None:
+            self._movement.remember(time_ns, body)
+            self._remember({}, body, time_ns)
 
     def outline(self, recognition: Recognition, camera: Intrinsics) -> Array | None:
         """Pixels (B, 2) of the boundary of the recognised object; None where none is."""
@@ -121,7 +129,11 @@ class Cascade(ObjectRecogniser):
     def _track(
         self, actions: Iterable[int], body: Body, time_ns: int, image: Image | None
     ) -> dict[int, Estimate]:
-        return {a: self._trackers[a].step_body(body, time_ns, image) for a in actions}
+        estimates = {}
+        for action in actions:
+            self._trackers[action].effort = self.effort
+            estimates[action] = self._trackers[action].step_body(body, time_ns, image)
+        return estimates
 
     def _look(self, actions: Iterable[int], time_ns: int) -> None:
         """Take what the image says for the objects that were tracked in it."""

@@ -69,6 +69,10 @@ class MovementRecogniser:
         over_time = self._filter.step(time_ns, evidence + seen)
         return reweighted(over_time, self._parameters.looks_at_once * seen)
 
+    def remember(self, time_ns: int, body: Body) -> None:
+        """Take a frame in which nothing is to be recognised; the movement counts later."""
+        self._window.add(time_ns, body.pose)
+
     def _movement_evidence(self, time_ns: int, body: Body, *, seeing: bool) -> Array:
         self._window.add(time_ns, body.pose)
         features = self._window.features()[None]
