@@ -55,6 +55,11 @@ def test_an_instance_gets_its_own_table_and_the_shared_ones(load: Load) -> None:
     assert settings.service == CameraSettings(source="simulator", options={"seed": 3})
 
 
+def test_the_folder_for_caches_is_no_setting(load: Load) -> None:
+    loaded = load("[capture.front]\nsource = 'replay'", INHAND_CACHE="/var/cache/inhand")
+    assert loaded.service.source == "replay"
+
+
 def test_the_environment_goes_over_the_file_value_by_value(load: Load) -> None:
     settings = load(
         '[capture.front]\nsource = "simulator"\nrate = 2\n',

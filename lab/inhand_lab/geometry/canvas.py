@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
+from inhand_runtime.compiled import njit
 from inhand_tracker.geometry.arrays import Bytes, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
@@ -75,7 +75,7 @@ def draw_triangles(
     )
 
 
-@numba.njit(cache=True, nogil=True, fastmath=True)
+@njit(cache=True, nogil=True, fastmath=True)
 def _draw(vertices, faces, shades, lens, label, colour, inverse_depth, labels):  # type: ignore[no-untyped-def]
     height, width = inverse_depth.shape
     fx, fy, cx, cy = lens
@@ -117,7 +117,7 @@ def _draw(vertices, faces, shades, lens, label, colour, inverse_depth, labels): 
                 share_c += step_c
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _to_millimetres(inverse_depth):  # type: ignore[no-untyped-def]
     height, width = inverse_depth.shape
     depth = np.zeros((height, width), np.uint16)

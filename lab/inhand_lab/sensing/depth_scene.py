@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
+from inhand_runtime.compiled import njit
 from inhand_tracker.geometry.arrays import Bytes, Singles
 
 from inhand_lab.sensing.noise_fields import FIELD, NoiseFields, Place, noise_fields
@@ -39,19 +39,19 @@ def fields_for(noise: StructuredLightNoise | StereoNoise) -> NoiseFields:
     return noise_fields(noise.grain, noise.lateral_deviation, noise.patch)
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def steps_at_one_metre(noise):  # type: ignore[no-untyped-def]
     """Disparity of what is one metre away, in steps."""
     return np.float32(noise.focal_length * noise.baseline * noise.steps_per_pixel)
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def looked_up(place, v, u):  # type: ignore[no-untyped-def]
     """Row and column of a field for a pixel of an image that begins at a place."""
     return (v + place[0]) & (FIELD - 1), (u + place[1]) & (FIELD - 1)
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def displaced(lateral, at, v, u, shape):  # type: ignore[no-untyped-def]
     """The pixel of the image that a pixel's depth is taken from, by the field's value there."""
     near_v = min(max(v + lateral[at[0], at[1], 0], 0), shape[0] - 1)
@@ -59,7 +59,7 @@ def displaced(lateral, at, v, u, shape):  # type: ignore[no-untyped-def]
     return near_v, near_u
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def steepest(inverse_depth, v, u):  # type: ignore[no-untyped-def]
     """Largest change of inverse depth to the neighbour before and above."""
     inverse = inverse_depth[v, u]
@@ -68,7 +68,7 @@ def steepest(inverse_depth, v, u):  # type: ignore[no-untyped-def]
     return max(abs(beside - inverse), abs(above - inverse))
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def mixed(axial, lasting_at, fresh_at, fresh_share):  # type: ignore[no-untyped-def]
     """Noise of unit deviation, of which a share is new in every frame."""
     fresh, lasting = np.float32(fresh_share), np.float32(np.sqrt(1.0 - fresh_share**2))

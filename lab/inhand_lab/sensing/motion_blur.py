@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
+from inhand_runtime.compiled import njit
 from inhand_tracker.geometry.arrays import Array, Bytes, Flags, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
@@ -117,7 +117,7 @@ class _Part:
         draw_triangles(canvas, intrinsics, placed, self.faces[chosen], self.shades, 1)
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _add(total, colour):  # type: ignore[no-untyped-def]
     height, width, _ = colour.shape
     for v in range(height):
@@ -126,7 +126,7 @@ def _add(total, colour):  # type: ignore[no-untyped-def]
                 total[v, u, channel] += colour[v, u, channel]
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _divide(total, count, colour):  # type: ignore[no-untyped-def]
     height, width, _ = colour.shape
     for v in range(height):

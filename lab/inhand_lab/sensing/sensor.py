@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numba
 import numpy as np
+from inhand_runtime.compiled import njit
 from inhand_tracker.geometry.arrays import Array, Bytes, Singles
 from numpy.typing import NDArray
 
@@ -78,7 +78,7 @@ def _levels(gains: Array, noise: ColourNoise) -> tuple[Singles, Singles]:
     return (means + 0.5).astype(np.float32), deviations.astype(np.float32)
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _sense_colour(colour, unit_noise, means, deviations, row, column):  # type: ignore[no-untyped-def]
     height, width, _ = colour.shape
     noisy = np.empty_like(colour)

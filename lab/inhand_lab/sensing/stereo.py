@@ -11,8 +11,8 @@ surfaces are is assumed: walls and floors often, clothes rarely.
 
 from __future__ import annotations
 
-import numba
 import numpy as np
+from inhand_runtime.compiled import njit
 from numpy.typing import NDArray
 
 from inhand_lab.sensing.depth_scene import (
@@ -34,7 +34,7 @@ def measure_stereo_depth(scene: DepthScene, noise: StereoNoise) -> NDArray[np.ui
     return np.asarray(_measure(scene, fields_for(noise), noise))
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _measure(scene, fields, noise):  # type: ignore[no-untyped-def]
     inverse_depth = scene.inverse_depth
     height, width = inverse_depth.shape
@@ -69,7 +69,7 @@ def _measure(scene, fields, noise):  # type: ignore[no-untyped-def]
     return depth
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _bare(patches, label, lasting, pixel, person, noise):  # type: ignore[no-untyped-def]
     """Whether a pixel's surface is without texture: patches of clothing go with the person."""
     if label == ROOM:
@@ -79,7 +79,7 @@ def _bare(patches, label, lasting, pixel, person, noise):  # type: ignore[no-unt
     return patches[(pixel[0] - person[0]) & mask, (pixel[1] - person[1]) & mask] < share
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _middle(labels):  # type: ignore[no-untyped-def]
     """The person's mean pixel, row and column; the first where nobody is seen."""
     height, width = labels.shape
@@ -93,7 +93,7 @@ def _middle(labels):  # type: ignore[no-untyped-def]
     return (rows // count, columns // count) if count else (0, 0)
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _find_hidden(inverse_depth, parallax, hidden):  # type: ignore[no-untyped-def]
     """Find pixels of a row that something nearer hides from the right or the left camera."""
     width = len(inverse_depth)
@@ -109,7 +109,7 @@ def _find_hidden(inverse_depth, parallax, hidden):  # type: ignore[no-untyped-de
         seen_to = max(seen_to, place)
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _find_drawn(colour, window, faint, drawn):  # type: ignore[no-untyped-def]
     """Find pixels of a row in a window of enough changes of brightness to be matched."""
     width = len(drawn)
@@ -121,7 +121,7 @@ def _find_drawn(colour, window, faint, drawn):  # type: ignore[no-untyped-def]
             drawn[u] = changes > faint * window
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _change(colour, u):  # type: ignore[no-untyped-def]
     """Change of green from the pixel before in a row, 0 outside it."""
     if u < 1 or u >= len(colour):

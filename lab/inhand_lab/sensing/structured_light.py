@@ -12,8 +12,8 @@ at an edge, on what returns no light, and outside 0.5 to 8 m.
 
 from __future__ import annotations
 
-import numba
 import numpy as np
+from inhand_runtime.compiled import njit
 from numpy.typing import NDArray
 
 from inhand_lab.sensing.depth_scene import (
@@ -35,7 +35,7 @@ def measure_structured_light_depth(
     return np.asarray(_measure(scene, fields_for(noise), noise))
 
 
-@numba.njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)
 def _measure(scene, fields, noise):  # type: ignore[no-untyped-def]
     inverse_depth = scene.inverse_depth
     height, width = inverse_depth.shape

@@ -2,7 +2,7 @@
 
 import cv2
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 from numpy.typing import NDArray
 
 from inhand_tracker.geometry.arrays import Array, Bytes, Singles

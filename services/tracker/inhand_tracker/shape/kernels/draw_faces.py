@@ -1,7 +1,7 @@
 """Faces of a mesh to pixels: a z-buffer of depths."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array, Indices
 

@@ -1,7 +1,7 @@
 """How thick a silhouette is at points of its outline."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array, Flags
 

@@ -3,7 +3,7 @@
 from typing import Any, TypeAlias
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 from numpy.typing import NDArray
 
 from inhand_tracker.geometry.arrays import Array, Indices

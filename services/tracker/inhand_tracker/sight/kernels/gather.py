@@ -8,7 +8,7 @@ the distances of the surface from the measured depth along its normals.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array, Flags, Singles
 from inhand_tracker.sight.kernels import projection

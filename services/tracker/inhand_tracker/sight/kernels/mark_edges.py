@@ -1,7 +1,7 @@
 """Gradients of an image to edges of four directions."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 from numpy.typing import NDArray
 
 from inhand_tracker.geometry.arrays import Bytes

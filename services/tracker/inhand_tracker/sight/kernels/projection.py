@@ -8,7 +8,7 @@ counted from the image's corner, so that a pixel's column is the whole part of u
 from typing import Any, TypeAlias
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 from numpy.typing import NDArray
 
 from inhand_tracker.geometry.camera import NEAREST_M

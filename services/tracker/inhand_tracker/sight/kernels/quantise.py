@@ -1,7 +1,7 @@
 """Colours to bins of a histogram."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 from numpy.typing import NDArray
 
 from inhand_tracker.geometry.arrays import Bytes

@@ -1,7 +1,7 @@
 """Bins of pixels to scores for one object."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 from numpy.typing import NDArray
 
 from inhand_tracker.geometry.arrays import Bytes, Singles

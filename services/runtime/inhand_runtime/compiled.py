@@ -1,0 +1,137 @@
+"""Compiled code (Numba), kept from one start to the next in a folder that the process may write.
+
+Every kernel is made with ``njit`` of this module, and nothing else imports Numba. By itself Numba
+keeps what it compiles beside the source, where an installed package cannot be written, and compiles
+again only when the file of the function itself changed: not when another file did, of which the
+kernel calls a function or holds a constant.
+"""
+
+import hashlib
+import inspect
+import logging
+import numbers
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any
+
+import numba
+import numpy as np
+from numba.core.dispatcher import Dispatcher
+
+from inhand_runtime.cache_folder import cache_folder
+
+log = logging.getLogger(__name__)
+
+_NUMBA_SETTINGS: Any = numba.config  # its stubs know none of them
+
+OUR_PACKAGES = "inhand"
+"""Beginning of the names of the packages whose sources decide what is compiled again."""
+
+
+class KernelLocator:
+    """Says where Numba keeps one kernel, and by which stamp it knows that it is still right.
+
+    Numba calls it by name, as ``NUMBA_CACHE_LOCATOR_CLASSES`` describes.
+    """
+
+    def __init__(self, kernel: FunctionType, file: str) -> None:
+        module = sys.modules[kernel.__module__]
+        place = hashlib.sha256(str(Path(file).resolve().parent).encode()).hexdigest()[:16]
+        self._folder = FOLDER / f"{kernel.__module__.rpartition('.')[0]}-{place}"
+        self._stamp = stamp_of(module)
+        self._line = kernel.__code__.co_firstlineno
+
+    @classmethod
+    def from_function(cls, kernel: FunctionType, file: str) -> "KernelLocator":
+        """Make the locator of a kernel that stands in a file."""
+        return cls(kernel, file)
+
+    def ensure_cache_path(self) -> None:
+        """Make the folder."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+
+    def get_cache_path(self) -> str:
+        """Return the folder of the kernel's files."""
+        return str(self._folder)
+
+    def get_source_stamp(self) -> str:
+        """Return what changes when the kernel must be compiled again."""
+        return self._stamp
+
+    def get_disambiguator(self) -> str:
+        """Return what tells functions of one name and file apart."""
+        return str(self._line)
+
+
+LOCATOR = f"{__name__}.{KernelLocator.__name__}"
+
+
+def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Compile a function with Numba's ``njit`` and these options of its; ``cache=True`` is the
+    folder of this module's, where that can be written."""
+
+    def compiled(function: Callable[..., Any]) -> Any:
+        usual = _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES
+        _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES = LOCATOR
+        try:
+            return numba.njit(**options | {"cache": options.get("cache", False) and KEPT})(function)
+        finally:
+            _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES = usual
+
+    return compiled
+
+
+def stamp_of(module: ModuleType) -> str:
+    """A digest of all that kernels of a module are compiled from.
+
+    That is the module's source, the constants that it holds, and the same of each module of which
+    it holds a kernel. What it imports stands above its kernels, and so is known by then.
+    """
+    digest = hashlib.sha256()
+    for part in _parts(module, set()):
+        digest.update(part)
+    return digest.hexdigest()
+
+
+def _parts(module: ModuleType, seen: set[str]) -> Iterator[bytes]:
+    seen.add(module.__name__)
+    yield Path(inspect.getfile(module)).read_bytes()
+    for name, value in sorted(vars(module).items()):
+        if isinstance(value, Dispatcher):
+            value = sys.modules[value.__module__]
+        if isinstance(value, ModuleType):
+            if value.__name__.startswith(OUR_PACKAGES) and value.__name__ not in seen:
+                yield from _parts(value, seen)
+        elif isinstance(value, np.ndarray):
+            yield name.encode() + value.tobytes()
+        elif _is_plain(value) and not name.startswith("__"):
+            yield f"{name} = {value!r}".encode()
+
+
+def _is_plain(value: Any) -> bool:
+    if isinstance(value, tuple):
+        return all(map(_is_plain, value))
+    return isinstance(value, numbers.Number | np.generic | str)
+
+
+def _can_be_kept(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        log.warning(
+            "cannot write %s: %s; what is compiled is lost at the end, and the next start takes as "
+            "long: name a folder that can be written in INHAND_CACHE",
+            folder,
+            error.strerror,
+        )
+        return False
+    return True
+
+
+# Who sets NUMBA_CACHE_DIR has chosen already.
+FOLDER = Path(_NUMBA_SETTINGS.CACHE_DIR or cache_folder() / "compiled")
+KEPT = _can_be_kept(FOLDER)

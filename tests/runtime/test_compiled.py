@@ -1,0 +1,146 @@
+"""What is compiled is kept where a process may write, and for as long as its sources stay."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from inhand_runtime.cache_folder import cache_folder
+
+ROOT = Path(__file__).parents[2]
+
+PARTS = """
+from inhand_runtime.compiled import njit
+FACTOR = 3.0
+@njit(cache=True, inline="always")
+def doubled(value):
+    return 2.0 * value
+"""
+KERNEL = """
+from inhand_runtime.compiled import njit
+from inhand_small.parts import FACTOR, doubled
+@njit(cache=True)
+def kernel(value):
+    return FACTOR * doubled(value) + below(value)
+@njit(cache=True)
+def below(value):
+    return 0.0 * value
+"""
+CALL = """
+import json, sys
+from numba.core.dispatcher import Dispatcher
+{call}
+kernels = {{id(v): v for m in list(sys.modules.values()) for v in vars(m).values()
+            if isinstance(v, Dispatcher)}}
+counts = {{name: sum(sum(getattr(k.stats, name).values()) for k in kernels.values())
+          for name in ("cache_hits", "cache_misses")}}
+print(json.dumps({{"result": result, **counts}}))
+"""
+SMALL = CALL.format(call="from inhand_small.kernel import kernel; result = kernel(1.0)")
+FRAME = CALL.format(
+    call="""
+from inhand_lab.world.simulation import simulate
+from inhand_lab.sensing.cameras import KINECT
+import inhand_lab
+simulation = simulate("drinkFromMug", 0, 0, 2, KINECT)
+simulation.prepare()
+simulation.render(0)
+result = inhand_lab.__file__
+"""
+)
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Path:
+    """A package of two modules whose kernel gives 6."""
+    package = tmp_path / "site/inhand_small"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("")
+    (package / "parts.py").write_text(PARTS)
+    (package / "kernel.py").write_text(KERNEL)
+    return package
+
+
+def _start(site: Path, cache: Path | str, code: str = SMALL) -> tuple[dict[str, Any], str]:
+    env = os.environ | {"INHAND_CACHE": str(cache), "PYTHONPATH": str(site)}
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    answer: dict[str, Any] = json.loads(done.stdout)
+    return answer, done.stderr
+
+
+@pytest.mark.long
+def test_a_second_start_compiles_nothing_and_writes_nothing_beside_the_source(
+    small: Path, tmp_path: Path
+) -> None:
+    first, _ = _start(small.parent, tmp_path / "cache")
+    assert first["result"] == 6.0
+    assert first["cache_hits"] == 0
+    second, _ = _start(small.parent, tmp_path / "cache")
+    assert second["result"] == 6.0
+    assert (second["cache_hits"], second["cache_misses"]) == (1, 0)
+    assert not list(small.rglob("*.nb?"))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("before", "after"), [("3.0", "4.0"), ("2.0", "5.0")])
+def test_a_change_of_another_file_that_a_kernel_takes_from_is_seen(
+    small: Path, tmp_path: Path, before: str, after: str
+) -> None:
+    _start(small.parent, tmp_path / "cache")
+    parts = small / "parts.py"
+    times = parts.stat()
+    parts.write_text(PARTS.replace(before, after))
+    os.utime(parts, ns=(times.st_atime_ns, times.st_mtime_ns + 10**9))  # so that Python reads it
+    changed, _ = _start(small.parent, tmp_path / "cache")
+    assert changed["result"] == 6.0 * float(after) / float(before)
+
+
+@pytest.mark.long
+def test_a_folder_that_cannot_be_written_is_one_warning(small: Path) -> None:
+    answer, said = _start(small.parent, "/proc/nowhere")
+    assert answer["result"] == 6.0
+    assert said.count("\n") == 1
+    assert said.startswith("cannot write /proc/nowhere/compiled: ")
+    assert said.endswith("name a folder that can be written in INHAND_CACHE\n")
+    assert not list(small.rglob("*.nb?"))
+
+
+@pytest.mark.long
+def test_an_installation_starts_from_the_cache_and_is_not_written(tmp_path: Path) -> None:
+    site = tmp_path / "site"
+    for package in ("schemas", "services/runtime", "services/tracker", "lab"):
+        for folder in (ROOT / package).glob("inhand_*"):
+            shutil.copytree(
+                folder, site / folder.name, ignore=shutil.ignore_patterns("__pycache__")
+            )
+    first, _ = _start(site, tmp_path / "cache", FRAME)
+    assert first["result"] == str(site / "inhand_lab/__init__.py")
+    assert first["cache_misses"] > 0
+    second, _ = _start(site, tmp_path / "cache", FRAME)
+    assert second["cache_misses"] == 0
+    assert second["cache_hits"] > 0
+    assert not list(site.rglob("*.nb?"))
+
+
+@pytest.mark.parametrize(
+    ("given", "folder"),
+    [
+        ({"INHAND_CACHE": "/a", "CACHE_DIRECTORY": "/b"}, "/a"),
+        ({"CACHE_DIRECTORY": "/b:/c", "XDG_CACHE_HOME": "/d"}, "/b"),
+        ({"XDG_CACHE_HOME": "/d"}, "/d/inhand"),
+        ({"HOME": "/home/somebody"}, "/home/somebody/.cache/inhand"),
+    ],
+)
+def test_the_folder_is_what_was_chosen_else_the_services_else_the_users(
+    monkeypatch: pytest.MonkeyPatch, given: dict[str, str], folder: str
+) -> None:
+    for name in ("INHAND_CACHE", "CACHE_DIRECTORY", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in given.items():
+        monkeypatch.setenv(name, value)
+    assert cache_folder() == Path(folder)
