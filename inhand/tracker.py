@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 
 from inhand_runtime.entry import daemon_main
-from inhand_tracker.service import TrackerSettings, check, run
+from inhand_tracker.loading import check
+from inhand_tracker.service import run
+from inhand_tracker.settings import TrackerSettings
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

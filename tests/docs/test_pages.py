@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from inhand_capture.service import CaptureSettings
 from inhand_recorder.service import RecorderSettings
-from inhand_tracker.service import TrackerSettings
+from inhand_tracker.settings import TrackerSettings
 from running_rig import ROOT, RunningRig
 
 PAGES = sorted((ROOT / "docs").glob("*.md"))

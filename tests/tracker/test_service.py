@@ -15,13 +15,15 @@ from inhand_schemas.keys import Site
 from inhand_schemas.messages import CameraInfo, Message, ObjectPose, Person, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS, AnyTopic
 from inhand_tracker.body import skeleton as body
+from inhand_tracker.loading import load_models, new_trackers
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.model.model import ModelError
 from inhand_tracker.model.model_file import save_model
 from inhand_tracker.people.watching import GivenObjects
-from inhand_tracker.service import TrackerService, TrackerSettings, load_models, new_trackers
+from inhand_tracker.service import TrackerService
+from inhand_tracker.settings import TrackerSettings
 from people import FRAME_NS, unseen_wave, wave_model
 from pydantic import ValidationError
 

@@ -7,10 +7,11 @@ import pytest
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import load_settings
 from inhand_tracker import load_model
+from inhand_tracker.loading import check
 from inhand_tracker.model.model_file import save_model
 from inhand_tracker.people.watching import Watcher
 from inhand_tracker.recognition.recogniser_file import load_recogniser
-from inhand_tracker.service import TrackerSettings, check
+from inhand_tracker.settings import TrackerSettings
 from people import wave_model
 
 CAMERA = '[capture.front]\nsource = "simulator"\n'

@@ -3,42 +3,24 @@
 import logging
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
-from inhand_runtime.errors import SettingsError
 from inhand_runtime.inbox import Received
 from inhand_runtime.session import Publisher
-from inhand_runtime.settings import FilePath, Section, Settings
-from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.settings import Settings
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import CameraInfo, Name, ObjectPose, RgbdFrame, Skeletons
+from inhand_schemas.messages import CameraInfo, ObjectPose, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
-from pydantic import Field, PositiveInt
 
 from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.methods.object_tracker import ObjectTracker
-from inhand_tracker.methods.registry import (
-    DEFAULT_METHOD,
-    METHODS,
-    AnyTerm,
-    MethodName,
-    new_tracker,
-)
-from inhand_tracker.model.model import Model, ModelError
-from inhand_tracker.model.model_file import load_model
+from inhand_tracker.loading import check, load_watcher
+from inhand_tracker.methods.registry import METHODS
 from inhand_tracker.people.following import PeopleWatched, worth_publishing
-from inhand_tracker.people.watching import (
-    CameraFrame,
-    GivenObjects,
-    RecognisedObjects,
-    WatchedObject,
-    Watcher,
-)
-from inhand_tracker.recognition.cascade import Cascade
-from inhand_tracker.recognition.recogniser_file import load_recogniser
+from inhand_tracker.people.watching import CameraFrame, WatchedObject, Watcher
+from inhand_tracker.settings import TrackerSettings
 from inhand_tracker.wire.conversion import image_of
 from inhand_tracker.wire.pairing import Pairing
 from inhand_tracker.wire.pictures import PictureWatch
@@ -53,25 +35,6 @@ MOST_WAITING = 30
 better off with what comes next."""
 FAILURE_LASTS_S = 5.0
 """Seconds for which an object that could not be tracked is a trouble of now."""
-
-
-class TrackerSettings(Section):
-    """``[tracker.NAME]``: objects of one person or several, seen by one camera.
-
-    With a ``recogniser`` each person uses at most one of the models' objects, whichever is
-    recognised; without one every object is in use.
-    """
-
-    model: FilePath | None = None
-    models: tuple[FilePath, ...] = ()
-    camera: Name = "camera"
-    method: MethodName = DEFAULT_METHOD
-    left_handed: bool = False
-    likelihood: tuple[AnyTerm, ...] | None = None
-    particles: PositiveInt | None = None
-    recogniser: FilePath | None = None
-    people: PositiveInt = 1
-    seed: int = Field(default=0, ge=0)
 
 
 class TrackerService:
@@ -207,94 +170,3 @@ def run(settings: Settings[TrackerSettings]) -> None:
             return loaded.pop() if loaded else load_watcher(settings.instance, chosen)
 
         TrackerService(daemon, chosen, new_watcher).run()
-
-
-def check(settings: Settings[TrackerSettings]) -> Watcher:
-    """Check all that can be known before a start, and load it; raises SettingsError."""
-    _require_camera(settings)
-    _require_files(settings)
-    try:
-        return load_watcher(settings.instance, settings.service)
-    except ModelError as error:
-        raise SettingsError(f"[tracker.{settings.instance}]: {error}") from None
-
-
-def _require_camera(settings: Settings[TrackerSettings]) -> None:
-    """Raise SettingsError for a camera that no table names.
-
-    A file without cameras, and one that joins other machines, follow cameras of elsewhere.
-    """
-    cameras = settings.origin.instances.get("capture", ())
-    camera, zenoh = settings.service.camera, settings.zenoh
-    if not cameras or camera in cameras or zenoh.connect or zenoh.listen:
-        return
-    raise settings.origin.refusal(
-        "camera", f"there is no table [capture.{camera}]" + suggestion(camera, cameras)
-    )
-
-
-def _require_files(settings: Settings[TrackerSettings]) -> None:
-    """Raise SettingsError for a file that is not there."""
-    chosen = settings.service
-    models = (("models", file) for file in chosen.models)
-    for setting, file in (("model", chosen.model), *models, ("recogniser", chosen.recogniser)):
-        if file is not None and not file.exists():
-            reason = f"{file} does not exist: check the path; `inhand train` makes it"
-            raise settings.origin.refusal(setting, reason)
-
-
-def load_watcher(instance: str, settings: TrackerSettings) -> Watcher:
-    """Load all that it takes to watch one person; raises SettingsError or ModelError."""
-    models = load_models(instance, settings)
-    trackers = new_trackers(models, settings)
-    if settings.recogniser is None:
-        return GivenObjects(trackers)
-    recogniser = load_recogniser(settings.recogniser)
-    by_action = {model.interaction: name for name, model in models.items()}
-    if missing := [action for action in recogniser.actions if action not in by_action]:
-        raise SettingsError(
-            f"[tracker.{instance}] recognises {missing[0]!r} and has no model of it: add it to "
-            "models, or train the recogniser without it"
-        )
-    objects = [by_action[action] for action in recogniser.actions]
-    cascade = Cascade(
-        recogniser, [trackers[name] for name in objects], left_handed=settings.left_handed
-    )
-    return RecognisedObjects(cascade, objects)
-
-
-def load_models(instance: str, settings: TrackerSettings) -> dict[str, Model]:
-    """Load the models that are named, by object; raises SettingsError or ModelError."""
-    where = f"[tracker.{instance}]"
-    if settings.model is not None and settings.models:
-        raise SettingsError(f'{where} has model and models: put all in models = ["FILE", …]')
-    files = settings.models if settings.model is None else (settings.model,)
-    if not files:
-        raise SettingsError(
-            f'{where} names no model: write model = "FILE"; `inhand train` makes one'
-        )
-    models: dict[str, Model] = {}
-    for file in files:
-        model = load_model(file)
-        name = model.shape.name
-        if name in models:
-            raise SettingsError(f"{where} has two models of {name!r}: an object has one pose key")
-        models[name] = model
-    return models
-
-
-def new_trackers(
-    models: Mapping[str, Model], settings: TrackerSettings
-) -> dict[str, ObjectTracker]:
-    """Make a tracker for each model, by object; raises SettingsError or ModelError."""
-    return {
-        name: new_tracker(
-            model,
-            settings.method,
-            left_handed=settings.left_handed,
-            terms=settings.likelihood,
-            particles=settings.particles,
-            seed=settings.seed,
-        )
-        for name, model in models.items()
-    }

@@ -11,6 +11,7 @@ from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.recognition.cascade_learning import learn_cascade
 from inhand_runtime.errors import SettingsError
+from inhand_tracker.loading import load_watcher
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from inhand_tracker.model.model import Model, ModelError
@@ -21,7 +22,7 @@ from inhand_tracker.recognition.darby2012.cascade import Cascade2012
 from inhand_tracker.recognition.recogniser import Recogniser
 from inhand_tracker.recognition.recogniser_file import load_recogniser, save_recogniser
 from inhand_tracker.recognition.recognition import Recognition
-from inhand_tracker.service import TrackerSettings, load_watcher
+from inhand_tracker.settings import TrackerSettings
 from inhand_tracker.wire.conversion import joints_of
 
 from inhand.__main__ import main

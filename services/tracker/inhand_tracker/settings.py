@@ -1,0 +1,26 @@
+"""What a settings file says of a tracker."""
+
+from inhand_runtime.settings import FilePath, Section
+from inhand_schemas.messages import Name
+from pydantic import Field, PositiveInt
+
+from inhand_tracker.methods.registry import DEFAULT_METHOD, AnyTerm, MethodName
+
+
+class TrackerSettings(Section):
+    """``[tracker.NAME]``: objects of one person or several, seen by one camera.
+
+    With a ``recogniser`` each person uses at most one of the models' objects, whichever is
+    recognised; without one every object is in use.
+    """
+
+    model: FilePath | None = None
+    models: tuple[FilePath, ...] = ()
+    camera: Name = "camera"
+    method: MethodName = DEFAULT_METHOD
+    left_handed: bool = False
+    likelihood: tuple[AnyTerm, ...] | None = None
+    particles: PositiveInt | None = None
+    recogniser: FilePath | None = None
+    people: PositiveInt = 1
+    seed: int = Field(default=0, ge=0)
