@@ -28,6 +28,8 @@ from inhand.looking import (
 from inhand.results import listing, write_json
 
 SECONDS = 5.0
+LATE_MS = 100.0
+"""Milliseconds after its capture from which on a message is said to come late."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -49,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise nothing_heard(look.site, arguments.seconds)
     if living:
         output().print(_table(living))
-    for line in _left_unused(living):
+    for line in (*_left_unused(living), *_late(living)):
         print(line)
     for line in problems:
         print(f"WRONG: {line}")
@@ -109,6 +111,24 @@ def _unused(health: Health) -> dict[str, int]:
         for key, topic in health.topics.items()
         if topic.dropped or topic.malformed or topic.lost
     }
+
+
+def _late(living: dict[Instance, Heard | None]) -> list[str]:
+    """One line for each key that came late to an instance, and for each that cannot keep up."""
+    lines = []
+    for instance, heard in living.items():
+        if heard is None:
+            continue
+        who, health = " ".join(instance), heard.health
+        for key, topic in health.topics.items():
+            if topic.late_ms is not None and topic.late_ms >= LATE_MS:
+                lines.append(f"{who}, {short_key(key)}: up to {topic.late_ms:.0f} ms after capture")
+        if health.effort is not None and health.effort < 1.0:
+            lines.append(
+                f"{who}: does {100.0 * health.effort:.0f} % of its usual work in a frame, to keep "
+                "up with its camera"
+            )
+    return lines
 
 
 def _left_unused(living: dict[Instance, Heard | None]) -> list[str]:

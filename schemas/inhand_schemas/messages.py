@@ -240,7 +240,8 @@ class TopicHealth(Struct, frozen=True, kw_only=True):
     """The traffic of one key at one instance since it started.
 
     ``dropped`` reached the instance and was not used, ``lost`` is what the numbers of those that
-    came show as missing.
+    came show as missing. ``late_ms`` is the longest time, in milliseconds, from capture to arrival
+    since the last report.
     """
 
     published: Count = 0
@@ -249,9 +250,10 @@ class TopicHealth(Struct, frozen=True, kw_only=True):
     malformed: Count = 0
     rate_hz: NonNegative = 0.0
     lost: Count = 0
+    late_ms: NonNegative | None = None
 
     def __post_init__(self) -> None:
-        _require_finite("rate", (self.rate_hz,))
+        _require_finite("rate", (self.rate_hz, self.late_ms or 0.0))
 
 
 class Latency(Struct, frozen=True, kw_only=True):
@@ -268,7 +270,9 @@ class Health(Message, frozen=True, kw_only=True):
     """How an instance does, once a second.
 
     ``troubles`` is what is wrong now, ``last_error`` what went wrong last; ``loop_age_s`` is how
-    long ago the instance's main loop last came round, in seconds.
+    long ago the instance's main loop last came round, in seconds. ``latency_ms`` is the age of what
+    it has just published, or handled. ``effort`` is the share of its usual work that a tracker does
+    in a frame, so that frames do not come faster than they are tracked.
     """
 
     service: Name
@@ -281,6 +285,8 @@ class Health(Message, frozen=True, kw_only=True):
     last_error: Text | None = None
     troubles: Annotated[tuple[Text, ...], Meta(max_length=64)] = ()
     loop_age_s: NonNegative = 0.0
+    effort: Fraction | None = None
 
     def __post_init__(self) -> None:
         _require_finite("time", (self.uptime_s, self.loop_age_s))
+        _require_finite("effort", (self.effort or 0.0,))

@@ -2,20 +2,19 @@
 
 import json
 import signal
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, load_dataset
-from inhand_lab.datasets.observations import Observation, observe
+from inhand_lab.datasets.observations import observe
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.training.model_training import train
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import ObjectPose
 from inhand_schemas.topics import POSE, RGBD, SKELETONS
-from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS, new_tracker
 from inhand_tracker.model.model import Model
 from inhand_tracker.model.model_file import load_model, save_model
@@ -42,23 +41,17 @@ def drinkers(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
     return simulated(tmp_path_factory.mktemp("drinkers") / "people")
 
 
-SLOWLY = 0.15
-
-
 def tracked_live(
-    rig: RunningRig, recording: Path, *models: Path, left_handed: bool = False, rate: float = 1.0
+    rig: RunningRig, recording: Path, *models: Path, left_handed: bool = False
 ) -> Path:
-    """Replay a recording through capture, tracker and recorder; returns what was recorded.
-
-    A tracker that is behind leaves frames with pictures out: a ``rate`` below 1 lets a busy machine
-    keep up.
-    """
+    """Replay a recording through capture, tracker and recorder, with every frame tracked; returns
+    what was recorded."""
     out = rig.folder / "out"
     frames = sum(1 for _ in read_recording(recording, streams=(SKELETONS.stream,)))
     rig.configure(
         f'[capture.front]\nsource = "replay"\nwait_for_reader_s = 60\n'
-        f'[capture.front.options]\nfile = "{recording}"\nrate = {rate}\n'
-        f'[tracker.follower]\ncamera = "front"\nseed = {SEED}\n'
+        f'[capture.front.options]\nfile = "{recording}"\n'
+        f'[tracker.follower]\ncamera = "front"\nseed = {SEED}\nevery_frame = true\n'
         f"models = {json.dumps([str(model) for model in models])}\n"
         f"left_handed = {json.dumps(left_handed)}\n"
         f'[recorder.disk]\nfolder = "{out}"'
@@ -117,29 +110,9 @@ def test_live_poses_equal_the_offline_evaluations(
 
 @pytest.mark.long
 def test_images_that_come_live_weigh_as_they_do_offline(rig: RunningRig, tmp_path: Path) -> None:
-    """A frame whose image comes late goes on without one, as the first of all does: live poses are
-    near those of an evaluation with every image, and far from those of one without any."""
     dataset = simulated(tmp_path / "people", images=True, frames=60)
     tested = next(entry for entry in dataset.entries if entry.handedness == "right")
-    model = train(dataset, [entry for entry in dataset.entries if entry != tested])
-    save_model(model, rig.folder / "mug.model")
-    live = recorded_poses(
-        tracked_live(rig, dataset.path(tested), rig.folder / "mug.model", rate=SLOWLY)
-    )
-    frames = load_frames(dataset.path(tested), tested.object)
-    seeing, blind = (
-        translations_by_time(
-            new_tracker(model, DEFAULT_METHOD, seed=SEED),
-            observe(dataset.path(tested), frames, METHODS[DEFAULT_METHOD].needs(terms)),
-        )
-        for terms in (METHODS[DEFAULT_METHOD].usual_terms, ())
-    )
-    times = [pose.time_ns for pose in live]
-    told = np.array([pose.camera_from_object.translation for pose in live])
-    off = np.linalg.norm(told - [seeing[time] for time in times], axis=1)
-    worth = [np.linalg.norm(seeing[time] - blind[time]) for time in times]
-    assert np.median(worth) > 0.01
-    assert np.median(off) < 0.5 * np.median(worth)
+    assert_live_equals_offline(rig, dataset, tested, ["mug"])
 
 
 @pytest.mark.long
@@ -171,7 +144,7 @@ def test_a_real_kinect_tennis_swing_with_depth_loses_no_frame(
     assert main(["import", "utd-mhad", str(trial), str(tmp_path / "tennis")]) == 0
     tennis = load_dataset(tmp_path / "tennis")
     (entry,) = tennis.entries
-    recorded = tracked_live(rig, tennis.path(entry), tmp_path / "mug.model", rate=SLOWLY)
+    recorded = tracked_live(rig, tennis.path(entry), tmp_path / "mug.model")
     counts = dict.fromkeys((SKELETONS.stream, RGBD.stream, POSE.stream), 0)
     for one in read_recording(recorded, streams=counts):
         counts[one.topic.stream] += 1
@@ -230,9 +203,3 @@ def test_a_mesh_without_marked_vertices_stops_training_with_one_line(
     (line,) = capsys.readouterr().err.splitlines()
     assert "marks 0 vertices" in line
     assert "marked_vertices = [[x, y, z]" in line
-
-
-def translations_by_time(
-    tracker: ObjectTracker, observations: Iterable[Observation]
-) -> dict[int, np.ndarray]:
-    return {seen.time_ns: seen.show(tracker).translation for seen in observations}

@@ -76,6 +76,30 @@ def test_a_sender_of_ever_new_keys_cannot_make_health_grow_without_bound() -> No
     assert HEALTH.decode(HEALTH.encode(report)) == report
 
 
+def test_how_late_a_key_s_messages_arrived_is_the_longest_since_the_last_report() -> None:
+    board = HealthBoard("tracker", "first")
+    for late_ms in (3.0, 250.0, 20.0):
+        board.received("a")
+        board.arrived("a", round(late_ms * 1e6))
+    assert board.report().topics["a"].late_ms == 250.0
+    assert board.report().topics["a"].late_ms is None
+
+
+@pytest.mark.parametrize("late_ns", [-1_000_000_000, 3_600_000_000_000])
+def test_times_of_another_clock_or_a_replay_are_no_lateness(late_ns: int) -> None:
+    board = HealthBoard("tracker", "first")
+    board.received("a")
+    board.arrived("a", late_ns)
+    assert board.report().topics["a"].late_ms is None
+
+
+def test_an_instance_says_its_effort_where_it_has_one() -> None:
+    board = HealthBoard("tracker", "first")
+    assert board.report().effort is None
+    board.effort = 0.25
+    assert board.report().effort == 0.25
+
+
 class Clock:
     """Seconds that pass when a test says so."""
 

@@ -19,6 +19,7 @@ from inhand_schemas.messages import (
     Skeletons,
     TopicHealth,
 )
+from msgspec.structs import replace
 
 TIME_NS = 1_753_000_000_123_456_789
 POSE = Pose((0.125, -0.25, 1.5), (math.sqrt(0.5), 0.0, math.sqrt(0.5), 0.0))
@@ -93,14 +94,21 @@ EXAMPLES: tuple[Message, ...] = (
         resident_bytes=200_000_000,
         topics={
             "inhand/@v1/rig/rgbd/kitchen": TopicHealth(
-                published=1, received=360, dropped=2, malformed=3, rate_hz=30.0, lost=4
+                published=1, received=360, dropped=2, malformed=3, rate_hz=30.0, lost=4, late_ms=7.5
             )
         },
         latency_ms=Latency(p50=12.5, p99=40.0),
         last_error="none yet",
         troubles=("no camera info of kitchen yet",),
         loop_age_s=0.25,
+        effort=0.75,
     ),
+)
+LATE = replace(
+    next(message for message in EXAMPLES if isinstance(message, Health)),
+    sequence=10,
+    topics={"inhand/@v1/rig/rgbd/kitchen": TopicHealth(received=360, late_ms=7.5)},
+    effort=0.75,
 )
 
 TRUTH = ObjectPose(
@@ -119,6 +127,7 @@ TRUTH = ObjectPose(
 
 GOLDEN_MESSAGES: dict[str, Message] = {
     **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
+    "Health.v1.late": LATE,
     "ObjectPose.v1.truth": TRUTH,
 }
 """By the stem of their golden files: one of each type, and one more for fields it grew by."""

@@ -172,6 +172,7 @@ healths = st.builds(
             malformed=counts,
             rate_hz=non_negative,
             lost=counts,
+            late_ms=st.none() | non_negative,
         ),
         max_size=3,
     ),
@@ -179,6 +180,7 @@ healths = st.builds(
     last_error=st.none() | texts,
     troubles=st.lists(texts, max_size=3).map(tuple),
     loop_age_s=non_negative,
+    effort=st.none() | fractions,
 )
 
 MESSAGES = {

@@ -1,7 +1,6 @@
 """The daemon's own work, with a daemon that only remembers; the real one is in tests/e2e."""
 
 import logging
-import threading
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -9,11 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inhand_runtime.errors import SettingsError
-from inhand_runtime.health import HealthBoard
 from inhand_runtime.pixels import encode_colour, encode_depth
-from inhand_schemas.keys import Site
 from inhand_schemas.messages import CameraInfo, Message, ObjectPose, Person, RgbdFrame, Skeletons
-from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS, AnyTopic
+from inhand_schemas.topics import INFO, RGBD, SKELETONS, AnyTopic
 from inhand_tracker.body import skeleton as body
 from inhand_tracker.loading import load_models, new_trackers
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
@@ -26,8 +23,8 @@ from inhand_tracker.service import TrackerService
 from inhand_tracker.settings import TrackerSettings
 from people import FRAME_NS, unseen_wave, wave_model
 from pydantic import ValidationError
+from simulated_daemon import SimulatedDaemon
 
-SITE = Site()
 PUBLISHED = "gd-fallback"
 FRAMES = 5
 INFO_MESSAGE = CameraInfo(
@@ -35,57 +32,14 @@ INFO_MESSAGE = CameraInfo(
 )
 
 
-class Sample:
-    """A message as it came."""
-
-    def __init__(self, topic: AnyTopic, message: Message) -> None:
-        self.key = topic.key(SITE, "camera")
-        self.message = message
+Sent = tuple[AnyTopic, Message]
 
 
-class Rig:
-    """What a service needs of its daemon; ends when all was read."""
-
-    def __init__(self, *messages: tuple[AnyTopic, Message]) -> None:
-        self.site = SITE
-        self.stop = threading.Event()
-        self.health = HealthBoard("tracker", "test")
-        self.inbox = self
-        self.subscribed: list[AnyTopic] = []
-        self._sequence = -1
-        self.poses: dict[str, list[ObjectPose]] = {}
-        self._samples = [Sample(topic, message) for topic, message in messages]
-
-    def publisher(self, topic: AnyTopic, name: str) -> "Publications":
-        assert topic is POSE
-        return Publications(self.poses.setdefault(name, []))
-
-    def subscribe(self, topic: AnyTopic, name: str, samples: int | None = None) -> None:
-        assert name == "camera"
-        self.subscribed.append(topic)
-
-    def receive(self, timeout_s: float) -> Sample | None:
-        """One frame after the other comes, each only when the service waits for it."""
-        if not self._samples:
-            if timeout_s > 0.0:
-                self.stop.set()
-            return None
-        if timeout_s == 0.0 and self._samples[0].message.sequence != self._sequence:
-            return None
-        sample = self._samples.pop(0)
-        self._sequence = sample.message.sequence
-        return sample
-
-    def decode(self, _topic: AnyTopic, sample: Sample) -> Message:
-        return sample.message
-
-
-class Publications:
-    def __init__(self, messages: list[ObjectPose]) -> None:
-        self._messages = messages
-
-    def put(self, message: ObjectPose) -> None:
-        self._messages.append(message)
+def rig(*messages: Sent) -> SimulatedDaemon:
+    """A daemon to which frames come one after the other, each with all that is of it."""
+    return SimulatedDaemon(
+        *((message.sequence * FRAME_NS / 1e9, topic, message) for topic, message in messages)
+    )
 
 
 class Broken(ParticleTracker):
@@ -113,15 +67,16 @@ def somebody(joints: np.ndarray) -> Person:
     )
 
 
-def skeletons() -> list[tuple[AnyTopic, Message]]:
+def skeletons() -> list[Sent]:
     return [
         (SKELETONS, Skeletons(sequence=n, time_ns=(n + 1) * FRAME_NS, people=(somebody(joints),)))
         for n, joints in enumerate(unseen_wave(FRAMES))
     ]
 
 
-def run(rig: Rig, trackers: dict[str, ParticleTracker], **settings: object) -> None:
-    TrackerService(rig, TrackerSettings(**settings), lambda: GivenObjects(trackers)).run()
+def run(daemon: SimulatedDaemon, trackers: dict[str, ParticleTracker], **settings: object) -> None:
+    chosen = TrackerSettings(**settings)
+    TrackerService(daemon, chosen, lambda: GivenObjects(trackers), daemon.clock).run()
 
 
 def places(poses: Sequence[ObjectPose]) -> list[tuple[float, float, float]]:
@@ -129,7 +84,7 @@ def places(poses: Sequence[ObjectPose]) -> list[tuple[float, float, float]]:
 
 
 def test_each_object_is_tracked_on_its_own_key_as_if_it_were_alone() -> None:
-    together, alone = Rig(*skeletons()), Rig(*skeletons())
+    together, alone = rig(*skeletons()), rig(*skeletons())
     run(together, {"mug": tracker(), "pan": tracker()})
     run(alone, {"mug": tracker()})
     assert set(together.poses) == {"mug", "pan"}
@@ -142,26 +97,26 @@ def test_each_object_is_tracked_on_its_own_key_as_if_it_were_alone() -> None:
 def test_an_object_that_fails_is_lost_for_a_frame_and_stops_no_other(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    rig = Rig(*skeletons())
+    daemon = rig(*skeletons())
     with caplog.at_level(logging.ERROR):
-        run(rig, {"mug": tracker(Broken), "pan": tracker()})
-    assert [pose.state for pose in rig.poses["mug"]] == ["tracked", "lost", *["tracked"] * 3]
-    assert [pose.state for pose in rig.poses["pan"]] == ["tracked"] * FRAMES
-    assert rig.health.report().last_error == "cannot track mug: ZeroDivisionError: a bug"
+        run(daemon, {"mug": tracker(Broken), "pan": tracker()})
+    assert [pose.state for pose in daemon.poses["mug"]] == ["tracked", "lost", *["tracked"] * 3]
+    assert [pose.state for pose in daemon.poses["pan"]] == ["tracked"] * FRAMES
+    assert daemon.health.report().last_error == "cannot track mug: ZeroDivisionError: a bug"
     assert len(caplog.records) == 1
 
 
 def test_a_failure_that_lasts_is_told_once(caplog: pytest.LogCaptureFixture) -> None:
     always = tracker()
     always.step = lambda *_: 1 / 0
-    rig = Rig(*skeletons())
+    daemon = rig(*skeletons())
     with caplog.at_level(logging.ERROR):
-        run(rig, {"mug": always})
-    assert [pose.state for pose in rig.poses["mug"]] == ["lost"] * FRAMES
+        run(daemon, {"mug": always})
+    assert [pose.state for pose in daemon.poses["mug"]] == ["lost"] * FRAMES
     assert len(caplog.records) == 1
 
 
-def frames(**pixels: object) -> list[tuple[AnyTopic, Message]]:
+def frames(**pixels: object) -> list[Sent]:
     return [
         (RGBD, RgbdFrame(sequence=n, time_ns=(n + 1) * FRAME_NS, **pixels)) for n in range(FRAMES)
     ]
@@ -180,7 +135,7 @@ def seen(monkeypatch: pytest.MonkeyPatch, **settings: object) -> list[tuple[bool
         "step",
         lambda self, j, t, image: images.append(image) or step(self, j, t, image),
     )
-    run(Rig((INFO, INFO_MESSAGE), *both), {"mug": tracker(), "pan": tracker()}, **settings)
+    run(rig((INFO, INFO_MESSAGE), *both), {"mug": tracker(), "pan": tracker()}, **settings)
     assert images[::2] == images[1::2]
     assert all(first is second for first, second in zip(images[::2], images[1::2], strict=True))
     return [
@@ -216,7 +171,7 @@ def test_pixels_are_decoded_once_a_frame_and_only_those_that_weigh(
 
 
 def test_pixels_are_not_asked_for_when_none_weigh() -> None:
-    blind, seeing = Rig(), Rig()
+    blind, seeing = rig(), rig()
     run(blind, {"mug": tracker()}, likelihood=())
     run(seeing, {"mug": tracker()})
     assert RGBD not in blind.subscribed

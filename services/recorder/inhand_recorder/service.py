@@ -201,6 +201,8 @@ class _Recorder:
             return
         counted = entry.sequence if topic.gaps_are_losses else None
         self._daemon.health.received(entry.key, counted)
+        if not entry.kept:
+            self._daemon.health.arrived(entry.key, entry.received_ns - entry.captured_ns)
         if counted is not None:
             self._gaps.count(entry.key, counted)
         self._infos.note(topic.stream, parsed.name, time.monotonic())

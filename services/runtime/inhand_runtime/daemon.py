@@ -121,6 +121,8 @@ class Daemon:
             self.health.malformed(sample.key, error)
             return None
         self.health.received(sample.key, message.sequence if topic.gaps_are_losses else None)
+        if not topic.delivery.kept:
+            self.health.arrived(sample.key, sample.received_ns - message.time_ns)
         return message
 
 

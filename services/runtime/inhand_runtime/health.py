@@ -16,6 +16,8 @@ log = logging.getLogger(__name__)
 WINDOW_S = 10.0
 """Seconds over which latencies are reported: what is older says nothing of how things go."""
 LATENCY_SAMPLES = 1000
+LONGEST_LATENCY_MS = 60_000.0
+"""Milliseconds since capture from which on a capture's time is another clock's, or a replay's."""
 MOST_KEYS = 1024
 OTHER_KEYS = "(other keys)"
 MOST_TROUBLES = 64
@@ -40,6 +42,7 @@ class HealthBoard:
         self, service: str, instance: str, now: Callable[[], float] = time.monotonic
     ) -> None:
         self.state: ServiceState = "starting"
+        self.effort: float | None = None
         self._service = service
         self._instance = instance
         self._now = now
@@ -51,6 +54,7 @@ class HealthBoard:
         self._dropped: Counter[str] = Counter()
         self._malformed: Counter[str] = Counter()
         self._lost: Counter[str] = Counter()
+        self._latest_ms: dict[str, float] = {}
         self._sequences: dict[str, int] = {}
         self._keys: set[str] = set()
         self._kinds_logged: set[tuple[str, str]] = set()
@@ -80,9 +84,9 @@ class HealthBoard:
             if 0 < missing < FARTHEST_GAP:
                 self._lost[key] += missing
 
-    def dropped(self, key: str) -> None:
-        """Count a message that the inbox had no room for, or that was skipped as too old."""
-        self._count(self._dropped, key)
+    def dropped(self, key: str, count: int = 1) -> None:
+        """Count messages that the inbox had no room for, or that were skipped as too old."""
+        self._count(self._dropped, key, count)
 
     def drops(self) -> dict[str, int]:
         """How many messages of each key the inbox had no room for so far."""
@@ -103,10 +107,18 @@ class HealthBoard:
         if first:
             log.warning("%s (further ones are only counted)", text)
 
+    def arrived(self, key: str, late_ns: int) -> None:
+        """Note how long after its capture a message arrived; a clock that jumped says nothing."""
+        late_ms = late_ns / 1e6
+        if 0 <= late_ms < LONGEST_LATENCY_MS:
+            with self._lock:
+                key = key if key in self._keys else OTHER_KEYS
+                self._latest_ms[key] = max(late_ms, self._latest_ms.get(key, 0.0))
+
     def latency(self, captured_ns: int) -> None:
         """Note the time from capture to now; a clock that jumped says nothing."""
         latency_ms = (time.time_ns() - captured_ns) / 1e6
-        if 0 <= latency_ms < 60_000:
+        if 0 <= latency_ms < LONGEST_LATENCY_MS:
             with self._lock:
                 self._latencies_ms.append((self._now(), latency_ms))
 
@@ -144,13 +156,13 @@ class HealthBoard:
         if name in self._troubles or len(self._troubles) < MOST_TROUBLES:
             self._troubles[name] = _Trouble(text, ends_at)
 
-    def _count(self, counter: Counter[str], key: str) -> str:
+    def _count(self, counter: Counter[str], key: str, count: int = 1) -> str:
         """Count under the key, or under one for all others where a sender invents ever new ones."""
         with self._lock:
             if key not in self._keys and len(self._keys) >= MOST_KEYS:
                 key = OTHER_KEYS
             self._keys.add(key)
-            counter[key] += 1
+            counter[key] += count
         return key
 
     def report(self) -> Health:
@@ -167,9 +179,11 @@ class HealthBoard:
                     malformed=self._malformed[key],
                     lost=self._lost[key],
                     rate_hz=(totals[key] - self._last_totals[key]) / elapsed,
+                    late_ms=self._latest_ms.get(key),
                 )
                 for key in sorted(self._keys)
             }
+            self._latest_ms = {}
             self._last_totals, self._last_report = totals, now
             self._sequence += 1
             troubles = self._current_troubles(now)
@@ -183,6 +197,7 @@ class HealthBoard:
                 resident_bytes=self._process.memory_info().rss,
                 topics=topics,
                 latency_ms=self._current_latency(now),
+                effort=self.effort,
                 last_error=self._last_error,
                 troubles=troubles,
                 loop_age_s=max(now - self._came_round, 0.0),

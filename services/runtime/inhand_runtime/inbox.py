@@ -1,21 +1,27 @@
 """Bounded hand-over from Zenoh's threads to a daemon's own."""
 
 import threading
+import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 UNBOUNDED = 1 << 62
 
 
 @dataclass(frozen=True)
 class Received:
-    """A sample as it came, not yet decoded."""
+    """A sample as it came, not yet decoded.
+
+    It came at ``received_ns`` by the calendar, and at ``arrived``, in seconds, by the clock that
+    nobody sets.
+    """
 
     key: str
     payload: bytes
     encoding: str
     received_ns: int
+    arrived: float = field(default_factory=time.monotonic, compare=False)
 
 
 class Inbox:

@@ -2,8 +2,7 @@
 
 import logging
 import time
-from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
@@ -16,23 +15,26 @@ from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
 
 from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.live.effort import Effort, after_step
+from inhand_tracker.live.moments import Moments
+from inhand_tracker.live.pictures import PictureWatch
 from inhand_tracker.loading import check, load_watcher
 from inhand_tracker.methods.registry import METHODS
 from inhand_tracker.people.following import PeopleWatched, worth_publishing
 from inhand_tracker.people.watching import CameraFrame, WatchedObject, Watcher
 from inhand_tracker.settings import TrackerSettings
 from inhand_tracker.wire.conversion import image_of
-from inhand_tracker.wire.pairing import Pairing
-from inhand_tracker.wire.pictures import PictureWatch
 from inhand_tracker.wire.poses import SourceFrame, image_box, object_pose_message
 
 log = logging.getLogger(__name__)
 
-POLL_S = 0.01
-"""Seconds that a look for new messages lasts: skeletons that wait for pixels go on as often."""
-MOST_WAITING = 30
-"""Number of skeletons that may wait to be tracked: a second at 30 Hz. Whoever is later than that is
-better off with what comes next."""
+POLL_S = 0.1
+"""Seconds that a look for new messages lasts at the most: the daemon stops within them."""
+MOST_WAITING = 256
+"""Number of skeletons that may arrive during one step and still count for the body's movement."""
+QUEUE_BYTES = 512 * 2**20
+"""Bytes of skeletons, and of frames, that may wait where every frame matters; beyond them the
+oldest are dropped."""
 FAILURE_LASTS_S = 5.0
 """Seconds for which an object that could not be tracked is a trouble of now."""
 
@@ -41,9 +43,14 @@ class TrackerService:
     """Tracks one frame after the other, from messages to messages; each person has a watcher."""
 
     def __init__(
-        self, daemon: Daemon, settings: TrackerSettings, new_watcher: Callable[[], Watcher]
+        self,
+        daemon: Daemon,
+        settings: TrackerSettings,
+        new_watcher: Callable[[], Watcher],
+        now: Callable[[], float] = time.monotonic,
     ) -> None:
         self._daemon = daemon
+        self._now = now
         self._camera = settings.camera
         method = METHODS[settings.method]
         terms = method.usual_terms if settings.likelihood is None else settings.likelihood
@@ -52,15 +59,16 @@ class TrackerService:
         self._publishers: dict[str, Publisher[ObjectPose]] = {
             name: daemon.publisher(POSE, name) for name in self._people.names
         }
-        self._unused: Counter[str] = Counter()
         self._infos = InfoWatch(daemon.health)
         self._pictures = PictureWatch(daemon.health)
-        self._pairing: Pairing[Skeletons, RgbdFrame] = Pairing()
+        self._every = settings.every_frame
+        self._moments: Moments[Skeletons, RgbdFrame] = Moments(
+            pixels=bool(self._needs), every=self._every
+        )
+        self._unused_frames = 0
+        self._effort = Effort()
         self._info: CameraInfo | None = None
-        daemon.subscribe(INFO, settings.camera)
-        daemon.subscribe(SKELETONS, settings.camera, samples=MOST_WAITING)
-        if self._needs:
-            daemon.subscribe(RGBD, settings.camera)
+        self._subscribe(settings.camera)
         self._keys = {
             topic: topic.key(daemon.site, settings.camera) for topic in (INFO, RGBD, SKELETONS)
         }
@@ -69,31 +77,56 @@ class TrackerService:
         """Track until the daemon stops."""
         self._daemon.health.state = "running"
         while not self._daemon.stop.is_set():
-            self._take_all()
-            pair = self._pairing.pop(time.monotonic())
-            self._count_what_is_unused()
-            if pair is not None:
-                self._track(*pair)
+            self._take_what_came()
+            moment = self._moments.next(self._now())
+            if moment is not None:
+                self._skip(moment.skipped)
+                began = self._now()
+                self._track(moment.skeleton, moment.frame)
+                if moment.skeleton.people:
+                    self._adapt(self._now() - began)
 
-    def _take_all(self) -> None:
-        """Take what has come by now: only then is it known what is the newest."""
-        sample = self._daemon.receive(0.0 if self._pairing.ready(time.monotonic()) else POLL_S)
+    def _subscribe(self, camera: str) -> None:
+        """Let messages arrive: the newest, or all as far as there is memory."""
+        waiting: dict[str, int] = {"samples": MOST_WAITING}
+        frames: dict[str, int] = {}
+        if self._every:
+            waiting = frames = {"samples": QUEUE_BYTES, "size": QUEUE_BYTES}
+        self._daemon.subscribe(INFO, camera)
+        self._daemon.subscribe(SKELETONS, camera, **waiting)
+        if self._needs:
+            self._daemon.subscribe(RGBD, camera, **frames)
+
+    def _take_what_came(self) -> None:
+        """Take what has come by now, since only then it is known what is the newest; where every
+        frame matters, as much as the next moment needs, and let the rest wait in the inbox."""
+        wait_s = self._moments.wait_s(self._now())
+        sample = self._daemon.receive(min(wait_s, POLL_S))
         while sample is not None:
             self._take(sample)
+            if self._every and self._moments.decided():
+                return
             sample = self._daemon.receive(0.0)
 
-    def _count_what_is_unused(self) -> None:
-        for topic, count in (
-            (SKELETONS, self._pairing.dropped_skeletons),
-            (RGBD, self._pairing.unused_frames),
-        ):
-            for _ in range(count - self._unused[topic.stream]):
-                self._daemon.health.dropped(self._keys[topic])
-            self._unused[topic.stream] = count
+    def _skip(self, skipped: Sequence[Skeletons]) -> None:
+        """Count moments that are skipped, and remember what bodies did in them."""
+        for skeletons in skipped:
+            self._people.remember(skeletons.people, skeletons.time_ns, self._note_failure)
+        unused = self._moments.unused_frames - self._unused_frames
+        self._unused_frames += unused
+        for topic, count in ((SKELETONS, len(skipped)), (RGBD, unused)):
+            if count:
+                self._daemon.health.dropped(self._keys[topic], count)
+
+    def _adapt(self, step_s: float) -> None:
+        """Fit the next steps into the camera's period, unless every frame takes its time."""
+        if not self._every:
+            self._effort = after_step(self._effort, step_s, self._moments.period_s)
+        self._daemon.health.effort = self._effort.share
 
     def _take(self, sample: Received) -> None:
         """Keep what a message brings until its frame is tracked."""
-        now = time.monotonic()
+        now = self._now()
         self._infos.check(now)
         if sample.key == self._keys[INFO]:
             if (info := self._daemon.decode(INFO, sample)) is not None:
@@ -102,9 +135,9 @@ class TrackerService:
         elif sample.key == self._keys[RGBD]:
             if (frame := self._daemon.decode(RGBD, sample)) is not None:
                 self._infos.note(RGBD.stream, self._camera, now)
-                self._pairing.add_frame(frame.sequence, frame, now)
+                self._moments.add_frame(frame.sequence, frame, sample.arrived)
         elif (skeletons := self._daemon.decode(SKELETONS, sample)) is not None:
-            self._pairing.add_skeleton(skeletons.sequence, skeletons, now)
+            self._moments.add_skeleton(skeletons.sequence, skeletons, sample.arrived)
 
     def _track(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> None:
         """Track one frame: decode, watch each person, publish."""
@@ -119,7 +152,8 @@ class TrackerService:
 
     def _decoded(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> CameraFrame:
         camera = None if self._info is None else intrinsics_of(self._info)
-        return CameraFrame(skeletons.time_ns, self._image(pixels), camera)
+        image = self._image(pixels)
+        return CameraFrame(skeletons.time_ns, image, camera, self._effort.share)
 
     def _image(self, frame: RgbdFrame | None) -> Image | None:
         if frame is None or self._info is None:

@@ -11,7 +11,8 @@ class TrackerSettings(Section):
     """``[tracker.NAME]``: objects of one person or several, seen by one camera.
 
     With a ``recogniser`` each person uses at most one of the models' objects, whichever is
-    recognised; without one every object is in use.
+    recognised; without one every object is in use. ``every_frame`` is for work where each frame
+    matters more than being on time: none is skipped, and each takes the tracker's whole effort.
     """
 
     model: FilePath | None = None
@@ -23,4 +24,5 @@ class TrackerSettings(Section):
     particles: PositiveInt | None = None
     recogniser: FilePath | None = None
     people: PositiveInt = 1
+    every_frame: bool = False
     seed: int = Field(default=0, ge=0)

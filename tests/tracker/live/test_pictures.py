@@ -1,7 +1,7 @@
 """A tracker that makes its poses without pictures says so."""
 
 from inhand_runtime.health import HealthBoard
-from inhand_tracker.wire.pictures import POSES, PictureWatch
+from inhand_tracker.live.pictures import POSES, PictureWatch
 
 
 def running() -> tuple[HealthBoard, PictureWatch]:

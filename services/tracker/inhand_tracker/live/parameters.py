@@ -1,0 +1,55 @@
+"""Every number by which a live tracker keeps on time."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class MomentsParameters:
+    """How long skeletons wait for their pixels, and how a camera's period is measured.
+
+    All were set by hand, for cameras of 5 to 90 frames a second; `tests/scenes/overload.py` shows
+    how old poses become with them.
+    """
+
+    flowing_s: float = 1.0
+    """Seconds since a camera's first skeleton, or its last frame, during which its pixels are taken
+    to flow, and are waited for."""
+    patience: float = 0.9
+    """Periods of the camera that a skeleton waits for its frame at the most. What is left of two
+    periods, after the one until the next skeleton, is for the skeleton's own way."""
+    frames_kept: int = 4
+    """Number of frames that are kept for skeletons that arrive later."""
+    first_period_s: float = 1.0 / 30.0
+    """Seconds from one skeleton to the next that a camera is taken to have before it is known."""
+    intervals: int = 30
+    """Number of intervals between skeletons whose mean is the camera's period: the mean, since
+    skeletons may arrive in bursts."""
+    fewest_intervals: int = 8
+    """Number of intervals from which on their mean is taken."""
+    longest_interval_s: float = 2.0
+    """Seconds between skeletons from which on the camera has paused, and is measured anew."""
+
+
+@dataclass(frozen=True)
+class EffortParameters:
+    """How a tracker fits its work into the camera's period. Loads are times of steps in periods.
+
+    The effort stays where the load lies between ``least_load`` and ``most_load``; elsewhere it
+    changes by the ratio of ``aim_load`` to the load. Whatever part of a step the effort does not
+    touch, that never overshoots the aim, so it comes to rest.
+    """
+
+    steps: int = 15
+    """Number of steps whose median load decides: half a second at 30 Hz."""
+    most_load: float = 0.85
+    """Load above which the effort falls."""
+    aim_load: float = 0.7
+    """Load that a change aims at."""
+    least_load: float = 0.5
+    """Load below which the effort rises again."""
+    least: float = 0.1
+    """The least effort: with less a tracker would look at its image in vain."""
+
+
+DEFAULT_MOMENTS = MomentsParameters()
+DEFAULT_EFFORT = EffortParameters()
