@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise nothing_heard(look.site, arguments.seconds)
     if living:
         output().print(_table(living))
-    for line in (*_left_unused(living), *_late(living)):
+    for line in (*_left_unused(living), *late_lines(living)):
         print(line)
     for line in problems:
         print(f"WRONG: {line}")
@@ -113,7 +113,7 @@ def _unused(health: Health) -> dict[str, int]:
     }
 
 
-def _late(living: dict[Instance, Heard | None]) -> list[str]:
+def late_lines(living: dict[Instance, Heard | None]) -> list[str]:
     """One line for each key that came late to an instance, and for each that cannot keep up."""
     lines = []
     for instance, heard in living.items():

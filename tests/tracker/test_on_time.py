@@ -146,7 +146,7 @@ def test_no_pose_is_older_than_two_periods_and_a_step_whatever_a_step_costs(
     ]
     assert daemon.dropped(SKELETONS) == len(tracker.remembered)
     pictures = sum(seen for _, seen, _ in tracker.steps)
-    assert 0 <= 60 - len(lost) - pictures - daemon.dropped(RGBD) <= DEFAULT_MOMENTS.frames_kept
+    assert pictures + daemon.dropped(RGBD) == 60 - len(lost)
 
 
 def test_bodies_of_skipped_frames_are_remembered_in_their_order_before_the_next_step() -> None:
@@ -217,6 +217,22 @@ def test_where_every_frame_matters_each_is_tracked_with_its_picture_and_the_whol
     ]
     assert tracker.remembered == []
     assert daemon.health.drops() == {}
+
+
+@pytest.mark.parametrize("every", [False, True])
+def test_what_waits_when_the_daemon_stops_is_counted(every: bool) -> None:
+    tracker = Slow(1.0, 0.0)
+    step = tracker.step
+
+    def last(joints: object, time_ns: int, image: Image | None) -> Estimate:
+        estimate = step(joints, time_ns, image)
+        tracker._daemon.stop.set()
+        return estimate
+
+    tracker.step = last
+    daemon = track(Camera(20), tracker, every_frame=every)
+    assert len(tracker.steps) == 1
+    assert daemon.dropped(SKELETONS) == daemon.dropped(RGBD) == 19
 
 
 def test_frames_that_come_late_from_a_slow_network_keep_their_true_time_of_capture() -> None:

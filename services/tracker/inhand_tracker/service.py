@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
-from inhand_runtime.inbox import Received
+from inhand_runtime.inbox import UNBOUNDED, Received
 from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
 from inhand_schemas.errors import MessageError
@@ -85,13 +85,14 @@ class TrackerService:
                 self._track(moment.skeleton, moment.frame)
                 if moment.skeleton.people:
                     self._adapt(self._now() - began)
+        self._leave_what_waits()
 
     def _subscribe(self, camera: str) -> None:
         """Let messages arrive: the newest, or all as far as there is memory."""
         waiting: dict[str, int] = {"samples": MOST_WAITING}
         frames: dict[str, int] = {}
         if self._every:
-            waiting = frames = {"samples": QUEUE_BYTES, "size": QUEUE_BYTES}
+            waiting = frames = {"samples": UNBOUNDED, "size": QUEUE_BYTES}
         self._daemon.subscribe(INFO, camera)
         self._daemon.subscribe(SKELETONS, camera, **waiting)
         if self._needs:
@@ -112,9 +113,19 @@ class TrackerService:
         """Count moments that are skipped, and remember what bodies did in them."""
         for skeletons in skipped:
             self._people.remember(skeletons.people, skeletons.time_ns, self._note_failure)
-        unused = self._moments.unused_frames - self._unused_frames
-        self._unused_frames += unused
-        for topic, count in ((SKELETONS, len(skipped)), (RGBD, unused)):
+        self._count_unused(len(skipped))
+
+    def _leave_what_waits(self) -> None:
+        """Count, at the end, what came and will not be tracked any more."""
+        while (sample := self._daemon.receive(0.0)) is not None:
+            self._take(sample)
+        self._count_unused(self._moments.leave())
+
+    def _count_unused(self, skeletons: int) -> None:
+        """Count skeletons that are not tracked, and what frames went unused since the last time."""
+        frames = self._moments.unused_frames - self._unused_frames
+        self._unused_frames += frames
+        for topic, count in ((SKELETONS, skeletons), (RGBD, frames)):
             if count:
                 self._daemon.health.dropped(self._keys[topic], count)
 

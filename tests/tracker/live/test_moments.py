@@ -255,4 +255,12 @@ def test_every_skeleton_and_frame_is_used_or_counted(
     assert sorted(used + skipped) == list(range(len(happenings)))
     assert used == sorted(used)
     assert not (every and skipped)
-    assert frames - FRAMES_KEPT <= with_frame + moments.unused_frames <= frames
+    assert moments.leave() == 0
+    assert with_frame + moments.unused_frames == frames
+
+
+def test_what_waits_at_the_end_is_given_up_and_counted() -> None:
+    moments = behind(3)
+    assert moments.leave() == 3
+    assert moments.unused_frames == 3
+    assert moments.next(START) is None

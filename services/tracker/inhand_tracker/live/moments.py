@@ -110,6 +110,14 @@ class Moments(Generic[SkeletonT, FrameT]):
         skipped = tuple(one.skeleton for one in before)
         return Moment(chosen.skeleton, self._take_frame(chosen), skipped)
 
+    def leave(self) -> int:
+        """Give up all that waits, at the end; returns the number of skeletons."""
+        left = len(self._waiting)
+        self._waiting.clear()
+        for sequence in list(self._frames):
+            self._leave_frame(sequence)
+        return left
+
     def _ready_at(self, one: _Waiting[SkeletonT]) -> float:
         """The time from which on a skeleton waits no more."""
         frame_may_come = one.start == self._start and one.sequence > self._newest_frame
