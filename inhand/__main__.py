@@ -12,6 +12,7 @@ from typing import Any
 
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED, INTERRUPTED, WRONG_USAGE
+from inhand_runtime.extras import missing_extra
 from inhand_runtime.writable import require_writable_file, require_writable_folder
 
 DAEMONS = {
@@ -56,6 +57,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except InhandError as error:
         print(f"inhand {chosen.verb}: {error}", file=sys.stderr)
         return WRONG_USAGE if isinstance(error, SettingsError) else FAILED
+    except ModuleNotFoundError as error:
+        if (needs := missing_extra(error)) is None:
+            raise
+        print(f"inhand {chosen.verb}: {needs}", file=sys.stderr)
+        return WRONG_USAGE
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:

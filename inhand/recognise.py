@@ -9,7 +9,6 @@ from inhand_lab.datasets.dataset import Dataset, load_dataset
 from inhand_lab.datasets.recorded_frames import has_images
 from inhand_lab.recognition.adaptive_comparison import Environments
 from inhand_lab.recognition.cascade_learning import labelled_entries
-from inhand_lab.recognition.confusion_picture import draw_confusions
 from inhand_lab.recognition.false_objects import FalseObjectProtocol
 from inhand_lab.recognition.false_objects_by_movement import count_by_movement
 from inhand_lab.recognition.false_objects_with_images import count_with_images
@@ -128,6 +127,9 @@ def _alone(dataset: Dataset, report: Path | None) -> tuple[dict[str, Any], list[
         alone = recognise_alone(dataset, usable_cores(), advance)
     summary = alone.summary()
     if report is not None:
+        # Matplotlib is loaded only where a report is drawn.
+        from inhand_lab.recognition.confusion_picture import draw_confusions
+
         draw_confusions(_confusions(alone), alone.actions, report / "confusion.png")
     rows = tuple((key.replace("_", " "), f"{value:.1f}") for key, value in summary.items())
     grid = Grid("recognised right, people left out", ("of", "%"), rows)

@@ -20,8 +20,8 @@ from typing import TypeVar
 import numpy as np
 from inhand_tracker.body.skeleton import body_pose, part_lengths, pelvis_basis, stature
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.mapping.body_pose_index import BodyPoseIndex
 from inhand_tracker.mapping.learning import LabelledSequence, learn
-from inhand_tracker.mapping.mapping import BodyPoseIndex
 from inhand_tracker.model.model import Model
 from inhand_tracker.model.model_file import load_model, save_model
 from inhand_tracker.shape.viewpoints import find_viewpoints

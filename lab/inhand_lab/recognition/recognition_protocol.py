@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
-from inhand_tracker.methods.darby2014.likelihood import DEFAULT_TERMS
+from inhand_tracker.methods.darby2014.terms import DEFAULT_TERMS
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS, MethodName, new_tracker
 from inhand_tracker.recognition.cascade import Cascade
 from inhand_tracker.recognition.darby2012.cascade import Cascade2012

@@ -9,7 +9,8 @@ import numpy as np
 from inhand_tracker.body.skeleton import PARTS
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.mapping.mapping import BodyPoseIndex, Mapping
+from inhand_tracker.mapping.body_pose_index import BodyPoseIndex
+from inhand_tracker.mapping.mapping import Mapping
 
 LIMBS = {
     "torso and head": ("Spine", "ShoulderCenter", "Head"),

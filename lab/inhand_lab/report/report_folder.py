@@ -23,9 +23,7 @@ from inhand_lab.evaluation.protocol import Candidate, Protocol, Trial
 from inhand_lab.evaluation.published import REFERENCE_METHOD
 from inhand_lab.report.markdown_report import markdown, report_grids
 from inhand_lab.report.part_measures import part_measures
-from inhand_lab.report.plots import plot_rotation_stability, plot_spread, plot_translation
 from inhand_lab.report.sequences_file import tab_separated
-from inhand_lab.report.tracked_frames import TrackedRecording, draw_tracked_frames
 from inhand_lab.workers import in_processes
 
 FIGURE_SUFFIXES = {"spread": ".png", "rotation": ".png", "translation": ".png", "frames": ".jpg"}
@@ -83,6 +81,9 @@ def _shown(folds: Sequence[Fold]) -> list[Fold]:
 
 def _draw(task: _Drawing) -> list[str]:
     """Draw the figures of a fold, and return the names of their files."""
+    # Matplotlib is loaded only where a report is drawn.
+    from inhand_lab.report.plots import plot_rotation_stability, plot_spread, plot_translation
+
     protocol, fold = task.protocol, task.fold
     model = protocol.learn(fold, images=bool(protocol.terms[0]))
     files = {
@@ -101,6 +102,8 @@ def _draw(task: _Drawing) -> list[str]:
 
 
 def _draw_frames(task: _Drawing, model: Model, file: Path) -> bool:
+    from inhand_lab.report.tracked_frames import TrackedRecording, draw_tracked_frames
+
     protocol, entry = task.protocol, task.fold.tested[0]
     method = REFERENCE_METHOD if REFERENCE_METHOD in protocol.methods else protocol.methods[-1]
     candidate = Candidate(method, protocol.terms[0])

@@ -7,8 +7,6 @@ cross-validation (Platt 2000; Lin, Lin and Weng 2007).
 import numpy as np
 from inhand_tracker.geometry.arrays import Array, Flags, Indices
 from inhand_tracker.recognition.pairwise_svm import PairwiseSvm
-from sklearn.model_selection import StratifiedKFold
-from sklearn.svm import SVC
 
 from inhand_lab.training.parameters import DEFAULT_TRAINING, TrainingParameters
 
@@ -78,6 +76,8 @@ def _unseen_decisions(
     poses: Array, actions: Indices, gamma: float, parameters: TrainingParameters
 ) -> Array:
     """Decision values (N, pairs) of every pose by a machine that was trained without it."""
+    from sklearn.model_selection import StratifiedKFold
+
     decisions = np.empty((len(poses), len(_pairs(int(actions.max()) + 1))))
     folds = StratifiedKFold(parameters.svm_folds, shuffle=True, random_state=parameters.svm_seed)
     for kept, left_out in folds.split(poses, actions):
@@ -88,6 +88,9 @@ def _unseen_decisions(
 
 def _fit(poses: Array, actions: Indices, gamma: float, cost: float) -> PairwiseSvm:
     """Fit a machine without sigmoids."""
+    # scikit-learn is loaded only where a recogniser is learned.
+    from sklearn.svm import SVC
+
     machine = SVC(C=cost, gamma=gamma, decision_function_shape="ovo").fit(poses, actions)
     classes = len(machine.n_support_)
     owners = np.repeat(np.arange(classes), machine.n_support_)

@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
+from inhand_runtime.extras import missing_extra
 from inhand_runtime.settings import Section, Settings, load_settings
 
 S = TypeVar("S", bound=Section)
@@ -39,6 +40,11 @@ def daemon_main(
     except InhandError as error:
         print(f"{service}: {error}", file=sys.stderr)
         return WRONG_USAGE if isinstance(error, SettingsError) else FAILED
+    except ModuleNotFoundError as error:
+        if (needs := missing_extra(error)) is None:
+            raise
+        print(f"{service}: {needs}", file=sys.stderr)
+        return WRONG_USAGE
     return DONE
 
 

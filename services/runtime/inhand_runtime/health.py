@@ -7,7 +7,6 @@ from collections import Counter, deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
 import psutil
 from inhand_schemas.messages import Health, Latency, ServiceState, TopicHealth
 
@@ -213,8 +212,15 @@ class HealthBoard:
         return tuple(troubles[:MOST_TROUBLES])
 
     def _current_latency(self, now: float) -> Latency | None:
-        latencies = [ms for at, ms in self._latencies_ms if now - at <= WINDOW_S]
+        latencies = sorted(ms for at, ms in self._latencies_ms if now - at <= WINDOW_S)
         if not latencies:
             return None
-        p50, p99 = np.percentile(latencies, (50, 99)).tolist()
-        return Latency(p50=p50, p99=p99)
+        return Latency(p50=_quantile(latencies, 0.50), p99=_quantile(latencies, 0.99))
+
+
+def _quantile(ordered: list[float], share: float) -> float:
+    """Return the value below which a share of ordered values lies, between two neighbours."""
+    place = share * (len(ordered) - 1)
+    below = int(place)
+    above = min(below + 1, len(ordered) - 1)
+    return ordered[below] + (place - below) * (ordered[above] - ordered[below])

@@ -23,6 +23,8 @@ from inhand_schemas.messages import (
 from numpy import uint8, uint16
 from numpy.typing import NDArray
 
+from inhand_runtime.extras import missing_extra
+
 ENTRY_POINT_GROUP = "inhand.sources"
 
 
@@ -96,8 +98,9 @@ def source_factory(name: str) -> SourceFactory:
     try:
         factory: SourceFactory = entry.load()
     except ModuleNotFoundError as error:
-        raise SourceError(
-            f"source {name!r} needs the package {error.name}, which is not installed: "
+        needs = missing_extra(error) or (
+            f"needs the package {error.name}, which is not installed: "
             f"run pip install 'inhand[{name}]'"
-        ) from error
+        )
+        raise SourceError(f"source {name!r} {needs}") from error
     return factory

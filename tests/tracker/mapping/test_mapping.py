@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from inhand_tracker.mapping.mapping import BodyPoseIndex, Mapping, stretches
+from inhand_tracker.mapping.body_pose_index import BodyPoseIndex
+from inhand_tracker.mapping.mapping import Mapping, stretches
 from inhand_tracker.mapping.parameters import DEFAULT_MAPPING
 from inhand_tracker.mapping.pose_search import PoseSearch
 

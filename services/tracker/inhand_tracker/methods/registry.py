@@ -10,9 +10,8 @@ from typing import Literal, get_args
 
 from inhand_runtime.errors import SettingsError
 
-from inhand_tracker.methods.darby2014.likelihood import DEFAULT_TERMS, TERMS
 from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
-from inhand_tracker.methods.darby2014.tracker import ParticleTracker
+from inhand_tracker.methods.darby2014.terms import DEFAULT_TERMS, TERMS
 from inhand_tracker.methods.darby2014.variants import VARIANTS, PublishedMethod, Variant
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION
 from inhand_tracker.methods.fusion.tracker import FusionTracker
@@ -69,6 +68,9 @@ def _new_fusion(model: Model, options: TrackerOptions) -> ObjectTracker:
 
 
 def _new_published(variant: Variant, model: Model, options: TrackerOptions) -> ObjectTracker:
+    # It needs the extra ``lab``, which fusion does not.
+    from inhand_tracker.methods.darby2014.tracker import ParticleTracker
+
     particles = options.particles or DEFAULT_DARBY2014.particles
     return ParticleTracker(
         model,

@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import Person
-from scipy.optimize import linear_sum_assignment
 
 from inhand_tracker.body.skeleton import part_lengths
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.people.cheapest_pairs import cheapest_pairs
 from inhand_tracker.people.parameters import DEFAULT_PEOPLE, PeopleParameters
 from inhand_tracker.wire.conversion import joints_of
 
@@ -86,10 +86,9 @@ class Identities:
         costs = np.array(
             [[self._cost(track, one, time_ns) for one in sightings] for track in self._tracks]
         )
-        pairs = zip(*linear_sum_assignment(costs), strict=True)
         return {
-            int(column): self._tracks[row]
-            for row, column in pairs
+            column: self._tracks[row]
+            for row, column in cheapest_pairs(costs)
             if costs[row, column] < IMPOSSIBLE
         }
 

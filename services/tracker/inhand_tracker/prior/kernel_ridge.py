@@ -9,7 +9,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR_LEARNING, PriorLearningParameters
@@ -61,8 +60,10 @@ def fit(
     """Learn from inputs (N, D) and targets (N, M); also the landmarks' held-out residuals (L, M).
 
     Samples of one of ``groups`` (N,) are held out together: a landmark's residual, target less
-    prediction, is that of a regression without any sample of its group.
+    prediction, is that of a regression without any sample of its group. Needs the extra ``lab``.
     """
+    from scipy.linalg import solve_triangular
+
     landmarks = inputs[landmark_rows]
     between = squared_distances(landmarks, landmarks)
     width = max(float(np.median(between)), 1e-12) * parameters.kernel_width**2

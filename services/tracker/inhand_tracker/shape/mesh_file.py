@@ -1,4 +1,6 @@
-"""Files of triangle meshes, as other programs write them."""
+"""Files of triangle meshes, as other programs write them; needs the extra ``lab``.
+
+A tracker reads no mesh, only models, so that Trimesh is loaded where one is read."""
 
 import logging
 from collections.abc import Iterator
@@ -6,7 +8,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-import trimesh
 from inhand_runtime.errors import InhandError
 
 from inhand_tracker.geometry.arrays import Array, Indices
@@ -32,6 +33,8 @@ def find_mesh(folder: Path) -> Path:
 
 def read_mesh(path: Path) -> tuple[Array, Indices]:
     """Read vertices (V, 3) and faces (F, 3), without materials; raises InhandError."""
+    import trimesh
+
     try:
         with _without_log_of_materials():
             mesh = trimesh.load_mesh(path, process=False)
@@ -47,6 +50,8 @@ def read_mesh(path: Path) -> tuple[Array, Indices]:
 
 
 def _is_mesh(path: Path) -> bool:
+    import trimesh
+
     return path.suffix[1:].lower() in trimesh.available_formats()
 
 

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import trimesh
 from inhand_runtime.errors import InhandError
 from inhand_runtime.settings_errors import ENCODING, suggestion
 from inhand_schemas.keys import require_name
@@ -53,7 +52,12 @@ class ObjectShape:
 
 
 def save_shape(shape: ObjectShape, folder: Path) -> None:
-    """Write ``mesh.ply`` and ``object.toml`` to a folder, which is made if need be."""
+    """Write ``mesh.ply`` and ``object.toml`` to a folder, which is made if need be.
+
+    Needs the extra ``lab``.
+    """
+    import trimesh
+
     folder.mkdir(parents=True, exist_ok=True)
     mesh = trimesh.Trimesh(shape.vertices, shape.faces, process=False)
     mesh.export(folder / "mesh.ply")

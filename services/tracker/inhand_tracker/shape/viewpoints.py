@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-import trimesh
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.shape.contours import Contours, find_contours
@@ -49,7 +48,10 @@ def find_viewpoints(
     """Find the boundaries, surfaces and contours of a shape from directions all around it.
 
     ``on_view`` is called after each of ``count_views`` views: of a fine mesh one takes a second.
+    Needs the extra ``lab``.
     """
+    import trimesh
+
     sphere = trimesh.creation.icosphere(parameters.subdivisions)
     directions = np.asarray(sphere.vertices, float)
     directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)

@@ -8,8 +8,9 @@ from followed import assert_proper
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.darby2014.depths import surfaces_of
 from inhand_tracker.methods.darby2014.edges import chamfer_of
-from inhand_tracker.methods.darby2014.likelihood import DEFAULT_TERMS, TERMS, Likelihood, Term
+from inhand_tracker.methods.darby2014.likelihood import Likelihood
 from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
+from inhand_tracker.methods.darby2014.terms import DEFAULT_TERMS, TERMS, Term
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from people import FRAME_NS, STANDING, held, quaternion_of, scipy_rotation, unseen_wave, wave_model

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from inhand_tracker.body.skeleton import Bases
 from inhand_tracker.geometry.weights import systematic_resample
-from inhand_tracker.mapping.mapping import BodyPoseIndex, Mapping
+from inhand_tracker.mapping.body_pose_index import BodyPoseIndex
+from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014, Darby2014Parameters
 from inhand_tracker.methods.darby2014.particles import (
     Particles,

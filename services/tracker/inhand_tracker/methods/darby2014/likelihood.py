@@ -1,7 +1,6 @@
 """The likelihood of hypotheses by an image: a sum of terms that can be chosen."""
 
 from collections.abc import Collection
-from typing import Literal, get_args
 
 import numpy as np
 
@@ -10,16 +9,11 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.darby2014.depths import depth_log_weights, surfaces_of
 from inhand_tracker.methods.darby2014.edges import chamfer_of, weigh_by_edges
+from inhand_tracker.methods.darby2014.terms import DEFAULT_TERMS, Term
 from inhand_tracker.model.model import Model
 from inhand_tracker.shape.view_grid import view_grid
 from inhand_tracker.shape.viewpoints import Viewpoints, find_surfaces
 from inhand_tracker.shape.visible_points import VisiblePoints
-
-Term = Literal["edges", "depth"]
-
-TERMS: tuple[Term, ...] = get_args(Term)
-DEFAULT_TERMS: tuple[Term, ...] = ("edges",)
-"""The terms that Darby et al. 2014 publish figures for."""
 
 
 class Likelihood:

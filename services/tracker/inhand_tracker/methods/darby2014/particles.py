@@ -9,7 +9,8 @@ import numpy as np
 
 from inhand_tracker.body.skeleton import PARTS, RIGHT_HAND, Bases
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.mapping.mapping import BodyPoseIndex, Mapping
+from inhand_tracker.mapping.body_pose_index import BodyPoseIndex
+from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014, Darby2014Parameters
 from inhand_tracker.methods.darby2014.variants import PartRule, Variant
 

@@ -12,8 +12,9 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.estimate import Estimate, weighted_estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.weights import even_weights, normalised_weights, systematic_resample
-from inhand_tracker.mapping.mapping import BodyPoseIndex, Mapping
-from inhand_tracker.methods.darby2014.likelihood import DEFAULT_TERMS, Likelihood, Term
+from inhand_tracker.mapping.body_pose_index import BodyPoseIndex
+from inhand_tracker.mapping.mapping import Mapping
+from inhand_tracker.methods.darby2014.likelihood import Likelihood
 from inhand_tracker.methods.darby2014.nothing_near import draw_broadly, farthest_near
 from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014, Darby2014Parameters
 from inhand_tracker.methods.darby2014.particles import (
@@ -23,6 +24,7 @@ from inhand_tracker.methods.darby2014.particles import (
     propagate,
     redraw,
 )
+from inhand_tracker.methods.darby2014.terms import DEFAULT_TERMS, Term
 from inhand_tracker.methods.darby2014.variants import Variant
 from inhand_tracker.methods.follower import Follower, FollowingTracker
 from inhand_tracker.model.model import Model

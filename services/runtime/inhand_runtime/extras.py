@@ -1,0 +1,13 @@
+"""The optional dependencies of the distribution, and the line about one that is not installed."""
+
+EXTRAS = {"lab": ("faiss", "matplotlib", "scipy", "sklearn", "trimesh")}
+"""Names of the modules that come with each extra of ours (pyproject.toml) and not without it."""
+
+
+def missing_extra(error: ModuleNotFoundError) -> str | None:
+    """Say which extra has what could not be imported; None where none has."""
+    module = (error.name or "").partition(".")[0]
+    for extra, modules in EXTRAS.items():
+        if module in modules:
+            return f'needs the extra {extra!r}: pip install "inhand[{extra}]"'
+    return None
