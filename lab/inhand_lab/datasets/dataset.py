@@ -27,14 +27,17 @@ class DatasetError(InhandError):
 
 
 class DatasetEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One recording of a dataset; ``file`` is relative to the dataset's folder."""
+    """One recording of a dataset; ``file`` is relative to the dataset's folder.
+
+    ``frame_rate`` is in Hz; where it is left out the times of the frames show it.
+    """
 
     file: str
     interaction: str
     participant: str
     object: str | None = None
     handedness: Literal["left", "right"] = "right"
-    frame_rate: float = 30.0
+    frame_rate: float | None = None
 
 
 class DatasetFile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -2,23 +2,26 @@
 
 import numpy as np
 from inhand_tracker.mapping.learning import LabelledSequence
-from inhand_tracker.people.following import PersonFollower
 from inhand_tracker.wire.conversion import joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry
+from inhand_lab.datasets.followed_people import follow_people
 from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.datasets.recording_times import frame_rate_of
 from inhand_lab.datasets.tracks import true_track
 
 
 def labelled_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
-    """Read a recording's bodies and labels; frames without body or label hold NaN."""
+    """Read a recording's bodies and labels; frames without body or label hold NaN.
+
+    Raises DatasetError or RecordingError.
+    """
     frames = load_frames(dataset.path(entry), entry.object)
     joints = np.full((len(frames), 20, 3), np.nan)
-    follower = PersonFollower()
-    for index, frame in enumerate(frames):
-        person = follower.choose(frame.people, frame.time_ns)
-        if person is not None:
-            joints[index] = joints_of(person)
+    for index, followed in enumerate(follow_people(frames)):
+        if followed.person is not None:
+            joints[index] = joints_of(followed.person)
+    times_ns = np.array([frame.time_ns for frame in frames], np.int64)
     truth = true_track(frames)
     return LabelledSequence(
         entry.participant,
@@ -26,5 +29,5 @@ def labelled_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence
         joints,
         truth.translations,
         truth.rotations,
-        entry.frame_rate,
+        frame_rate_of(entry, times_ns),
     )

@@ -11,9 +11,9 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.estimate import Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.object_tracker import ObjectTracker
-from inhand_tracker.people.following import PersonFollower
 from inhand_tracker.wire.conversion import Need, image_of, joints_of
 
+from inhand_lab.datasets.followed_people import follow_people
 from inhand_lab.datasets.recorded_frames import (
     RecordedFrame,
     iterate_pixels,
@@ -58,18 +58,15 @@ def observe(
     info = load_camera_info(path, name) if needs else None
     pixels = iterate_pixels(path, name) if info is not None else iter(())
     current = next(pixels, None)
-    follower = PersonFollower()
-    for frame in frames:
+    for frame, followed in zip(frames, follow_people(frames), strict=True):
         while current is not None and current.time_ns < frame.time_ns:
             current = next(pixels, None)
         image = None
         if info is not None and current is not None and current.time_ns == frame.time_ns:
             with suppress(MessageError):
                 image = image_of(current, info, needs)
-        before = follower.person_id
-        person = follower.choose(frame.people, frame.time_ns)
-        joints = None if person is None else joints_of(person)
-        yield Observation(frame.time_ns, joints, image, follower.person_id != before)
+        joints = None if followed.person is None else joints_of(followed.person)
+        yield Observation(frame.time_ns, joints, image, followed.somebody_else)
 
 
 def observe_simulation(

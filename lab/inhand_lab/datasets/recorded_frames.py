@@ -4,12 +4,16 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import CameraInfo, ObjectPose, Person, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS
 from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 
 from inhand_lab.datasets.dataset import CAMERA, Dataset, DatasetError
+from inhand_lab.datasets.label_joining import check_objects, check_people, join_labels
+from inhand_lab.datasets.recording_times import check_times
+from inhand_lab.datasets.units import check_units
 
 
 @dataclass(frozen=True)
@@ -26,24 +30,30 @@ def load_frames(path: Path, object_name: str | None) -> list[RecordedFrame]:
     """Read the skeletons and labels of a recording, in order, without pixels.
 
     Of several cameras the skeletons come from the one in which the labels were made. Raises
-    DatasetError where that is not exactly one.
+    DatasetError where that is not exactly one, for times that are no clock's, units that are no
+    metres, and labels that are of no frame, object or person of the recording.
     """
-    labels: dict[tuple[int, int], ObjectPose] = {}
-    labelled: set[str] = set()
+    labels: list[ObjectPose] = []
+    objects: set[str] = set()
     skeletons: dict[str, list[Skeletons]] = {}
     for recorded in read_recording(path, streams=(LABEL.stream, SKELETONS.stream)):
         message = recorded.message()
         if isinstance(message, Skeletons):
             skeletons.setdefault(recorded.name, []).append(message)
-        elif isinstance(message, ObjectPose) and message.object == object_name:
-            labels[message.sequence, message.time_ns] = message
-            labelled.add(message.camera)
-    camera = _shared_camera(path, labelled, set(skeletons))
+        elif isinstance(message, ObjectPose):
+            objects.add(message.object)
+            if message.object == object_name:
+                labels.append(message)
+    check_objects(path, object_name, objects)
+    camera = _shared_camera(path, {label.camera for label in labels}, set(skeletons))
+    shown = skeletons.get(camera, [])
+    check_times(path, np.array([one.time_ns for one in shown], np.int64))
+    joined = join_labels(path, labels, shown)
+    check_people(path, labels, shown)
+    check_units(path, shown, joined)
     return [
-        RecordedFrame(
-            one.sequence, one.time_ns, one.people, labels.get((one.sequence, one.time_ns))
-        )
-        for one in skeletons.get(camera, ())
+        RecordedFrame(one.sequence, one.time_ns, one.people, label)
+        for one, label in zip(shown, joined, strict=True)
     ]
 
 

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Flags
-from inhand_tracker.people.following import PersonFollower
 from inhand_tracker.wire.conversion import joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.followed_people import follow_people
 from inhand_lab.datasets.generation import Take, write_takes
 from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.datasets.recording_times import frame_rate_of
 from inhand_lab.driven.recorded_body import RecordedBody, drive
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.world.interactions import INTERACTIONS
@@ -108,26 +109,26 @@ def recorded_body(
     dataset: Dataset, entry: DatasetEntry, *, participant: int, recording: int
 ) -> RecordedBody:
     """The longest stretch of a recording in which somebody is in sight; raises DatasetError."""
-    frames = load_frames(dataset.path(entry), None)
+    frames = load_frames(dataset.path(entry), entry.object)
     joints = np.full((len(frames), 20, 3), np.nan)
     states = np.zeros((len(frames), 20), np.uint8)
     confidences = np.zeros((len(frames), 20))
-    follower = PersonFollower()
-    for index, frame in enumerate(frames):
-        person = follower.choose(frame.people, frame.time_ns)
+    for index, followed in enumerate(follow_people(frames)):
+        person = followed.person
         if person is not None:
             joints[index] = joints_of(person)
             states[index] = [JOINT_STATES.index(state) for state in person.states]
             confidences[index] = person.confidences
     seen = np.asarray(np.isfinite(joints).all(axis=2))
-    stretch = _in_sight(seen, entry.frame_rate)
+    frame_rate = frame_rate_of(entry, np.array([frame.time_ns for frame in frames], np.int64))
+    stretch = _in_sight(seen, frame_rate)
     if not seen[stretch].any(axis=0).all():
         raise DatasetError(f"{entry.file}: a body with all twenty joints is needed to hold things")
     return RecordedBody(
         joints[stretch],
         states[stretch],
         confidences[stretch],
-        entry.frame_rate,
+        frame_rate,
         entry.handedness,
         participant,
         recording,

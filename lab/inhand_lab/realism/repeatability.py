@@ -104,13 +104,16 @@ def main() -> None:
     table = Table("interaction", "joints", "done again", "five others")
     for name in dict.fromkeys(entry.interaction for entry in dataset.entries):
         entries = [entry for entry in dataset.entries if entry.interaction == name]
-        measured = [labelled_sequence(dataset, entry).joints for entry in entries]
+        sequences = [labelled_sequence(dataset, entry) for entry in entries]
+        measured = [sequence.joints for sequence in sequences]
         true = [_true_joints(dataset, entry) for entry in entries]
         for kind, joints in (("measured", measured), ("true", true)):
             if all(np.isfinite(one).all(axis=(1, 2)).any() for one in joints):
                 recordings = [
-                    body_pose_sequence(entry.participant, entry.frame_rate, entry.handedness, one)
-                    for entry, one in zip(entries, joints, strict=True)
+                    body_pose_sequence(
+                        entry.participant, sequence.frame_rate, entry.handedness, one
+                    )
+                    for entry, sequence, one in zip(entries, sequences, joints, strict=True)
                 ]
                 distances = return_distance(recordings), distance_to_others(recordings)
                 table.add_row(name, kind, *(f"{distance:.3f}" for distance in distances))

@@ -10,6 +10,7 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.wire.conversion import joints_of
 
+from inhand_lab.datasets.followed_people import follow_people
 from inhand_lab.datasets.recorded_frames import RecordedFrame
 from inhand_lab.datasets.tracks import true_track
 from inhand_lab.recognition.parameters import DEFAULT_RECOGNITION_EVALUATION
@@ -40,9 +41,9 @@ def box_centres(boxes: Array) -> Array:
 def person_pixels(frames: Sequence[RecordedFrame], camera: Intrinsics) -> float:
     """Height in pixels of the person who stands upright in the image; NaN without a body."""
     heights = []
-    for frame in frames:
-        for person in frame.people[:1]:
-            pixels = camera.project(joints_of(person))
+    for followed in follow_people(frames):
+        if followed.person is not None:
+            pixels = camera.project(joints_of(followed.person))
             feet = pixels[[Joint.ANKLE_LEFT, Joint.ANKLE_RIGHT], 1]
             heights.append((feet.max() - pixels[Joint.HEAD, 1]) / HEAD_SHARE)
     finite = np.array(heights)[np.isfinite(heights)]

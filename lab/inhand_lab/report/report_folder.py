@@ -16,6 +16,7 @@ from inhand_runtime.errors import InhandError
 from inhand_tracker.model.model import Model
 from rich.console import Console
 
+from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.observations import track_together
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.evaluation.folds import Fold
@@ -93,9 +94,10 @@ def _draw(task: _Drawing) -> list[str]:
     learned = fold.trained[0]
     measures = part_measures(model.mapping, 0)
     title = f"{fold.interaction}, participant {learned.participant}"
-    plot_spread(measures, learned.frame_rate, title, files["spread"])
-    plot_rotation_stability(measures, learned.frame_rate, title, files["rotation"])
-    plot_translation(measures, learned.frame_rate, title, files["translation"])
+    frame_rate = labelled_sequence(protocol.trained, learned).frame_rate
+    plot_spread(measures, frame_rate, title, files["spread"])
+    plot_rotation_stability(measures, frame_rate, title, files["rotation"])
+    plot_translation(measures, frame_rate, title, files["translation"])
     if not _draw_frames(task, model, files["frames"]):
         del files["frames"]
     return [file.name for file in files.values()]

@@ -5,11 +5,12 @@ from contextlib import suppress
 
 import numpy as np
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import CameraInfo, RgbdFrame
+from inhand_schemas.messages import CameraInfo, Person, RgbdFrame
 from inhand_tracker.sight.appearance import AppearanceSample
 from inhand_tracker.wire.conversion import image_of, joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry
+from inhand_lab.datasets.followed_people import follow_people
 from inhand_lab.datasets.recorded_frames import (
     RecordedFrame,
     iterate_pixels,
@@ -43,16 +44,17 @@ def _samples_of(dataset: Dataset, entry: DatasetEntry, most: int) -> Iterator[Ap
     if info is None:
         return
     chosen = np.linspace(0, len(frames) - 1, min(most, len(frames))).astype(int)
-    by_time = {frames[index].time_ns: frames[index] for index in chosen}
+    people = [followed.person for followed in follow_people(frames)]
+    by_time = {frames[index].time_ns: (frames[index], people[index]) for index in chosen}
     for pixels in iterate_pixels(path, camera):
-        frame = by_time.get(pixels.time_ns)
-        if frame is not None:
+        if pixels.time_ns in by_time:
+            frame, person = by_time[pixels.time_ns]
             with suppress(MessageError):
-                yield from _sample_of(frame, pixels, info)
+                yield from _sample_of(frame, person, pixels, info)
 
 
 def _sample_of(
-    frame: RecordedFrame, pixels: RgbdFrame, info: CameraInfo
+    frame: RecordedFrame, person: Person | None, pixels: RgbdFrame, info: CameraInfo
 ) -> Iterator[AppearanceSample]:
     """Yield the frame where it has a label and an image; raises MessageError."""
     if frame.label is None or frame.label.camera_from_object is None:
@@ -60,5 +62,5 @@ def _sample_of(
     image = image_of(pixels, info, ("colour", "depth"))
     if image is not None:
         pose = frame.label.camera_from_object
-        joints = joints_of(frame.people[0]) if frame.people else None
+        joints = None if person is None else joints_of(person)
         yield image, np.array(pose.translation), np.array(pose.rotation), joints

@@ -13,11 +13,11 @@ from inhand_tracker.body.skeleton import (
     stature,
 )
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.people.following import PersonFollower
 from inhand_tracker.recognition.movement_window import MovementWindow
 from inhand_tracker.wire.conversion import joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.followed_people import follow_people
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.people.joint_sequence import JointSequence
 from inhand_lab.training.parameters import DEFAULT_TRAINING
@@ -44,11 +44,9 @@ def read_joints(dataset: Dataset, entry: DatasetEntry) -> JointSequence:
     """Read the joints of a recording's person; raises DatasetError or RecordingError."""
     frames = load_frames(dataset.path(entry), entry.object)
     joints = np.full((len(frames), 20, 3), np.nan)
-    follower = PersonFollower()
-    for index, frame in enumerate(frames):
-        person = follower.choose(frame.people, frame.time_ns)
-        if person is not None:
-            joints[index] = joints_of(person)
+    for index, followed in enumerate(follow_people(frames)):
+        if followed.person is not None:
+            joints[index] = joints_of(followed.person)
     times_ns = np.array([frame.time_ns for frame in frames], np.int64)
     left_handed = entry.handedness == "left"
     return JointSequence(entry.interaction, entry.participant, left_handed, joints, times_ns)

@@ -11,6 +11,7 @@ from inhand_lab.recognition.adaptive_comparison import Environments, follow_adap
 from inhand_runtime.errors import InhandError
 from inhand_runtime.pixels import encode_colour
 from inhand_schemas.messages import CameraInfo, RgbdFrame, Skeletons
+from waving import FRAME_NS
 
 FRAMES = 12
 
@@ -29,8 +30,10 @@ def recording(tmp_path: Path) -> tuple[Path, np.ndarray]:
         left = 20 + 3 * n
         image = background.copy()
         image[40:64, left : left + 24] = square
-        messages.append(Skeletons(sequence=n, time_ns=n + 1))
-        messages.append(RgbdFrame(sequence=n, time_ns=n + 1, colour=encode_colour(image)))
+        messages.append(Skeletons(sequence=n, time_ns=1 + n * FRAME_NS))
+        messages.append(
+            RgbdFrame(sequence=n, time_ns=1 + n * FRAME_NS, colour=encode_colour(image))
+        )
         boxes.append((left, 40.0, left + 24, 64.0))
     writer = DatasetWriter(tmp_path / "set")
     entry = DatasetEntry(file="recordings/a.mcap", interaction="slide", participant="p")

@@ -1,0 +1,49 @@
+"""Every number by which recordings are read that can be tuned; docs/training.md lists them.
+
+Where nothing is said a number was set by hand.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class DatasetParameters:
+    """Decides which times, labels and units of a recording can be meant."""
+
+    # Times (recording_times).
+    fewest_timed: int = 10
+    """Number of frames from which on their rate is judged."""
+    fastest_hz: float = 1_000.0
+    """Frames a second above which times are in another unit than nanoseconds: no tracker of bodies
+    is as fast."""
+    most_backwards_share: float = 0.01
+    """Share of the frames that may be earlier than the one before: the clock was set."""
+    farthest_out_ns: int = 1_000_000_000
+    """Nanoseconds by which one frame may lie outside the times of both neighbours."""
+    same_rate_share: float = 0.1
+    """Difference of two frame rates, as a share, up to which they are the same: times in whole
+    milliseconds differ by 1 %, and lost frames are passed over by the median."""
+    usual_rate_hz: float = 30.0
+    """Frames a second of a recording that shows none, as of one frame."""
+    gap_s: float = 0.5
+    """Time in seconds between frames beyond which it is a gap, and says nothing of the rate."""
+
+    # Units (units).
+    usual_stature_m: float = 1.7
+    """Height in metres of a usual person, by which a unit is named."""
+    smallest_stature_m: float = 0.4
+    """Height in metres of the smallest person; no child who holds things is as small."""
+    tallest_stature_m: float = 4.5
+    """Height in metres above which joints are in another unit: misnamed joints give 4.1 m (a motion
+    archive that is imported with a warning), inches 67 and feet 5.6 m."""
+    one_frame_ratio: float = 5.0
+    """Length of the trunk in one frame, in those of the other frames, from which that frame is in
+    another unit: wild joints of a Kinect do not reach it (UTD-MHAD)."""
+    farthest_label_m: float = 4.0
+    """Distance in metres of an object from the nearest joint, in the median frame, above which
+    labels are in another unit: they are of what somebody holds."""
+    held_label_m: float = 1.0
+    """Distance in metres of an object from the nearest joint within which a unit is named."""
+
+
+DEFAULT_DATASET = DatasetParameters()
