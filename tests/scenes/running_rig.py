@@ -108,13 +108,17 @@ class RunningRig:
 
     def health(self, instance: str) -> dict[str, Any]:
         """What ``inhand status`` tells of an instance that runs."""
+        return self.healths()[instance]
+
+    def healths(self) -> dict[str, dict[str, Any]]:
+        """What ``inhand status`` tells of all instances at one time."""
         path = self.folder / "status.json"
         meeting = self.folder / "meeting.toml"  # names nobody, so nobody is waited for
         meeting.write_text(f'[zenoh]\nmeeting = "{self.meeting}"\n')
         told = self.done("status", "--config", meeting, "--seconds", "30", "--json", path)
         assert told.popen.returncode in (0, 1), told.stderr
         instances = json.loads(path.read_text())["instances"]
-        return next(one["health"] for one in instances if one["instance"] == instance)
+        return {one["instance"]: one["health"] for one in instances}
 
     def close(self) -> None:
         """End what still runs."""

@@ -12,6 +12,10 @@ import json
 import sys
 import tempfile
 import time
+from collections import Counter
+from dataclasses import dataclass
+from functools import reduce
+from operator import and_, or_
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +25,8 @@ from running_rig import Process, RunningRig
 
 PERIOD_S = 5.0
 MOST_GROWTH_MB_PER_HOUR = 5.0
+MOST_UNDER_WAY = 60
+"""Frames, at the most, on their way between two counts: the healths are read one by one."""
 SERVICES = ("recorder", "tracker", "capture")
 
 
@@ -30,15 +36,15 @@ def soak(folder: Path, minutes: float) -> dict[str, Any]:
     try:
         _prepare(rig, folder)
         rig.python("-c", "while True: pass")
-        processes = {name: rig.inhand(name, "--config", rig.config) for name in SERVICES}
-        for process in processes.values():
-            process.said("is up")
+        processes = {}
+        for name in SERVICES:  # the camera last, so that nobody misses its first frames
+            processes[name] = rig.inhand(name, "--config", rig.config)
+            processes[name].said("is up")
         readings = _watch(processes, minutes, folder / "disk")
-        healths = {name: rig.health(name) for name in SERVICES}
         return {
             "minutes": minutes,
-            "services": {name: _growth(np.array(rows)) for name, rows in readings.items()},
-            "frames": _account(healths),
+            "services": {name: _growth(rows) for name, rows in readings.items()},
+            "frames": _account(rig.healths()),
         }
     finally:
         rig.close()
@@ -61,31 +67,44 @@ def _prepare(rig: RunningRig, folder: Path) -> None:
     )
 
 
-def _watch(
-    processes: dict[str, Process], minutes: float, disk: Path
-) -> dict[str, list[list[float]]]:
-    readings: dict[str, list[list[float]]] = {name: [] for name in processes}
+@dataclass(frozen=True)
+class Reading:
+    """One look at a process: seconds since the begin, bytes resident, open files, and threads by
+    name."""
+
+    seconds: float
+    resident: int
+    files: int
+    threads: Counter[str]
+
+
+def _watch(processes: dict[str, Process], minutes: float, disk: Path) -> dict[str, list[Reading]]:
+    readings: dict[str, list[Reading]] = {name: [] for name in processes}
     begin = time.monotonic()
     while (passed := time.monotonic() - begin) < 60.0 * minutes:
         for name, process in processes.items():
             seen = psutil.Process(process.pid)
-            readings[name].append(
-                [passed, seen.memory_info().rss, seen.num_fds(), seen.num_threads()]
-            )
+            threads = Counter(psutil.Process(one.id).name() for one in seen.threads())
+            readings[name].append(Reading(passed, seen.memory_info().rss, seen.num_fds(), threads))
         for old in sorted(disk.glob("*.mcap"))[:-2]:  # the disk of a soak is not the point
             old.unlink()
         time.sleep(PERIOD_S)
     return readings
 
 
-def _growth(rows: np.ndarray) -> dict[str, float]:
-    settled = rows[len(rows) // 3 :]
-    slope = np.polyfit(settled[:, 0], settled[:, 1], 1)[0] * 3600.0 / 1e6
+def _growth(readings: list[Reading]) -> dict[str, Any]:
+    settled = readings[len(readings) // 3 :]
+    early, late = settled[:6], settled[-6:]
+    seconds, resident = np.array([(one.seconds, one.resident) for one in settled]).T
+    files = [int(np.median([one.files for one in some])) for some in (early, late)]
+    # What threads were always there late, beyond those that were ever there early.
+    lasting = reduce(and_, (one.threads for one in late))
     return {
-        "mb_at_the_end": round(rows[-1, 1] / 1e6, 1),
-        "mb_per_hour": round(float(slope), 2),
-        "file_handles_gained": int(np.median(settled[-6:, 2]) - np.median(settled[:6, 2])),
-        "threads_gained": int(np.median(settled[-6:, 3]) - np.median(settled[:6, 3])),
+        "mb_at_the_end": round(resident[-1] / 1e6, 1),
+        "mb_per_hour": round(float(np.polyfit(seconds, resident, 1)[0]) * 3600.0 / 1e6, 2),
+        "file_handles_gained": files[1] - files[0],
+        "threads": sum(lasting.values()),
+        "threads_gained": dict(lasting - reduce(or_, (one.threads for one in early))),
     }
 
 
@@ -98,23 +117,33 @@ def _account(healths: dict[str, Any]) -> dict[str, int]:
     return {
         "published": of("capture", "rgbd")["published"],
         "recorded": of("recorder", "rgbd")["received"],
-        "lost_on_the_way": of("recorder", "rgbd")["lost"] + pictures["lost"] + skeletons["lost"],
+        "lost_before_the_recorder": of("recorder", "rgbd")["lost"],
         "skeletons_published": of("capture", "skeletons")["published"],
-        "poses": of("tracker", "pose")["published"],
+        "skeletons_at_the_tracker": skeletons["received"],
+        "skeletons_lost": skeletons["lost"],
         "skeletons_left_out": skeletons["dropped"],
+        "poses": of("tracker", "pose")["published"],
         "pictures_at_the_tracker": pictures["received"],
+        "pictures_lost": pictures["lost"],
         "pictures_left_out": pictures["dropped"],
     }
 
 
 def judge(seen: dict[str, Any]) -> bool:
-    """Whether nothing grew and every skeleton was used or counted, but for those under way."""
+    """Whether nothing grew and all was used or counted, but for what was under way at the end."""
     frames = seen["frames"]
-    unaccounted = frames["skeletons_published"] - frames["poses"] - frames["skeletons_left_out"]
-    return abs(unaccounted) <= 60 and all(
+    unaccounted = (
+        frames["published"] - frames["recorded"] - frames["lost_before_the_recorder"],
+        frames["published"] - frames["pictures_at_the_tracker"] - frames["pictures_lost"],
+        frames["skeletons_published"]
+        - frames["skeletons_at_the_tracker"]
+        - frames["skeletons_lost"],
+        frames["skeletons_at_the_tracker"] - frames["poses"] - frames["skeletons_left_out"],
+    )
+    return max(map(abs, unaccounted)) <= MOST_UNDER_WAY and all(
         service["mb_per_hour"] < MOST_GROWTH_MB_PER_HOUR
         and service["file_handles_gained"] <= 0
-        and service["threads_gained"] <= 0
+        and not service["threads_gained"]
         for service in seen["services"].values()
     )
 
