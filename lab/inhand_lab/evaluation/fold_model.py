@@ -15,6 +15,7 @@ from inhand_lab.evaluation.folds import Fold
 from inhand_lab.training.appearance_samples import appearance_samples
 from inhand_lab.training.model_training import checked_sequence, checked_shape
 from inhand_lab.training.recording_checks import check_hands
+from inhand_lab.training.rotation_checks import check_rotations
 
 
 def learn_fold_model(trained: Dataset, fold: Fold, *, images: bool, fused: bool) -> Model:
@@ -26,6 +27,7 @@ def learn_fold_model(trained: Dataset, fold: Fold, *, images: bool, fused: bool)
     shape = _shape(trained, fold)
     sequences = [_sequence(trained, entry) for entry in fold.trained]
     check_hands(fold.trained, sequences)
+    check_rotations(fold.trained, sequences, shape.mirror_normal)
     try:
         mapping = learn(sequences, shape.mirror_normal)
     except UnusableSequenceError as error:

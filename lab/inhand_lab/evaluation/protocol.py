@@ -21,6 +21,7 @@ from inhand_lab.evaluation.fold_model import learn_fold_model
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.evaluation.scoring import Judge, Score
+from inhand_lab.training.recording_checks import check_facing
 from inhand_lab.workers import in_processes
 
 Terms = tuple[AnyTerm, ...] | Literal["own"]
@@ -130,6 +131,7 @@ def _evaluate_recording(
     trackers = [candidate.new_tracker(model, entry) for candidate in candidates]
     needs = {need for candidate in candidates for need in candidate.needs()}
     joints, tracks = track_together(trackers, path, frames, needs)
+    check_facing(entry, joints)
     judge = Judge(frames, joints, gauge)
     for candidate, track in zip(candidates, tracks, strict=True):
         score = judge.score(track)

@@ -15,6 +15,7 @@ from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.training.appearance_samples import appearance_samples
 from inhand_lab.training.recording_checks import check_hands, check_sequence
+from inhand_lab.training.rotation_checks import check_rotations
 from inhand_lab.training.shape_checks import check_shape
 
 READING, VIEWPOINTS, APPEARANCE, PRIOR = "recordings", "viewpoints", "appearance", "prior"
@@ -79,6 +80,7 @@ def train(
     first = _first_of(dataset, entries)
     shape = checked_shape(dataset, str(first.object))
     sequences = _read(dataset, entries, on_step)
+    check_rotations(entries, sequences, shape.mirror_normal)
     try:
         mapping = learn(sequences, shape.mirror_normal, on_step)
     except UnusableSequenceError as error:

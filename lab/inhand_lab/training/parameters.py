@@ -25,6 +25,22 @@ class TrainingParameters:
     """Share of a recording's frames that may lack a label, or a whole body, at the most."""
     clear_hand_share: float = 0.9
     """Share of frames in which an object is nearer to one hand from which it is that hand's."""
+    backward_feet: float = -0.3
+    """Mean of where feet point, in the direction of the pelvis and in lengths of the feet, in the
+    median frame, below which the whole body is a mirror image. Of simulated people it is 0.56 or
+    more, of UTD-MHAD, whose feet are seen badly, between 0.0 and 0.72."""
+    fewest_compared: int = 3
+    """Number of recordings from which on one can be unlike all others."""
+    compared_frames: int = 500
+    """Number of frames, evenly spaced, at the least, by which rotations in them are compared."""
+    clear_rotation_gain: float = 0.2
+    """Gain in the mean squared cosine of half the angle to other recordings' rotations from which
+    a recording may be written in another way: of the simulator's objects it is 0.23 or more where
+    one recording is, and 0.01 or less where none is."""
+    same_rotation_share: float = 0.92
+    """That cosine as a share of what the other recordings have among each other, from which a
+    recording is like them: it is 0.93 or more where one is written in another way. It seldom is
+    where somebody only grips an object the other way round."""
 
     # Which meshes and marks are refused (shape_checks).
     smallest_m: float = 0.005

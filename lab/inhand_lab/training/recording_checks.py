@@ -6,6 +6,7 @@ import numpy as np
 from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_tracker.body.skeleton import PELVIS_JOINTS
 from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.mapping.learning import LabelledSequence
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
@@ -22,6 +23,34 @@ def check_sequence(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     _check_labels(entry, sequence)
     _check_jumps(entry, sequence)
     _check_bodies(entry, sequence)
+    check_facing(entry, sequence.joints)
+
+
+def check_facing(entry: DatasetEntry, joints: Array) -> None:
+    """Check that feet of a body (T, 20, 3) point forwards of its hips.
+
+    They do however somebody walks, sits or is turned. Raises DatasetError where they point
+    backwards in the median frame: left and right, or an axis, are exchanged.
+    """
+    hips = joints[:, Joint.HIP_LEFT] - joints[:, Joint.HIP_RIGHT]
+    upwards = joints[:, Joint.SHOULDER_CENTER] - joints[:, Joint.HIP_CENTER]
+    soles = [joints[:, foot] - joints[:, foot - 1] for foot in (Joint.FOOT_LEFT, Joint.FOOT_RIGHT)]
+    feet = np.mean(soles, axis=0)
+    forwards = np.cross(hips, upwards)
+    seen = np.isfinite(feet).all(axis=1) & (np.linalg.norm(forwards, axis=1) > 0.0)
+    seen &= np.linalg.norm(feet, axis=1) > 0.0
+    if not seen.any():
+        return
+    feet, forwards = feet[seen], forwards[seen]
+    forwards /= np.linalg.norm(forwards, axis=1, keepdims=True)
+    length = np.median(np.linalg.norm(feet, axis=1))
+    pointing = np.sum(feet * forwards, axis=1) / length
+    if np.median(pointing) < DEFAULT_TRAINING.backward_feet:
+        raise DatasetError(
+            f"{entry.file}: the whole body is a mirror image, its feet point backwards in "
+            f"{_share(int((pointing < 0.0).sum()), len(pointing))}: left and right joints have "
+            "each other's names, or an axis has the wrong sign; mend joints and labels alike"
+        )
 
 
 def check_hands(entries: Sequence[DatasetEntry], sequences: Sequence[LabelledSequence]) -> None:

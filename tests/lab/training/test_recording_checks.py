@@ -7,11 +7,17 @@ import msgspec
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
-from inhand_lab.training.recording_checks import check_hands, check_sequence
-from inhand_schemas.joints import JOINT_NAMES, Joint
+from inhand_lab.training.recording_checks import check_facing, check_hands, check_sequence
+from inhand_lab.world.interactions import INTERACTIONS
+from inhand_lab.world.simulation import simulate
+from inhand_schemas.joints import JOINT_NAMES, MIRRORED_JOINTS, Joint
+from inhand_tracker.body.skeleton import mirror_joints
 from inhand_tracker.mapping.learning import LabelledSequence
+from scipy.spatial.transform import Rotation
+from waving import waving
 
 ENTRY = DatasetEntry(file="recordings/a.mcap", interaction="drink", participant="p0", object="mug")
+WALKING = waving(20, 0)[0]
 TURNED = np.array([0.0, 1.0, 0.0, 0.0])
 
 
@@ -123,6 +129,34 @@ def test_an_object_in_both_hands_tells_nothing_of_handedness() -> None:
     places[1::2] = hands[1::2, 1]
     both = replace(between, translations=places)
     check_hands([ENTRY] * 3, [both, replace(both, left_handed=True), recording()])
+
+
+def test_a_body_whose_feet_point_backwards_is_a_mirror_image() -> None:
+    for mirrored in (WALKING[:, list(MIRRORED_JOINTS)], WALKING * [-1.0, 1.0, 1.0]):
+        with pytest.raises(
+            DatasetError, match=r"a\.mcap: the whole body is a mirror image, its feet"
+        ):
+            check_facing(ENTRY, mirrored)
+
+
+def test_a_body_may_face_anywhere_lie_turn_and_hide_its_feet() -> None:
+    for axes, angles in (("y", 180), ("y", 90), ("x", 90), ("xyz", (100, 170, 20))):
+        turn = Rotation.from_euler(axes, angles, degrees=True)
+        check_facing(ENTRY, turn.apply(WALKING.reshape(-1, 3)).reshape(WALKING.shape))
+    check_facing(ENTRY, mirror_joints(WALKING))
+    hidden = WALKING[:, list(MIRRORED_JOINTS)]
+    hidden[:, [Joint.FOOT_LEFT, Joint.FOOT_RIGHT]] = np.nan
+    check_facing(ENTRY, hidden)
+
+
+@pytest.mark.long
+def test_no_simulated_person_is_a_mirror_image_and_all_mirror_images_are_found() -> None:
+    for interaction in INTERACTIONS:
+        for participant in range(2):
+            joints = simulate(interaction, participant, seed=11, frames=60).joints_in_camera
+            check_facing(ENTRY, joints)
+            with pytest.raises(DatasetError, match="mirror image"):
+                check_facing(ENTRY, joints[:, list(MIRRORED_JOINTS)])
 
 
 def replaced(entry: DatasetEntry, **changes: str) -> DatasetEntry:

@@ -1,0 +1,81 @@
+"""Finds the recording whose labels write rotations in another way than all others of an object."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from inhand_tracker.body.skeleton import RIGHT_HAND, part_bases, pelvis_basis
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array, Flags
+from inhand_tracker.mapping.learning import LabelledSequence
+
+from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
+from inhand_lab.training.parameters import DEFAULT_TRAINING
+
+_READINGS = {
+    "its quaternions are (x, y, z, w): write (w, x, y, z)": lambda q: q[:, [3, 0, 1, 2]],
+    "its rotations are inverse, those of the camera in the object's frame: "
+    "write camera_from_object": rotations.conjugate,
+}
+"""How rotations (T, 4) are meant that are written in another way, by the mend."""
+
+
+def check_rotations(
+    entries: Sequence[DatasetEntry], sequences: Sequence[LabelledSequence], mirror_normal: Array
+) -> None:
+    """Check that an object is turned in the same ways to everybody's body.
+
+    ``mirror_normal`` (3,) is the object's. Raises DatasetError for a recording that is unlike all
+    others, and like them if its rotations are read in another way.
+    """
+    if len(sequences) < DEFAULT_TRAINING.fewest_compared:
+        return
+    moments = np.array([_second_moments(one, mirror_normal) for one in sequences])
+    for mend, reading in _READINGS.items():
+        read_anew = [replace(one, rotations=reading(one.rotations)) for one in sequences]
+        anew = np.array([_second_moments(one, mirror_normal) for one in read_anew])
+        for index in np.flatnonzero(_fits_better(moments, anew)).tolist():
+            entry = entries[index]
+            raise DatasetError(
+                f"{entry.file}: {entry.object!r} is turned to the body in other ways than in "
+                f"{len(entries) - 1} other recordings, and in the same ones if {mend}"
+            )
+
+
+def _fits_better(moments: Array, anew: Array) -> Flags:
+    """Return which of N recordings are like the others if read anew, and clearly unlike as read.
+
+    ``moments`` and ``anew`` are (N, 2, 4, 4).
+    """
+    count = len(moments)
+    pairs = np.einsum("nbij,mbij->nmb", moments, moments)
+    own = np.einsum("nnb->nb", pairs)
+    before = (pairs.sum(axis=1) - own) / (count - 1)
+    others = (moments.sum(axis=0) - moments) / (count - 1)
+    after = np.einsum("nbij,nbij->nb", anew, others)
+    # How well each recording m agrees with those that are neither m nor n.
+    among = (pairs.sum(axis=1) - own - pairs) / (count - 2)
+    among[np.arange(count), np.arange(count)] = np.nan
+    usual = np.nanmedian(among, axis=1)
+    clear = (after - before).max(axis=1) >= DEFAULT_TRAINING.clear_rotation_gain
+    like = (after >= DEFAULT_TRAINING.same_rotation_share * usual).all(axis=1)
+    return np.asarray(clear & like)
+
+
+def _second_moments(sequence: LabelledSequence, mirror_normal: Array) -> Array:
+    """Return the mean products (2, 4, 4) of rotations' components, in the pelvis' and hand's bases.
+
+    They do not depend on quaternions' signs. The trace of the product of two recordings' is the
+    mean squared cosine of half the angle between their rotations.
+    """
+    sequence = sequence.right_handed(mirror_normal)
+    whole = np.isfinite(sequence.joints).all(axis=(1, 2))
+    labelled = np.isfinite(sequence.rotations).all(axis=1)
+    frames = np.flatnonzero(whole & labelled)
+    frames = frames[:: 1 + len(frames) // DEFAULT_TRAINING.compared_frames]
+    joints, turns = sequence.joints[frames], sequence.rotations[frames]
+    pelvis = pelvis_basis(joints)
+    hand = part_bases(joints, pelvis).rotations[:, RIGHT_HAND]
+    bases = rotations.conjugate(np.stack((pelvis.rotations, hand)))
+    local = rotations.multiply(bases, turns)
+    return np.asarray(np.einsum("bti,btj->bij", local, local) / max(len(frames), 1))
