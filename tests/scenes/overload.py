@@ -3,7 +3,8 @@
 ``python tests/scenes/overload.py``: a recording with pictures of somebody who was not learned from
 is replayed at its rate, at three times its rate, and beside a busy loop on each core; then the
 demonstration runs with all cores, and pinned to one. A line each: skeletons that came, how many of
-them were skipped, the age of poses, the tracker's last effort, and the error against the labels.
+them were skipped, messages that were lost on their way to the recorder, the age of poses, the
+tracker's last effort, and the error against the labels.
 
 A replayed pose's age is the time from its skeleton to itself, both as they reach the recorder: the
 skeleton is sent when the replayed camera captures it. A demonstration's is from capture to the
@@ -39,12 +40,16 @@ UNDER_WAY = 3
 
 @dataclass(frozen=True)
 class Row:
-    """What was seen in one case; ages in milliseconds, the error in centimetres."""
+    """What was seen in one case; ages in milliseconds, the error in centimetres.
+
+    ``lost`` is how many messages of any stream did not reach the recorder.
+    """
 
     case: str
     skeletons: int
     poses: int
     skipped: int
+    lost: int
     age_p50: float
     age_p99: float
     effort: float
@@ -53,15 +58,15 @@ class Row:
     def line(self) -> str:
         """The row of the table."""
         return (
-            f"{self.case:32} {self.skeletons:9} {self.skipped:7} {self.age_p50:8.1f} "
-            f"{self.age_p99:8.1f} {self.effort:7.2f} {self.error_cm:8.2f}"
+            f"{self.case:32} {self.skeletons:9} {self.skipped:7} {self.lost:5} "
+            f"{self.age_p50:8.1f} {self.age_p99:8.1f} {self.effort:7.2f} {self.error_cm:8.2f}"
         )
 
 
 Ages = Callable[[Path, Review], Iterable[float]]
 """Milliseconds that each pose of a recording is old."""
 
-TITLE = f"{'':32} skeletons skipped  age p50  p99, ms  effort error, cm"
+TITLE = f"{'':32} skeletons skipped  lost  age p50  p99, ms  effort error, cm"
 
 
 def prepare(rig: RunningRig, frames: int) -> tuple[Path, Path]:
@@ -127,7 +132,8 @@ def demonstrated(rig: RunningRig, case: str, cores: set[int]) -> Row:
         demo = rig.inhand("demo", "--folder", rig.folder / "demo", "--json", result)
     finally:
         os.sched_setaffinity(0, before)
-    finish(demo)
+    demo.popen.wait(LONGEST_S)
+    assert result.exists(), demo.stderr
     recorded = Path(json.loads(result.read_text())["recording"])
     shape = load_model(next(recorded.parents[1].glob("*.model"))).shape
     seen = review(recorded, shape.name, shape.marked_vertices)
@@ -147,6 +153,7 @@ def row(case: str, recorded: Path, seen: Review, ages: Ages) -> Row:
         seen.traffic[SKELETONS.stream].published,
         seen.traffic[POSE.stream].published,
         seen.skipped_frames,
+        sum(one.lost for one in seen.traffic.values()),
         p50,
         p99,
         efforts[-1],

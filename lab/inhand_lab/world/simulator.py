@@ -22,8 +22,9 @@ from inhand_lab.world.simulation import SensedFrame, Simulation, simulate
 UNNAMED_CAMERA = "simulator"
 """Name of the camera in labels, until capture puts its own in its place."""
 
-LONGEST_DELAY_S = 0.5
-"""Delay beyond which the world stands still instead of hurrying after its time, seconds."""
+LONGEST_DELAY = 0.25
+"""Delay, in periods, beyond which the world stands still instead of hurrying after its time: on a
+busy machine the simulator draws fewer frames, and none whose time is long past."""
 
 PREPARED_AHEAD_S = 4.0
 """Time before its first frame at which the next performance is prepared, seconds: memory holds two
@@ -78,7 +79,7 @@ class SimulatorSource:
             ready = simulation.render(frame) if wanted() else None
             if self._closed.wait(max(0.0, due - time.monotonic())):
                 return
-            if time.monotonic() - due > LONGEST_DELAY_S:
+            if time.monotonic() - due > LONGEST_DELAY * period:
                 due, due_ns = time.monotonic(), time.time_ns()
             yield _captured(simulation, frame, due_ns, ready)
             due, due_ns = due + period, due_ns + round(1e9 * period)
