@@ -1,5 +1,6 @@
 """Datasets whose people moved before a real sensor and whose objects are simulated."""
 
+import logging
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,6 +31,12 @@ FITTING = {
 
 LONGEST_GAP_S = 0.5
 """Time out of sight for which a body is made up, seconds; a longer gap ends the stretch."""
+
+log = logging.getLogger(__name__)
+
+
+class NobodyInSightError(DatasetError):
+    """A recording shows nobody in any frame."""
 
 
 @dataclass(frozen=True)
@@ -93,22 +100,39 @@ def _fitting(entry: DatasetEntry) -> tuple[str, ...]:
 def _takes(
     bodies: Dataset, pairs: Sequence[tuple[DatasetEntry, str]], seed: int, camera: Camera
 ) -> Iterator[Take]:
+    """Yield a simulation of each pair; a recording that shows nobody is named and left out.
+
+    Raises DatasetError where all of them do.
+    """
     participants = sorted({entry.participant for entry in bodies.entries})
+    nobody = None
+    taken = False
     for entry, interaction in pairs:
-        recorded = recorded_body(
-            bodies,
-            entry,
-            participant=participants.index(entry.participant),
-            recording=bodies.entries.index(entry),
-        )
+        try:
+            recorded = recorded_body(
+                bodies,
+                entry,
+                participant=participants.index(entry.participant),
+                recording=bodies.entries.index(entry),
+            )
+        except NobodyInSightError as error:
+            log.warning("%s; it is left out", error)
+            nobody = error
+            continue
+        taken = True
         name = f"{interaction}_{Path(entry.file).stem}"
         yield Take(name, entry.participant, drive(recorded, interaction, seed, camera))
+    if nobody is not None and not taken:
+        raise nobody
 
 
 def recorded_body(
     dataset: Dataset, entry: DatasetEntry, *, participant: int, recording: int
 ) -> RecordedBody:
-    """The longest stretch of a recording in which somebody is in sight; raises DatasetError."""
+    """Return the longest stretch of a recording in which somebody is in sight.
+
+    Raises NobodyInSightError where nobody ever is, and DatasetError where a joint never is.
+    """
     frames = load_frames(dataset.path(entry), entry.object)
     joints = np.full((len(frames), 20, 3), np.nan)
     states = np.zeros((len(frames), 20), np.uint8)
@@ -120,7 +144,13 @@ def recorded_body(
             states[index] = [JOINT_STATES.index(state) for state in person.states]
             confidences[index] = person.confidences
     seen = np.asarray(np.isfinite(joints).all(axis=2))
+    states[~seen] = JOINT_STATES.index("missing")
+    confidences[~seen] = 0.0
     frame_rate = frame_rate_of(entry, np.array([frame.time_ns for frame in frames], np.int64))
+    if not seen.any():
+        raise NobodyInSightError(
+            f"{entry.file} shows nobody: a body with all twenty joints is needed to hold things"
+        )
     stretch = _in_sight(seen, frame_rate)
     if not seen[stretch].any(axis=0).all():
         raise DatasetError(f"{entry.file}: a body with all twenty joints is needed to hold things")

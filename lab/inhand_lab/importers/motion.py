@@ -16,7 +16,7 @@ from inhand_lab.importers.messages import PERSON, imported_label, imported_skele
 from inhand_lab.importers.motion_archive import Motion, read_motion
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.shapes import shape_of_mesh, shape_of_points
-from inhand_lab.importers.sources import find_files
+from inhand_lab.importers.sources import find_files, read_shown
 from inhand_lab.importers.timing import Timing, thin
 
 _HALF_TURN_ABOUT_X = np.array([0.0, 1.0, 0.0, 0.0])
@@ -27,12 +27,13 @@ def import_motion(
 ) -> Dataset:
     """Import archives, or folders of them, as skeletons and labels, one recording each.
 
-    Each recording is placed as a whole: the person stands upright 3 m before the camera and faces
-    it when first seen. An ``.obj`` with the object's name beside the archive is its mesh;
-    otherwise it is the convex hull of the marked points. The first archive that has an object
-    gives its marked points; others may differ by 1 cm. Raises DatasetError or InhandError.
+    Archives that show nobody are left out. Each recording is placed as a whole: the person
+    stands upright 3 m before the camera and faces it when first seen. An ``.obj`` with the
+    object's name beside the archive is its mesh; otherwise it is the convex hull of the marked
+    points. The first archive that has an object gives its marked points; others may differ by 1
+    cm. Raises DatasetError or InhandError.
     """
-    motions = [read_motion(path) for path in find_files(sources, ".npz")]
+    motions = read_shown(find_files(sources, ".npz"), read_motion)
     timings = [thin(motion.path, motion.recorded_rate, frame_rate) for motion in motions]
     shapes = _shapes(motions)
     writer = DatasetWriter(folder)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.shapes import object_name
+from inhand_lab.importers.sources import NobodyError, without_zeros
 
 log = logging.getLogger(__name__)
 
@@ -71,9 +72,9 @@ def _joints(path: Path, values: dict[str, Any]) -> Array:
         raise DatasetError(f"{path}: joint_names are not the 20 joints of a Kinect")
     measured = _array(path, values, "joints", "f", (None, 20, 3)).astype(np.float64)
     ordered = measured[:, [names.index(name) for name in JOINT_NAMES]]
-    joints = np.where(np.isfinite(ordered), ordered, np.nan)
+    joints = without_zeros(np.where(np.isfinite(ordered), ordered, np.nan))
     if not any(map(has_pelvis, joints)):
-        raise DatasetError(f"{path} has no frame with a body: its hips and spine are never seen")
+        raise NobodyError(f"{path} has no frame with a body: its hips and spine are never seen")
     _warn_of_odd_parts(path, joints)
     return joints
 

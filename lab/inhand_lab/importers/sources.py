@@ -1,9 +1,46 @@
-"""Finds the files that an import reads."""
+"""Finds the files that an import reads, and passes over those that show nobody."""
 
-from collections.abc import Iterable
+import logging
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.datasets.dataset import DatasetError
+
+log = logging.getLogger(__name__)
+Recording = TypeVar("Recording")
+
+
+class NobodyError(DatasetError):
+    """A file shows nobody in any frame."""
+
+
+def without_zeros(joints: Array) -> Array:
+    """Take skeletons (T, 20, 3) that are all zero as missing, NaN: trackers write so of nobody."""
+    nobody = (joints == 0.0).all(axis=(1, 2), keepdims=True)
+    return np.where(nobody, np.nan, joints)
+
+
+def read_shown(paths: Iterable[Path], read: Callable[[Path], Recording]) -> list[Recording]:
+    """Read files with ``read``; those that show nobody are named in a warning and left out.
+
+    Raises DatasetError where all of them show nobody, and whatever else ``read`` raises.
+    """
+    recordings: list[Recording] = []
+    errors: list[NobodyError] = []
+    for path in paths:
+        try:
+            recordings.append(read(path))
+        except NobodyError as error:
+            errors.append(error)
+    if errors and not recordings:
+        raise errors[0]
+    for nobody in errors:
+        log.warning("%s; it is left out", nobody)
+    return recordings
 
 
 def find_files(sources: Iterable[Path], suffix: str) -> list[Path]:

@@ -22,7 +22,7 @@ from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.matlab import read_mat
 from inhand_lab.importers.messages import imported_skeletons
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
-from inhand_lab.importers.sources import find_files
+from inhand_lab.importers.sources import NobodyError, find_files, read_shown, without_zeros
 from inhand_lab.importers.timing import Timing, thin
 
 SKELETON_SUFFIX = "_skeleton.mat"
@@ -109,11 +109,11 @@ def import_utd_mhad(
 ) -> Dataset:
     """Import ``*_skeleton.mat`` files, or folders of them, without objects or labels.
 
-    ``*_depth.mat`` beside a skeleton comes with it. The two are paired by index; where one is
-    longer its last frames are left out, and ``dataset.toml`` says how many were in all. Raises
-    DatasetError or InhandError.
+    Files that show nobody are left out. ``*_depth.mat`` beside a skeleton comes with it. The two
+    are paired by index; where one is longer its last frames are left out, and ``dataset.toml`` says
+    how many were in all. Raises DatasetError or InhandError.
     """
-    trials = [read_trial(path) for path in find_files(sources, SKELETON_SUFFIX)]
+    trials = read_shown(find_files(sources, SKELETON_SUFFIX), read_trial)
     timing = thin(sources[0], RECORDED_RATE, frame_rate)
     writer = DatasetWriter(folder)
     unpaired = 0
@@ -145,7 +145,9 @@ def read_trial(path: Path) -> UtdMhadTrial:
         skeletons = skeletons[..., None]
     if skeletons.shape[:2] != (20, 3) or skeletons.shape[-1] == 0:
         raise DatasetError(f"{path}: d_skel is {skeletons.shape}, and should be (20, 3, frames)")
-    joints = np.moveaxis(skeletons.astype(np.float64), -1, 0)[:, _OUR_ORDER]
+    joints = without_zeros(np.moveaxis(skeletons.astype(np.float64), -1, 0)[:, _OUR_ORDER])
+    if not np.isfinite(joints).all(axis=2).any():
+        raise NobodyError(f"{path} has no frame with a body: no joint is anywhere but at zero")
     depth_file = path.with_name(stem + DEPTH_SUFFIX)
     return UtdMhadTrial(
         stem,

@@ -11,7 +11,11 @@ from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.driven.dataset import DrivenSettings, generate_driven, pairs_for, recorded_body
 from inhand_lab.world.messages import person_message
 from inhand_lab.world.simulation import Simulation
+from inhand_runtime.recording import RecordingWriter
+from inhand_schemas.keys import Site
 from inhand_schemas.messages import Message, Skeletons
+from inhand_schemas.topics import SKELETONS
+from msgspec.structs import replace
 from recorded_bodies import source
 
 
@@ -75,3 +79,50 @@ def test_a_recording_without_a_body_is_refused(tmp_path: Path) -> None:
     writer.add_recording(entry, [Skeletons(sequence=0, time_ns=0)])
     with pytest.raises(DatasetError, match="all twenty joints"):
         recorded_body(writer.finish({}), entry, participant=0, recording=0)
+
+
+def with_nobody(bodies: Dataset, chosen: range) -> Dataset:
+    """The first recording again, with skeletons that are all zero in the chosen frames."""
+    entry = bodies.entries[0]
+    messages = skeletons(source(), range(100, 160))
+    for number in chosen:
+        message = messages[number]
+        assert isinstance(message, Skeletons)
+        zeros = replace(message.people[0], joints=((0.0, 0.0, 0.0),) * 20, states=("tracked",) * 20)
+        messages[number] = replace(message, people=(zeros,))
+    bodies.path(entry).unlink()
+    with RecordingWriter(bodies.path(entry)) as writer:
+        for message in messages:
+            writer.write(
+                SKELETONS.key(Site(), "camera"),
+                SKELETONS.encode(message),
+                received_ns=message.time_ns,
+                captured_ns=message.time_ns,
+                sequence=message.sequence,
+            )
+    return Dataset(bodies.folder, (entry, bodies.entries[1]))
+
+
+def test_frames_whose_skeleton_is_all_zero_are_out_of_sight(
+    tmp_path: Path, bodies: Dataset
+) -> None:
+    gaps = with_nobody(bodies, range(20, 25))
+    settings = DrivenSettings(None, 4, images=False)
+    driven = generate_driven(tmp_path / "driven", gaps, settings, lambda: None)
+    joints = labelled_sequence(driven, driven.entries[0]).joints
+    assert len(joints) == 60
+    assert np.isnan(joints[20:25]).all()
+    assert np.isfinite(joints[25:]).any()
+
+
+def test_a_recording_that_shows_nobody_is_named_and_left_out(
+    tmp_path: Path, bodies: Dataset, caplog: pytest.LogCaptureFixture
+) -> None:
+    nobody = with_nobody(bodies, range(60))
+    settings = DrivenSettings(None, 4, images=False)
+    driven = generate_driven(tmp_path / "driven", nobody, settings, lambda: None)
+    assert [entry.participant for entry in driven.entries] == ["s1"]
+    assert "recordings/take_0.mcap shows nobody" in caplog.text
+    alone = Dataset(nobody.folder, nobody.entries[:1])
+    with pytest.raises(DatasetError, match=r"take_0\.mcap shows nobody"):
+        generate_driven(tmp_path / "alone", alone, settings, lambda: None)

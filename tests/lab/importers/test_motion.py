@@ -182,6 +182,7 @@ class TestMotion:
             ({"joints": None}, "has no 'joints'"),
             ({"joints": np.zeros((48, 19, 3))}, r"'joints' is float64 of shape \(48, 19, 3\)"),
             ({"joints": np.full((48, 20, 3), np.nan)}, "no frame with a body"),
+            ({"joints": np.zeros((48, 20, 3))}, "no frame with a body"),
             ({"joints": np.zeros((0, 20, 3))}, "no frame with a body"),
             ({"joint_names": np.array(["Nose"] * 20)}, "not the 20 joints"),
             ({"object_pose": np.zeros((47, 7))}, "'object_pose' is"),
@@ -246,3 +247,18 @@ class TestRealData:
         dataset = import_motion([DATA / "motion" / "sub3_largebox_003.npz"], tmp_path / "out")
         assert len(dataset.shape("large_box").faces) == 27_581
         assert "misnamed" in caplog.text
+
+
+def test_of_several_archives_one_that_shows_nobody_is_named_and_left_out(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    save_archive(tmp_path / "a.npz", joints=np.zeros((48, 20, 3)))
+    shown = archive_values()["joints"]
+    shown[:5] = 0.0
+    save_archive(tmp_path / "b.npz", joints=shown)
+    dataset = import_motion([tmp_path], tmp_path / "out", 240.0)
+    entry = only_entry(dataset)
+    assert entry.file == "recordings/b.mcap"
+    assert "a.npz has no frame with a body" in caplog.text
+    frames = load_frames(dataset.path(entry), entry.object)
+    assert [len(frame.people) for frame in frames] == [0] * 5 + [1] * 43

@@ -163,3 +163,31 @@ class TestRealData:
         joints = labelled_sequence(dataset, only_entry(dataset)).joints
         paths = np.linalg.norm(np.diff(joints, axis=0), axis=-1).sum(axis=0)
         assert paths[Joint.WRIST_RIGHT] > 3.0 * paths[Joint.WRIST_LEFT]
+
+
+class TestNobody:
+    def save(self, folder: Path, shown: slice, stem: str) -> Path:
+        """A trial whose skeletons are all zero but in some frames."""
+        path = save_trial(folder, 12, None, stem)
+        joints = scipy.io.loadmat(path)["d_skel"]
+        zeros = np.zeros_like(joints)
+        zeros[..., shown] = joints[..., shown]
+        scipy.io.savemat(path, {"d_skel": zeros})
+        return path
+
+    def test_frames_whose_skeleton_is_all_zero_show_nobody(self, tmp_path: Path) -> None:
+        source = self.save(tmp_path, slice(3, 12), "a15_s3_t2")
+        dataset = import_utd_mhad([source], tmp_path / "out")
+        frames = load_frames(dataset.path(only_entry(dataset)), None)
+        assert [len(frame.people) for frame in frames] == [0] * 3 + [1] * 9
+
+    def test_a_trial_that_shows_nobody_is_named_and_left_out(
+        self, tmp_path: Path, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        self.save(tmp_path, slice(0, 0), "a15_s3_t2")
+        save_trial(tmp_path, 12, None, "a15_s3_t3")
+        dataset = import_utd_mhad([tmp_path], tmp_path / "out")
+        assert only_entry(dataset).file == "recordings/a15_s3_t3.mcap"
+        assert "a15_s3_t2_skeleton.mat has no frame with a body" in caplog.text
+        with pytest.raises(DatasetError, match=r"a15_s3_t2_skeleton\.mat has no frame with a body"):
+            import_utd_mhad([tmp_path / "a15_s3_t2_skeleton.mat"], tmp_path / "other")

@@ -1,5 +1,6 @@
 from inhand_tracker.people.following import PersonFollower
 from inhand_tracker.people.parameters import DEFAULT_PEOPLE
+from msgspec.structs import replace
 from people import person
 
 PATIENCE_NS = DEFAULT_PEOPLE.patience_ns
@@ -47,3 +48,11 @@ def test_nobody_is_chosen_from_nobody() -> None:
     follower = PersonFollower()
     assert follower.choose([], 0) is None
     assert follower.choose([person(2, missing=(0,))], 1) is None
+
+
+def test_a_skeleton_that_is_all_zero_is_nobody_to_follow() -> None:
+    zeros = replace(person(1), joints=((0.0, 0.0, 0.0),) * 20)
+    follower = PersonFollower()
+    assert follower.choose([zeros], 0) is None
+    other = person(2, 3.0)
+    assert follower.choose([zeros, other], 1) is other

@@ -35,6 +35,13 @@ def test_inferred_joints_are_used() -> None:
     assert np.isfinite(joints_of(guessed)).all()
 
 
+def test_a_skeleton_that_is_all_zero_is_of_nobody() -> None:
+    zeros = Person(
+        id=1, joints=((0.0, 0.0, 0.0),) * 20, states=("tracked",) * 20, confidences=(1.0,) * 20
+    )
+    assert np.isnan(joints_of(zeros)).all()
+
+
 VIEW = {"width": 64, "height": 48, "fx": 50.0, "fy": 50.0, "cx": 31.5, "cy": 23.5}
 INFO = CameraInfo(sequence=0, time_ns=0, depth_scale=0.0005, **VIEW)
 COLOUR = encode_colour(np.full((48, 64, 3), 90, np.uint8))

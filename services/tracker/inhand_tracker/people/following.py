@@ -140,7 +140,9 @@ def _is_gone(seen_ns: int, time_ns: int, patience_ns: int) -> bool:
 
 def _nearest(people: Sequence[Person]) -> Person | None:
     hips = Joint.HIP_CENTER
-    visible = [person for person in people if person.states[hips] != "missing"]
+    visible = [
+        person for person in people if person.states[hips] != "missing" and any(person.joints[hips])
+    ]
     return min(visible, key=_depth, default=None)
 
 

@@ -20,9 +20,12 @@ Need = Literal["edges", "depth", "colour"]
 def joints_of(person: Person) -> Array:
     """Give a person's joints (20, 3) in the camera frame.
 
-    Missing joints are NaN, and so are those that are farther away than any room.
+    Missing joints are NaN, and so are those that are farther away than any room, and all of a
+    skeleton whose joints are all zero, which trackers write of nobody.
     """
     joints = np.array(person.joints)
+    if not joints.any():
+        return np.full(joints.shape, np.nan)
     joints[[state == "missing" for state in person.states]] = np.nan
     return without_impossible(joints)
 
