@@ -32,6 +32,10 @@ POLL_S = 0.1
 """Seconds that a look for new messages lasts at the most: the daemon stops within them."""
 MOST_WAITING = 256
 """Number of skeletons that may arrive during one step and still count for the body's movement."""
+MOST_TAKEN = 1024
+"""Number of messages that are taken before the next step: a flood of them must not end all work."""
+LEAVING_S = 0.5
+"""Seconds that counting what is left takes at the most when the daemon stops."""
 QUEUE_BYTES = 512 * 2**20
 """Bytes of skeletons, and of frames, that may wait where every frame matters; beyond them the
 oldest are dropped."""
@@ -101,13 +105,15 @@ class TrackerService:
     def _take_what_came(self) -> None:
         """Take what has come by now, since only then it is known what is the newest; where every
         frame matters, as much as the next moment needs, and let the rest wait in the inbox."""
-        wait_s = self._moments.wait_s(self._now())
-        sample = self._daemon.receive(min(wait_s, POLL_S))
-        while sample is not None:
+        timeout_s = min(self._moments.wait_s(self._now()), POLL_S)
+        for _ in range(MOST_TAKEN):
+            sample = self._daemon.receive(timeout_s)
+            if sample is None:
+                return
             self._take(sample)
             if self._every and self._moments.decided():
                 return
-            sample = self._daemon.receive(0.0)
+            timeout_s = 0.0
 
     def _skip(self, skipped: Sequence[Skeletons]) -> None:
         """Count moments that are skipped, and remember what bodies did in them."""
@@ -117,7 +123,8 @@ class TrackerService:
 
     def _leave_what_waits(self) -> None:
         """Count, at the end, what came and will not be tracked any more."""
-        while (sample := self._daemon.receive(0.0)) is not None:
+        deadline = self._now() + LEAVING_S
+        while self._now() < deadline and (sample := self._daemon.receive(0.0)) is not None:
             self._take(sample)
         self._count_unused(self._moments.leave())
 
