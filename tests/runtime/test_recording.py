@@ -195,8 +195,8 @@ def test_a_folder_that_is_not_there_is_told(tmp_path: Path) -> None:
     ("content", "message"),
     [
         (None, "does not exist: check the path"),
-        (b"", "was cut off: `inhand recording recover .*` saves what is left"),
-        (b"\x89MCAP0\r\n", "was cut off"),
+        (b"", "is empty: nothing was recorded into it; delete it"),
+        (b"\x89MCAP0\r\n", "was cut off: `inhand recording recover .*` saves what is left"),
         (b"\x89MCAP0\r\n" * 2, "cannot read|is damaged"),
         (b"not a recording at all", "is no recording: give a .mcap file"),
     ],

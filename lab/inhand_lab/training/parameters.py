@@ -41,6 +41,16 @@ class TrainingParameters:
     """That cosine as a share of what the other recordings have among each other, from which a
     recording is like them: it is 0.93 or more where one is written in another way. It seldom is
     where somebody only grips an object the other way round."""
+    moved_m_per_s: float = 0.1
+    """Speed in metres a second above which an object is moved, so somebody holds it."""
+    fewest_moved: int = 30
+    """Number of frames of a moved object from which on it is judged how it is held."""
+    clear_hold_ratio: float = 1.25
+    """Spread of a hand's places on the object as rotations are read, in that if they are read in
+    another way, from which all of an object's recordings are written in that way. The median of
+    right ones is 0.93 or less for the simulator's objects, and 0.3 or less for measured ones; of
+    misread ones it is more than this for eleven of these fifteen, and 2.3 or more for measured
+    ones."""
 
     # Which meshes and marks are refused (shape_checks).
     smallest_m: float = 0.005

@@ -1,9 +1,13 @@
-"""Finds the recording whose labels write rotations in another way than all others of an object."""
+"""Finds recordings whose labels write rotations in another way than is meant.
+
+One alone is unlike all others; where all are, the hand does not stay where it holds the object.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from inhand_schemas.joints import Joint
 from inhand_tracker.body.skeleton import RIGHT_HAND, part_bases, pelvis_basis
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Flags
@@ -12,8 +16,14 @@ from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
 from inhand_lab.training.parameters import DEFAULT_TRAINING
 
+
+def _from_xyzw(turns: Array) -> Array:
+    """Read rotations (T, 4) as if (x, y, z, w) were written."""
+    return turns[:, [3, 0, 1, 2]]
+
+
 _READINGS = {
-    "its quaternions are (x, y, z, w): write (w, x, y, z)": lambda q: q[:, [3, 0, 1, 2]],
+    "its quaternions are (x, y, z, w): write (w, x, y, z)": _from_xyzw,
     "its rotations are inverse, those of the camera in the object's frame: "
     "write camera_from_object": rotations.conjugate,
 }
@@ -26,8 +36,10 @@ def check_rotations(
     """Check that an object is turned in the same ways to everybody's body.
 
     ``mirror_normal`` (3,) is the object's. Raises DatasetError for a recording that is unlike all
-    others, and like them if its rotations are read in another way.
+    others, and like them if its rotations are read in another way, and for recordings in all of
+    which the hand stays much better where it holds the object if they are.
     """
+    _check_holds(entries, sequences)
     if len(sequences) < DEFAULT_TRAINING.fewest_compared:
         return
     moments = np.array([_second_moments(one, mirror_normal) for one in sequences])
@@ -40,6 +52,38 @@ def check_rotations(
                 f"{entry.file}: {entry.object!r} is turned to the body in other ways than in "
                 f"{len(entries) - 1} other recordings, and in the same ones if {mend}"
             )
+
+
+def _check_holds(entries: Sequence[DatasetEntry], sequences: Sequence[LabelledSequence]) -> None:
+    """Raise DatasetError where hands in all recordings stay better if read as (x, y, z, w)."""
+    ratios = [
+        _hand_spread_m(one) / _hand_spread_m(replace(one, rotations=_from_xyzw(one.rotations)))
+        for one in sequences
+    ]
+    ratios = [ratio for ratio in ratios if np.isfinite(ratio)]
+    if ratios and min(ratios) > 1.0 and np.median(ratios) >= DEFAULT_TRAINING.clear_hold_ratio:
+        raise DatasetError(
+            f"{entries[0].file} and others: hands stay {np.median(ratios):.1f} times as well where "
+            f"they hold {entries[0].object!r} if quaternions are (x, y, z, w): write (w, x, y, z)"
+        )
+
+
+def _hand_spread_m(sequence: LabelledSequence) -> float:
+    """Return how far a hand usually is from its place in the object's frame while that is moved.
+
+    It is in metres, of the hand that stays better; NaN where the object is seldom moved.
+    """
+    speeds = np.linalg.norm(np.diff(sequence.translations, axis=0, prepend=np.nan), axis=1)
+    moved = speeds * sequence.frame_rate > DEFAULT_TRAINING.moved_m_per_s
+    hands = sequence.joints[:, [Joint.HAND_LEFT, Joint.HAND_RIGHT]]
+    used = moved & np.isfinite(hands).all(axis=(1, 2)) & np.isfinite(sequence.rotations).all(axis=1)
+    if used.sum() < DEFAULT_TRAINING.fewest_moved:
+        return np.nan
+    apart = hands[used] - sequence.translations[used, None]
+    turns = rotations.normalise(sequence.rotations[used])
+    held = rotations.rotate(rotations.conjugate(turns)[:, None], apart)
+    away = np.linalg.norm(held - np.median(held, axis=0), axis=2)
+    return float(np.median(away, axis=0).min())
 
 
 def _fits_better(moments: Array, anew: Array) -> Flags:

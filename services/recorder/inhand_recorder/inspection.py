@@ -22,7 +22,7 @@ class KeyInfo:
 
     ``type`` is the message type's name, or "unknown" for keys that are not this release's.
     ``rate_hz`` is over the time from its first message to its last; ``lost`` is what the
-    sequence numbers in the file say.
+    sequence numbers in the file say, 0 for keys whose messages are not numbered one by one.
     """
 
     key: str
@@ -111,7 +111,14 @@ def inspect_recording(path: Path) -> RecordingInfo:
         start_ns=min((tally.start_ns for tally in tallies.values()), default=0),
         end_ns=max((tally.end_ns for tally in tallies.values()), default=0),
         keys=tuple(
-            KeyInfo(key, _type(key), tally.messages, tally.bytes, tally.rate_hz, losses[key].lost)
+            KeyInfo(
+                key,
+                _type(key),
+                tally.messages,
+                tally.bytes,
+                tally.rate_hz,
+                losses[key].lost if _is_numbered(key) else 0,
+            )
             for key, tally in sorted(tallies.items())
         ),
         complete=complete and contents.unread_bytes == 0,
@@ -123,6 +130,15 @@ def inspect_recording(path: Path) -> RecordingInfo:
 def _shown_key(channel: Channel) -> str:
     apart = channel.message_encoding == APART_ENCODING
     return channel.topic + UNDECODABLE if apart else channel.topic
+
+
+def _is_numbered(key: str) -> bool:
+    """Whether a gap between a key's messages is a loss."""
+    try:
+        topic, _ = topic_of(key.removesuffix(UNDECODABLE))
+    except KeyFormatError:
+        return True
+    return topic.gaps_are_losses
 
 
 def _type(key: str) -> str:

@@ -67,8 +67,7 @@ def opened(path: Path) -> Iterator[Bytes]:
         with path.open("rb") as file:
             size = _size_without_zeros(file)
             if size == 0:
-                yield b""
-                return
+                raise RecordingError(f"{path} is empty: nothing was recorded into it; delete it")
             with mmap.mmap(file.fileno(), size, access=mmap.ACCESS_READ) as data:
                 _require_recording(path, data)
                 yield data

@@ -1,12 +1,16 @@
 """A recording whose rotations are written in another way than all others is named."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.training.rotation_checks import check_rotations
+from inhand_lab.world.interactions import INTERACTIONS
+from inhand_lab.world.simulation import simulate
+from inhand_schemas.joints import Joint
 from inhand_tracker.geometry import rotations
 from inhand_tracker.mapping.learning import LabelledSequence
 from scipy.spatial.transform import Rotation
@@ -93,3 +97,39 @@ def test_frames_without_body_or_label_and_two_recordings_say_nothing() -> None:
     check(people(2), 1, change=to_xyzw)
     empty = replace(sequences[0], rotations=np.full((60, 4), np.nan))
     check([*sequences[1:], empty], change=to_xyzw)
+
+
+def test_all_recordings_in_another_order_are_refused_by_where_hands_hold() -> None:
+    sequences = []
+    for one in people():
+        away = rotations.rotate(one.rotations, np.array([0.1, 0.2, -0.1]))
+        sequences.append(replace(one, translations=one.joints[:, Joint.HAND_RIGHT] + away))
+    check(list(sequences), change=to_xyzw)
+    with pytest.raises(
+        DatasetError, match=r"p0\.mcap and others: hands stay .*\(x, y, z, w\): wri"
+    ):
+        check(sequences, 0, 1, 2, 3, change=to_xyzw)
+
+
+@pytest.mark.long
+def test_no_simulated_object_is_refused_and_most_misread_ones_are() -> None:
+    missed = []
+    for interaction in INTERACTIONS:
+        shown = [simulate(interaction, person, seed=11, frames=150) for person in range(4)]
+        sequences = [
+            LabelledSequence(
+                f"p{number}",
+                one.person.handedness == "left",
+                one.joints_in_camera,
+                one.translations,
+                one.rotations,
+            )
+            for number, one in enumerate(shown)
+        ]
+        normal = np.array(shown[0].object_model.mirror_normal)
+        check_rotations([entry_of(f"p{n}") for n in range(4)], sequences, normal)
+        sequences[1] = replace(sequences[1], rotations=to_xyzw(sequences[1].rotations))
+        with suppress(DatasetError):
+            check_rotations([entry_of(f"p{n}") for n in range(4)], sequences, normal)
+            missed.append(interaction)
+    assert len(missed) <= 2

@@ -130,6 +130,8 @@ def _open(path: Path) -> Iterator[SeekingReader]:
 
 def _require_whole(path: Path, file: IO[bytes]) -> None:
     head = file.read(len(MCAP0_MAGIC))
+    if not head:
+        raise RecordingError(f"{path} is empty: nothing was recorded into it; delete it")
     if not MCAP0_MAGIC.startswith(head):
         raise RecordingError(f"{path} is no recording: give a .mcap file")
     size = file.seek(0, os.SEEK_END)
