@@ -21,6 +21,7 @@ from inhand_lab.datasets.followed_people import follow_people
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.people.joint_sequence import JointSequence
 from inhand_lab.training.parameters import DEFAULT_TRAINING
+from inhand_lab.training.recording_checks import check_facing
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,7 @@ def read_joints(dataset: Dataset, entry: DatasetEntry) -> JointSequence:
     for index, followed in enumerate(follow_people(frames)):
         if followed.person is not None:
             joints[index] = joints_of(followed.person)
+    check_facing(entry, joints)
     times_ns = np.array([frame.time_ns for frame in frames], np.int64)
     left_handed = entry.handedness == "left"
     return JointSequence(entry.interaction, entry.participant, left_handed, joints, times_ns)

@@ -2,17 +2,23 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import msgspec
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
+from inhand_lab.datasets.units import check_units
+from inhand_lab.importers.messages import imported_skeletons
+from inhand_lab.importers.motion_archive import read_motion
+from inhand_lab.importers.utd_mhad import read_trial
 from inhand_lab.training.recording_checks import check_facing, check_hands, check_sequence
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import simulate
 from inhand_schemas.joints import JOINT_NAMES, MIRRORED_JOINTS, Joint
 from inhand_tracker.body.skeleton import mirror_joints
 from inhand_tracker.mapping.learning import LabelledSequence
+from real_data import DATA, needs_real_data
 from scipy.spatial.transform import Rotation
 from waving import waving
 
@@ -157,6 +163,21 @@ def test_no_simulated_person_is_a_mirror_image_and_all_mirror_images_are_found()
             check_facing(ENTRY, joints)
             with pytest.raises(DatasetError, match="mirror image"):
                 check_facing(ENTRY, joints[:, list(MIRRORED_JOINTS)])
+
+
+@needs_real_data
+@pytest.mark.long
+def test_no_real_person_is_in_another_unit_or_a_mirror_image() -> None:
+    trials = [read_trial(path) for path in sorted((DATA / "utd-mhad").glob("*_skeleton.mat"))]
+    golf = [read_motion(path) for path in sorted((DATA / "motion").glob("golf*.npz"))]
+    box = read_motion(DATA / "motion" / "repaired" / "sub3_largebox_003.npz")
+    shown = [trial.joints_in_camera for trial in trials]
+    shown += [motion.joints for motion in (*golf, box)]
+    assert len(shown) > 100
+    for joints in shown:
+        check_facing(ENTRY, joints)
+        frames = [imported_skeletons(number, number, one) for number, one in enumerate(joints)]
+        check_units(Path("real.mcap"), frames, [None] * len(frames))
 
 
 def replaced(entry: DatasetEntry, **changes: str) -> DatasetEntry:
