@@ -104,6 +104,12 @@ def _check_bodies(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     seen = np.asarray(np.isfinite(sequence.joints).all(axis=2))
     frames = len(seen)
     most_missing = DEFAULT_TRAINING.most_missing_share * frames
+    nobody = int((~seen.any(axis=1)).sum())
+    if nobody > most_missing:
+        raise DatasetError(
+            f"{entry.file} does not show the person in {_share(nobody, frames)}: record it again, "
+            "or take it out of dataset.toml"
+        )
     without_pelvis = int((~seen[:, PELVIS_JOINTS].all(axis=1)).sum())
     if without_pelvis > most_missing:
         needed = ", ".join(JOINT_NAMES[joint] for joint in sorted(PELVIS_JOINTS))

@@ -68,6 +68,10 @@ REFUSED: dict[str, tuple[Callable[[LabelledSequence], LabelledSequence], str]] =
         lambda s: without_joint(s, "HipLeft", 11),
         "no pelvis in 11 of 20 frames, .*HipCenter, Spine, HipLeft, HipRight",
     ),
+    "a person": (
+        lambda s: replace(s, joints=np.full_like(s.joints, np.nan)),
+        "does not show the person in 20 of 20 frames: record it again, or take it out",
+    ),
     "a joint": (
         lambda s: without_joint(s, "FootLeft", 11),
         "lacks joints in 11 of 20 frames, FootLeft most often, and 50% may",
