@@ -100,9 +100,11 @@ def _draw(vertices, faces, shades, lens, label, colour, inverse_depth, labels): 
         for v in range(top, bottom + 1):
             share_b = ((left - ua) * (vc - va) - (uc - ua) * (v - va)) * scale
             share_c = ((ub - ua) * (v - va) - (left - ua) * (vb - va)) * scale
+            entered = False
             for u in range(left, right + 1):
                 share_a = 1.0 - share_b - share_c
                 if share_a >= 0.0 and share_b >= 0.0 and share_c >= 0.0:
+                    entered = True
                     inverse = share_a * wa + share_b * wb + share_c * wc
                     if inverse > inverse_depth[v, u]:
                         inverse_depth[v, u] = inverse
@@ -113,6 +115,8 @@ def _draw(vertices, faces, shades, lens, label, colour, inverse_depth, labels): 
                                 + share_b * shades[b, channel]
                                 + share_c * shades[c, channel]
                             )
+                elif entered:
+                    break
                 share_b += step_b
                 share_c += step_c
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_runtime.compiled import njit
 from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array, Indices
 
@@ -47,6 +48,7 @@ LIMB_SOLIDS: tuple[LimbSolid, ...] = (
     (Joint.SHOULDER_CENTER, Joint.HEAD, 0.034, 0.031, "skin"),
 )
 """The limbs, which are drawn and which hide joints."""
+_PARENTS, _CHILDREN = (np.array([limb[end] for limb in LIMB_SOLIDS]) for end in range(2))
 
 
 @dataclass(frozen=True)
@@ -59,15 +61,29 @@ class PersonSurface:
     def posed(self, body: BodyMotion, frame: int) -> Surface:
         """The surface in the frame of reference of the body, at one of its frames."""
         frames = _part_frames(body, frame)
-        rotation = frames.rotation[self.part]
-        vertices = np.einsum("vij,vj->vi", rotation, self.surface.vertices)
-        normals = np.einsum("vij,vj->vi", rotation, self.surface.normals)
+        vertices, normals = _turned(
+            self.part, frames.rotation, self.surface.vertices, self.surface.normals
+        )
         return Surface(
             vertices + frames.translation[self.part],
             normals,
             self.surface.faces,
             self.surface.colours,
         )
+
+
+@njit(cache=True, nogil=True)
+def _turned(part, rotations, vertices, normals):  # type: ignore[no-untyped-def]
+    """Vertices and normals (V, 3) turned by the rotations (K, 3, 3) of their parts (V,)."""
+    turned, facing = np.empty_like(vertices), np.empty_like(normals)
+    for vertex in range(len(part)):
+        turn = rotations[part[vertex]]
+        x, y, z = vertices[vertex]
+        across, up, out = normals[vertex]
+        for axis in range(3):
+            turned[vertex, axis] = turn[axis, 0] * x + turn[axis, 1] * y + turn[axis, 2] * z
+            facing[vertex, axis] = turn[axis, 0] * across + turn[axis, 1] * up + turn[axis, 2] * out
+    return turned, facing
 
 
 def build_person_surface(person: SimulatedPerson, joints: Array) -> PersonSurface:
@@ -97,7 +113,7 @@ def _distance(joints: Array, parent: Joint, child: Joint) -> float:
 def _part_frames(body: BodyMotion, frame: int) -> Transform:
     joints = body.joints[frame]
     right = body.from_chest.rotation[frame, :, 0] + 0.01 * body.from_chest.rotation[frame, :, 1]
-    along = normalised([joints[child] - joints[parent] for parent, child, *_ in LIMB_SOLIDS])
+    along = normalised(joints[_CHILDREN] - joints[_PARENTS])
     across = normalised(np.cross(along, right))
     bones = np.stack([np.cross(across, along), across, along], axis=2)
     wholes = (
@@ -108,12 +124,7 @@ def _part_frames(body: BodyMotion, frame: int) -> Transform:
         body.from_left_hand,
     )
     return Transform(
-        np.stack(
-            [
-                *(joints[parent] for parent, *_ in LIMB_SOLIDS),
-                *(w.translation[frame] for w in wholes),
-            ]
-        ),
+        np.concatenate([joints[_PARENTS], [whole.translation[frame] for whole in wholes]]),
         np.concatenate([bones, [whole.rotation[frame] for whole in wholes]]),
     )
 

@@ -69,7 +69,13 @@ def steepest(inverse_depth, v, u):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
+def shares(fresh_share):  # type: ignore[no-untyped-def]
+    """Shares of lasting and fresh noise that together are of unit deviation."""
+    return np.float32(np.sqrt(1.0 - fresh_share**2)), np.float32(fresh_share)
+
+
+@njit(cache=True, nogil=True)
 def mixed(axial, lasting_at, fresh_at, fresh_share):  # type: ignore[no-untyped-def]
     """Noise of unit deviation, of which a share is new in every frame."""
-    fresh, lasting = np.float32(fresh_share), np.float32(np.sqrt(1.0 - fresh_share**2))
+    lasting, fresh = shares(fresh_share)
     return lasting * axial[lasting_at[0], lasting_at[1]] + fresh * axial[fresh_at[0], fresh_at[1]]

@@ -56,10 +56,11 @@ def surfaces_in_motion(scene: MovingScene, frame: int, exposure: float) -> list[
 
 def blurred(sharp: Canvas, room: Canvas, intrinsics: Intrinsics, moving: list[Moving]) -> Bytes:
     """Colours (H, W, 3) of moving surfaces that were drawn sharply before the room."""
-    parts = [_Part.of(one, intrinsics) for one in moving]
-    furthest = max(part.furthest for part in parts)
+    ways = [_way_in_pixels(one, intrinsics) for one in moving]
+    furthest = max(float(way.max()) for way in ways)
     if furthest < SHARPNESS:
         return sharp.colour
+    parts = [_Part.of(one, way) for one, way in zip(moving, ways, strict=True)]
     swept = [part.swept() for part in parts]
     window = window_around(intrinsics, np.concatenate(swept))
     if 0 in (window.intrinsics.width, window.intrinsics.height):
@@ -79,6 +80,11 @@ def blurred(sharp: Canvas, room: Canvas, intrinsics: Intrinsics, moving: list[Mo
     return colour
 
 
+def _way_in_pixels(moving: Moving, intrinsics: Intrinsics) -> Array:
+    """How far each vertex (V,) goes across the image, pixels."""
+    return np.asarray(_way(moving.surface.vertices, moving.travel, intrinsics.fx))
+
+
 @dataclass(frozen=True)
 class _Part:
     """A surface ready to be drawn: vertices and travel (V, 3); ``moves`` (F,) marks faces."""
@@ -88,21 +94,16 @@ class _Part:
     faces: NDArray[np.int32]
     shades: Singles
     moves: Flags
-    furthest: float
 
     @classmethod
-    def of(cls, moving: Moving, intrinsics: Intrinsics) -> _Part:
+    def of(cls, moving: Moving, way: Array) -> _Part:
         surface = moving.surface
-        depth = np.maximum(surface.vertices[:, 2:], 0.1)
-        along = moving.travel[:, :2] - surface.vertices[:, :2] * (moving.travel[:, 2:] / depth)
-        pixels = intrinsics.fx * np.linalg.norm(along, axis=1) / depth[:, 0]
         return cls(
             surface.vertices.astype(np.float32),
             moving.travel.astype(np.float32),
             surface.faces,
             lit(surface.normals, surface.colours),
-            (pixels >= SHARPNESS)[surface.faces].any(axis=1),
-            float(pixels.max()),
+            np.asarray((way >= SHARPNESS)[surface.faces].any(axis=1)),
         )
 
     def swept(self) -> Singles:
@@ -115,6 +116,18 @@ class _Part:
         """Draw the chosen faces (F,) where they are at a share of the exposure, 0 its middle."""
         placed = self.vertices + np.float32(share) * self.travel
         draw_triangles(canvas, intrinsics, placed, self.faces[chosen], self.shades, 1)
+
+
+@njit(cache=True, nogil=True)
+def _way(vertices, travel, focal):  # type: ignore[no-untyped-def]
+    way = np.empty(len(vertices))
+    for vertex in range(len(vertices)):
+        depth = max(vertices[vertex, 2], 0.1)
+        forward = travel[vertex, 2] / depth
+        across = travel[vertex, 0] - vertices[vertex, 0] * forward
+        down = travel[vertex, 1] - vertices[vertex, 1] * forward
+        way[vertex] = focal * np.sqrt(across * across + down * down) / depth
+    return way
 
 
 @njit(cache=True, nogil=True)

@@ -14,6 +14,9 @@ from scipy.special import ndtr
 FIELD = 1024
 """Width and height of the fields, which repeat; a power of two."""
 
+SEED = 0x5E4502
+"""Seed of all fields."""
+
 Place = tuple[int, int]
 """Row and column of a field that an image begins at."""
 
@@ -22,15 +25,13 @@ class NoiseFields(NamedTuple):
     """Fields (FIELD, FIELD) of noise, which compiled code reads.
 
     ``axial`` is of unit deviation and correlated, ``lateral`` (..., 2) are whole pixels, ``loss``
-    is uniform in [0, 1) and ``patches`` so too but correlated over many pixels, ``colour`` is of
-    unit deviation.
+    is uniform in [0, 1) and ``patches`` so too but correlated over many pixels.
     """
 
     axial: Singles
     lateral: NDArray[np.int8]
     loss: Singles
     patches: Singles
-    colour: Singles
 
 
 @cache
@@ -39,7 +40,7 @@ def noise_fields(grain: float, lateral_deviation: float, patch: float) -> NoiseF
 
     ``grain`` is the distance over which depth noise is correlated, ``patch`` the size of patches.
     """
-    random = np.random.default_rng(0x5E4502)
+    random = np.random.default_rng(SEED)
 
     def correlated(pixels: float) -> Array:
         field = gaussian_filter(random.normal(size=(FIELD, FIELD)), pixels, mode="wrap")
@@ -54,8 +55,17 @@ def noise_fields(grain: float, lateral_deviation: float, patch: float) -> NoiseF
         lateral,
         random.random((FIELD, FIELD)).astype(np.float32),
         ndtr(correlated(patch)).astype(np.float32),
-        random.normal(size=(FIELD, FIELD)).astype(np.float32),
     )
+
+
+@cache
+def colour_noise() -> Singles:
+    """A field (FIELD, FIELD) of noise of unit deviation for colours, always the same."""
+    random, shape = np.random.default_rng(SEED), (FIELD, FIELD)
+    # It follows what ``noise_fields`` draws, as it did when it was one of them: pictures stay.
+    for draw in (random.normal, random.normal, random.normal, random.random, random.normal):
+        draw(size=shape)
+    return random.normal(size=shape).astype(np.float32)
 
 
 def any_place(random: np.random.Generator) -> Place:

@@ -13,7 +13,7 @@ from inhand_lab.geometry.canvas import Canvas
 from inhand_lab.motions.timeline import drift
 from inhand_lab.sensing.cameras import Camera
 from inhand_lab.sensing.depth_scene import DepthScene
-from inhand_lab.sensing.noise_fields import FIELD, Place, any_place, noise_fields
+from inhand_lab.sensing.noise_fields import FIELD, Place, any_place, colour_noise
 from inhand_lab.sensing.noise_parameters import DEFAULT_NOISE, ColourNoise, NoiseParameters
 from inhand_lab.sensing.stereo import measure_stereo_depth
 from inhand_lab.sensing.structured_light import measure_structured_light_depth
@@ -53,8 +53,7 @@ def sense(
     conditions = conditions or FrameConditions()
     fresh = any_place(random)
     means, deviations = _levels(conditions.gains, noise.colour)
-    fields = noise_fields(1.0, 0.0, 1.0)
-    colour = _sense_colour(canvas.colour, fields.colour, means, deviations, *fresh)
+    colour = _sense_colour(canvas.colour, colour_noise(), means, deviations, *fresh)
     scene = DepthScene(
         canvas.colour,
         canvas.inverse_depth,
