@@ -19,6 +19,7 @@ from inhand_runtime.errors import InhandError
 from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import UNBOUNDED, Inbox, Received
 from inhand_runtime.logs import configure_logs
+from inhand_runtime.memory import give_memory_back
 from inhand_runtime.session import (
     Publisher,
     Session,
@@ -39,6 +40,10 @@ T = TypeVar("T", bound=Message)
 
 HEALTH_PERIOD_S = 1.0
 REPORTS_UNTIL_LONELY = 3
+REPORTS_UNTIL_STARTED = 5
+"""Number of reports after which what a start needed is no longer in use."""
+REPORTS_UNTIL_TIDY = 60
+"""Number of reports from one return of free memory to the next."""
 NAMESAKE_LASTS_S = 3.0
 NEWEST_SAMPLES = 4
 EVERY_SAMPLES = 256
@@ -192,6 +197,8 @@ def _report(
         reports += 1
         if reports == REPORTS_UNTIL_LONELY and daemon.is_alone():
             log.warning("no other process is connected yet; %s", _where_to_meet(settings))
+        if reports % REPORTS_UNTIL_TIDY == REPORTS_UNTIL_STARTED:
+            give_memory_back()
     publisher.put(daemon.health.report())
 
 

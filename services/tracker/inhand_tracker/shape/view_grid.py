@@ -6,7 +6,11 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from inhand_tracker.geometry.arrays import Indices, Singles
 from inhand_tracker.shape.kernels.nearest_view import CELLS, Candidates
+
+CHUNK = 256
+"""Number of cells that are compared with all directions at once, to bound the memory."""
 
 
 def view_grid(directions: NDArray[np.floating]) -> Candidates:
@@ -31,11 +35,23 @@ def _grid(directions: bytes, count: int) -> Candidates:
         side[..., axis] = 2.0 * sign - 1.0
         side[..., (axis + 1) % 3], side[..., (axis + 2) % 3] = first, second
     middles /= np.linalg.norm(middles, axis=-1, keepdims=True)
-    angles = np.arccos(np.clip(middles.reshape(-1, 3) @ unit.T, -1.0, 1.0))
+    cells = middles.reshape(-1, 3)
+    found = [
+        (start, *_possible(cells[start : start + CHUNK], unit))
+        for start in range(0, len(cells), CHUNK)
+    ]
+    most = 1 + max(int(places.max()) for _, _, places, _ in found)
+    grid = np.full((len(cells), most), -1, np.int16)
+    for start, rows, places, views in found:
+        grid[start + rows, places] = views
+    return grid.reshape(6, CELLS, CELLS, -1)
+
+
+def _possible(middles: Singles, unit: Singles) -> tuple[Indices, Indices, Indices]:
+    """Find what may be nearest to some cells: the cell, its how manieth, and which direction."""
+    angles = np.arccos(np.clip(middles @ unit.T, -1.0, 1.0))
     radius = np.sqrt(2.0) / CELLS
     possible = angles <= angles.min(axis=1, keepdims=True) + 2.0 * radius
-    places = np.cumsum(possible, axis=1) - 1
-    grid = np.full((len(possible), int(places.max()) + 1), -1, np.int16)
-    cell, view = np.nonzero(possible)
-    grid[cell, places[cell, view]] = view
-    return grid.reshape(6, CELLS, CELLS, -1)
+    rows, views = np.nonzero(possible)
+    places = np.cumsum(possible, axis=1)[rows, views] - 1
+    return rows, places, views
