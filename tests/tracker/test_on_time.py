@@ -219,6 +219,15 @@ def test_where_every_frame_matters_each_is_tracked_with_its_picture_and_the_whol
     assert daemon.health.drops() == {}
 
 
+def test_where_every_frame_matters_a_burst_with_losses_costs_only_the_pictures_that_were_lost() -> (
+    None
+):
+    lost = frozenset({3, 4, 5, 9, 40, 80, 81})
+    tracker = Slow(0.1, 0.0)
+    track(Camera(100, 1e-4, lost=lost), tracker, every_frame=True)
+    assert [seen for _, seen, _ in tracker.steps] == [number not in lost for number in range(100)]
+
+
 @pytest.mark.parametrize("every", [False, True])
 def test_what_waits_when_the_daemon_stops_is_counted(every: bool) -> None:
     tracker = Slow(1.0, 0.0)

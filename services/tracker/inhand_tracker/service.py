@@ -105,6 +105,9 @@ class TrackerService:
     def _take_what_came(self) -> None:
         """Take what has come by now, since only then it is known what is the newest; where every
         frame matters, as much as the next moment needs, and let the rest wait in the inbox."""
+        self._daemon.health.came_round()
+        if self._every and self._moments.decided():
+            return
         timeout_s = min(self._moments.wait_s(self._now()), POLL_S)
         for _ in range(MOST_TAKEN):
             sample = self._daemon.receive(timeout_s)

@@ -1,5 +1,6 @@
 """A tracker that makes its poses without pictures says so."""
 
+import pytest
 from inhand_runtime.health import HealthBoard
 from inhand_tracker.live.pictures import POSES, PictureWatch
 
@@ -27,6 +28,15 @@ def test_poses_without_pictures_degrade_until_they_come_again() -> None:
     for _ in range(POSES):
         watch.note(True)
     assert board.report().state == "running"
+
+
+def test_what_changes_with_every_pose_is_not_logged_with_every_pose(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    _, watch = running()
+    for number in range(2 * POSES):
+        watch.note(number < POSES)
+    assert len(caplog.records) <= 3
 
 
 def test_a_camera_without_pictures_is_no_trouble() -> None:

@@ -83,13 +83,13 @@ class Moments(Generic[SkeletonT, FrameT]):
         self._waiting.append(_Waiting(sequence, skeleton, arrived, self._start))
 
     def add_frame(self, sequence: int, frame: FrameT, arrived: float) -> None:
-        """Take a frame; only the newest few are kept."""
+        """Take a frame; beside those that are waited for only the newest few are kept."""
         if sequence < self._newest_frame:
             self._restart()
         self._newest_frame = sequence
         self._flowing_until = arrived + self._parameters.flowing_s
         self._frames[sequence] = frame
-        while len(self._frames) > self._parameters.frames_kept:
+        while len(self._frames) > self._parameters.frames_kept + len(self._waiting):
             self._leave_frame(next(iter(self._frames)))
 
     def wait_s(self, now: float) -> float:

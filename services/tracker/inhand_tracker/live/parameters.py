@@ -18,7 +18,7 @@ class MomentsParameters:
     """Periods of the camera that a skeleton waits for its frame at the most. What is left of two
     periods, after the one until the next skeleton, is for the skeleton's own way."""
     frames_kept: int = 4
-    """Number of frames that are kept for skeletons that arrive later."""
+    """Number of frames that are kept for skeletons that arrive later than they do."""
     first_period_s: float = 1.0 / 30.0
     """Seconds from one skeleton to the next that a camera is taken to have before it is known."""
     intervals: int = 30
