@@ -111,6 +111,23 @@ def test_a_folder_that_cannot_be_written_is_one_warning(small: Path) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+@pytest.mark.parametrize("left", [0, 20])
+def test_a_damaged_file_is_compiled_again_with_a_warning(
+    small: Path, tmp_path: Path, suffix: str, left: int
+) -> None:
+    _start(small.parent, tmp_path / "cache")
+    for file in (tmp_path / "cache").rglob(f"kernel.kernel*.{suffix}"):
+        file.write_bytes(file.read_bytes()[:left])
+    answer, said = _start(small.parent, tmp_path / "cache")
+    assert answer["result"] == 6.0
+    assert "is damaged" in said
+    assert "Traceback" not in said
+    after, said = _start(small.parent, tmp_path / "cache")
+    assert (after["cache_hits"], after["cache_misses"], said) == (1, 0, "")
+
+
+@pytest.mark.long
 def test_an_installation_starts_from_the_cache_and_is_not_written(tmp_path: Path) -> None:
     site = tmp_path / "site"
     for package in ("schemas", "services/runtime", "services/tracker", "lab"):

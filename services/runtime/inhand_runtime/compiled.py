@@ -19,6 +19,7 @@ from typing import Any
 
 import numba
 import numpy as np
+from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 
 from inhand_runtime.cache_folder import cache_folder
@@ -69,19 +70,51 @@ class KernelLocator:
 LOCATOR = f"{__name__}.{KernelLocator.__name__}"
 
 
+class KernelCache(FunctionCache):
+    """Numba's cache of one kernel, which a damaged file or a full disk costs time and no more."""
+
+    def load_overload(self, *wanted: Any) -> Any:
+        """Load what was compiled; None where there is nothing that can be read."""
+        try:
+            return super().load_overload(*wanted)  # type: ignore[no-untyped-call]
+        except Exception as error:  # noqa: BLE001 - a damaged pickle may raise anything
+            log.warning("a file in %s is damaged (%s): compiled again", self.cache_path, error)
+            self._keeping(self.flush)
+            return None
+
+    def save_overload(self, *compiled: Any) -> None:
+        """Keep what was compiled, where that can be."""
+        self._keeping(super().save_overload, *compiled)
+
+    def _keeping(self, keep: Callable[..., None], *compiled: Any) -> None:
+        try:
+            keep(*compiled)
+        except OSError as error:
+            log.warning("cannot keep compiled code in %s: %s", self.cache_path, error.strerror)
+
+
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Compile a function with Numba's ``njit`` and these options of its; ``cache=True`` is the
     folder of this module's, where that can be written."""
 
+    kept = options.pop("cache", False) and KEPT
+
     def compiled(function: Callable[..., Any]) -> Any:
-        usual = _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES
-        _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES = LOCATOR
-        try:
-            return numba.njit(**options | {"cache": options.get("cache", False) and KEPT})(function)
-        finally:
-            _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES = usual
+        kernel = numba.njit(**options)(function)
+        if kept and isinstance(kernel, Dispatcher):
+            kernel._cache = _cache_of(function)  # type: ignore[attr-defined]
+        return kernel
 
     return compiled
+
+
+def _cache_of(function: Callable[..., Any]) -> KernelCache:
+    usual = _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES
+    _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES = LOCATOR
+    try:
+        return KernelCache(function)  # type: ignore[no-untyped-call]
+    finally:
+        _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES = usual
 
 
 def stamp_of(module: ModuleType) -> str:
