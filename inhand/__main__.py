@@ -27,7 +27,7 @@ VERBS = {
     "up": "run every process that the config names, supervised",
     "replay": "publish a recording again",
     "simulate": "make a labelled dataset of simulated people",
-    "import": "make a dataset of real data: utd-mhad, motion, ycb-video",
+    "import": "make a dataset of real data: utd-mhad, motion, ycb-video, bop",
     "train": "learn a model from a labelled dataset",
     "evaluate": "measure methods on people that were not trained on",
     "recognise": "measure tracking where the object is not given, and recognition alone",

@@ -36,6 +36,20 @@ class ImportParameters:
     fewest_points: int = 100
     """Number of points of a surface below which a frame shows too little of it."""
 
+    # BOP data sets.
+    symmetry_tolerance: float = 0.02
+    """Radians by which a turn of models_info.json may miss a part of a whole one, and deviation of
+    its matrix from a rotation: such matrices have been written with three decimals."""
+    most_symmetry_shift_mm: float = 5.0
+    """Millimetres along its axis by which a turn of models_info.json may shift an object: what is
+    annotated of near-symmetric objects is no more exact."""
+    highest_order: int = 36
+    """Order up to which a turn is looked for: 10° a step."""
+    most_skew: float = 0.1
+    """Difference in pixels of a camera matrix from a pinhole camera's, up to which it is one."""
+    nearest_mm: float = 10.0
+    """Distance in millimetres of an object from the camera below which the unit is another."""
+
     # Shapes completed from a part of their surface.
     cup_sections: int = 48
     """Number of flat sides of a cup's mesh: within 0.1 mm of the round one."""

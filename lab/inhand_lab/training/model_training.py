@@ -41,12 +41,17 @@ def entries_for(
     """
     labelled = [entry for entry in dataset.entries if entry.object is not None]
     objects = sorted({entry.object for entry in labelled if entry.object is not None})
+    if not objects:
+        raise DatasetError(
+            f"no recording in {dataset.folder / 'dataset.toml'} names an object to learn: where "
+            "skeletons and labels are, write object with the name that the labels have"
+        )
     name = _only(objects, dataset) if object_name is None else object_name
     chosen = [entry for entry in labelled if entry.object == name]
     if not chosen:
         raise DatasetError(
             f"{dataset.folder} has no labelled recording of {name!r}; there are: "
-            f"{', '.join(objects) or 'none'}"
+            f"{', '.join(objects)}"
         )
     participants = sorted({entry.participant for entry in chosen})
     unknown = sorted(set(without) - set(participants))
@@ -59,11 +64,11 @@ def entries_for(
 
 
 def _only(objects: Sequence[str], dataset: Dataset) -> str:
-    """Return the only object of a dataset; raises DatasetError where there are more or none."""
+    """Return the only object of a dataset; raises DatasetError where there are more."""
     if len(objects) != 1:
         raise DatasetError(
-            f"{dataset.folder} has {len(objects)} labelled objects; "
-            + (f"choose with --object: {', '.join(objects)}" if objects else "none to learn")
+            f"{dataset.folder} has {len(objects)} labelled objects; choose with --object: "
+            f"{', '.join(objects)}"
         )
     return objects[0]
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from bop_data import save_bop
 from foreign_data import only_entry, save_archive, save_trial, save_video
 from inhand_lab.datasets.dataset import load_dataset
 from inhand_lab.datasets.dataset_writer import DatasetWriter
@@ -12,7 +13,7 @@ from inhand_runtime.errors import InhandError
 from inhand.__main__ import main
 
 
-@pytest.mark.parametrize("name", ["motion", "utd-mhad", "ycb-video"])
+@pytest.mark.parametrize("name", ["motion", "utd-mhad", "ycb-video", "bop"])
 class TestEveryImport:
     def test_a_source_that_is_missing_is_told_in_one_line(
         self, name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -35,6 +36,7 @@ class TestEveryImport:
             "motion": lambda: save_archive(tmp_path / "walk.npz"),
             "utd-mhad": lambda: save_trial(tmp_path, 1, None),
             "ycb-video": lambda: save_video(tmp_path / "in"),
+            "bop": lambda: save_bop(tmp_path / "in"),
         }[name]()
         DatasetWriter(tmp_path / "out").finish({})
         before = (tmp_path / "out" / "dataset.toml").read_bytes()
@@ -47,6 +49,7 @@ class TestEveryImport:
             "motion": lambda: save_archive(tmp_path / "walk.npz"),
             "utd-mhad": lambda: save_trial(tmp_path, 2, 2),
             "ycb-video": lambda: save_video(tmp_path / "in"),
+            "bop": lambda: save_bop(tmp_path / "in"),
         }[name]()
         out = tmp_path / "out"
         assert main(["import", name, str(source), str(out), "--frame-rate", "15"]) == 0
