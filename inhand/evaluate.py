@@ -60,6 +60,8 @@ def run(arguments: argparse.Namespace) -> int:
     console = Console()
     for grid in shown_grids(result):
         console.print(grid.for_terminal(), "")
+    for note in result["notes"]:
+        console.print(note)
     if arguments.json is not None:
         write_json(arguments.json, result)
     if arguments.report is not None:
@@ -120,6 +122,7 @@ def _result(protocol: Protocol, trials: list[Trial], seconds: float) -> dict[str
         "terms": terms_name(reported),
         "compared": {terms_name(one): summarise(with_terms(trials, one)) for one in others},
         "worth": {terms_name(one): worth(trials, reported, one) for one in others},
+        "notes": protocol.notes(),
         "frames": sum(trial.score.frames for trial in trials),
         "seconds": seconds,
     }

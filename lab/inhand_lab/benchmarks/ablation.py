@@ -19,7 +19,7 @@ from inhand_tracker.sight.sight import SIGHT_TERMS, SightTerm
 from inhand_lab.benchmarks.variation import vary
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import track_together
-from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.evaluation.fold_model import learn_fold_model
 from inhand_lab.evaluation.folds import Fold, leave_one_out
 from inhand_lab.evaluation.pose_errors import ErrorGauge
@@ -162,7 +162,7 @@ def _errors(
 ) -> Iterator[float]:
     """The vertex error of each variant in one recording, in metres."""
     path = dataset.path(entry)
-    frames = load_frames(path, entry.object)
+    frames = entry_frames(dataset, entry)
     left_handed = entry.handedness == "left"
     trackers = [variant.tracker(model, left_handed=left_handed) for variant in variants]
     joints, tracks = track_together(trackers, path, frames, METHODS[FUSION].needs(SIGHT_TERMS))

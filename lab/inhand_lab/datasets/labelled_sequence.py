@@ -6,17 +6,17 @@ from inhand_tracker.wire.conversion import joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry
 from inhand_lab.datasets.followed_people import follow_people
-from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.datasets.recording_times import frame_rate_of
+from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.datasets.tracks import true_track
 
 
 def labelled_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
-    """Read a recording's bodies and labels; frames without body or label hold NaN.
+    """Read the bodies and labels of a recording or stretch; frames without either hold NaN.
 
     Raises DatasetError or RecordingError.
     """
-    frames = load_frames(dataset.path(entry), entry.object)
+    frames = entry_frames(dataset, entry)
     joints = np.full((len(frames), 20, 3), np.nan)
     for index, followed in enumerate(follow_people(frames)):
         if followed.person is not None:

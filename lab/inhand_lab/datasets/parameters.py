@@ -28,6 +28,15 @@ class DatasetParameters:
     gap_s: float = 0.5
     """Time in seconds between frames beyond which it is a gap, and says nothing of the rate."""
 
+    # How one long recording is cut (stretches).
+    shortest_stretch_s: float = 5.0
+    """Seconds of labelled frames that a stretch has at the least: about a simulated interaction."""
+    stretch_gap_s: float = 2.0
+    """Seconds of labelled frames between two stretches that neither has: by then a body is
+    elsewhere in most interactions."""
+    most_stretches: int = 5
+    """Number of stretches at the most; more would lose more to gaps."""
+
     # Units (units).
     usual_stature_m: float = 1.7
     """Height in metres of a usual person, by which a unit is named."""

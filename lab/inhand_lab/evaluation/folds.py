@@ -4,11 +4,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.stretches import RecordingStretch, stretches_of
+from inhand_lab.training.model_training import FEWEST_LEARNED
 
 
 @dataclass(frozen=True)
 class Fold:
-    """The recordings of one interaction that are tested, and those that are learned from."""
+    """The recordings of one interaction that are tested, and those that are learned from.
+
+    Where one recording is all there is to learn from, they are stretches.
+    """
 
     interaction: str
     tested: tuple[DatasetEntry, ...]
@@ -18,11 +23,14 @@ class Fold:
 def leave_one_out(dataset: Dataset) -> list[Fold]:
     """Leave out one participant a fold, or one recording where there is one participant only.
 
-    Raises DatasetError where fewer than two recordings are left to learn from.
+    Of a single recording one stretch is left out. Where one recording is left to learn from, it is
+    cut into stretches. Raises DatasetError where it is too short.
     """
     folds = []
     for interaction in dataset.interactions():
         entries = _labelled(dataset, interaction)
+        if len(entries) == 1:
+            entries = stretches_of(dataset, entries[0], FEWEST_LEARNED + 1)
         participants = sorted({entry.participant for entry in entries})
         groups = (
             [[e for e in entries if e.participant == participant] for participant in participants]
@@ -31,7 +39,7 @@ def leave_one_out(dataset: Dataset) -> list[Fold]:
         )
         for group in groups:
             rest = tuple(entry for entry in entries if entry not in group)
-            folds.append(Fold(interaction, tuple(group), rest))
+            folds.append(Fold(interaction, tuple(group), _enough(dataset, rest)))
     return _checked(folds, dataset)
 
 
@@ -42,7 +50,11 @@ def train_on_one_test_on_other(trained: Dataset, tested: Dataset) -> list[Fold]:
     Raises DatasetError where they share no interaction.
     """
     folds = [
-        Fold(interaction, _labelled(tested, interaction), _labelled(trained, interaction))
+        Fold(
+            interaction,
+            _labelled(tested, interaction),
+            _enough(trained, _labelled(trained, interaction)),
+        )
         for interaction in tested.interactions()
     ]
     shared = [fold for fold in folds if fold.trained]
@@ -58,15 +70,17 @@ def _labelled(dataset: Dataset, interaction: str) -> tuple[DatasetEntry, ...]:
     return tuple(e for e in dataset.entries if e.interaction == interaction and e.object)
 
 
+def _enough(dataset: Dataset, trained: tuple[DatasetEntry, ...]) -> tuple[DatasetEntry, ...]:
+    """Return the recordings, or where there is one only its stretches; raises DatasetError."""
+    if len(trained) == 1 and not isinstance(trained[0], RecordingStretch):
+        return stretches_of(dataset, trained[0], FEWEST_LEARNED)
+    return trained
+
+
 def _checked(folds: list[Fold], dataset: Dataset) -> list[Fold]:
     if not folds:
         raise DatasetError(f"{dataset.folder} has no labelled interaction to evaluate")
     for fold in folds:
-        if len(fold.trained) < 2:
-            raise DatasetError(
-                f"{dataset.folder}: {fold.interaction} leaves {len(fold.trained)} recordings to "
-                "learn from, and two are the least: add participants"
-            )
         objects = sorted({str(entry.object) for entry in (*fold.trained, *fold.tested)})
         if len(objects) > 1:
             raise DatasetError(

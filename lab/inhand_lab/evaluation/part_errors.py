@@ -27,7 +27,7 @@ from rich.table import Table
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, load_dataset
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
-from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.datasets.tracks import true_joints
 from inhand_lab.evaluation.folds import Fold, leave_one_out
 from inhand_lab.evaluation.parameters import DEFAULT_EVALUATION
@@ -56,9 +56,13 @@ def measure_part_errors(dataset: Dataset, *, by_true_joints: bool) -> PartErrors
 
     With true joints, these replace the measured ones in learning and in testing.
     """
-    sequences = {entry: _sequence(dataset, entry, by_true_joints) for entry in dataset.entries}
+    folds = leave_one_out(dataset)
+    sequences = {
+        entry: _sequence(dataset, entry, by_true_joints)
+        for entry in dict.fromkeys(e for fold in folds for e in (*fold.trained, *fold.tested))
+    }
     by_interaction: dict[str, list[PartErrors]] = {}
-    for fold in leave_one_out(dataset):
+    for fold in folds:
         by_interaction.setdefault(fold.interaction, []).extend(
             _fold_errors(dataset, fold, sequences)
         )
@@ -131,7 +135,7 @@ def _sequence(dataset: Dataset, entry: DatasetEntry, by_true_joints: bool) -> La
     sequence = labelled_sequence(dataset, entry)
     if not by_true_joints:
         return sequence
-    return replace(sequence, joints=true_joints(load_frames(dataset.path(entry), entry.object)))
+    return replace(sequence, joints=true_joints(entry_frames(dataset, entry)))
 
 
 def _mean(errors: Sequence[PartErrors]) -> PartErrors:
@@ -185,7 +189,7 @@ def main() -> None:
 
 def _simulated(dataset: Dataset) -> bool:
     entry = dataset.entries[0]
-    return bool(np.isfinite(true_joints(load_frames(dataset.path(entry), entry.object))).any())
+    return bool(np.isfinite(true_joints(entry_frames(dataset, entry))).any())
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from inhand_tracker.wire.conversion import Need
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import track_together
-from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.datasets.stretches import entry_frames, entry_name, stretches_note
 from inhand_lab.evaluation.fold_model import learn_fold_model
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.pose_errors import ErrorGauge
@@ -88,6 +88,11 @@ class Protocol:
         """Return the number of recordings tracked, counted for every candidate."""
         return len(self.candidates()) * sum(len(fold.tested) for fold in self.folds)
 
+    def notes(self) -> list[str]:
+        """Return what has to be known of the figures, a sentence each."""
+        notes = [stretches_note(fold.trained) for fold in self.folds]
+        return [note for note in dict.fromkeys(notes) if note]
+
     def learn(self, fold: Fold, *, images: bool) -> Model:
         """Learn what the methods need for a fold; raises DatasetError or RecordingError."""
         fused = any(METHODS[name].learns_prior for name in self.methods)
@@ -116,7 +121,7 @@ def _evaluate_fold(protocol: Protocol) -> list[Trial]:
     model = protocol.learn(fold, images=any(protocol.terms))
     gauge = ErrorGauge(model.shape)
     return [
-        Trial(candidate, fold.interaction, entry.participant, entry.file, score)
+        Trial(candidate, fold.interaction, entry.participant, entry_name(entry), score)
         for entry in fold.tested
         for candidate, score in _evaluate_recording(protocol, model, gauge, entry)
     ]
@@ -126,7 +131,7 @@ def _evaluate_recording(
     protocol: Protocol, model: Model, gauge: ErrorGauge, entry: DatasetEntry
 ) -> Iterator[tuple[Candidate, Score]]:
     path = protocol.tested.path(entry)
-    frames = load_frames(path, entry.object)
+    frames = entry_frames(protocol.tested, entry)
     candidates = protocol.candidates()
     trackers = [candidate.new_tracker(model, entry) for candidate in candidates]
     needs = {need for candidate in candidates for need in candidate.needs()}

@@ -58,6 +58,7 @@ def markdown(result: Mapping[str, Any], pictures: Mapping[str, Sequence[str]]) -
         f"{result['frames']} frames tracked in {result['seconds']:.0f} s; terms of the likelihood: "
         f"{result['terms']}.",
         "",
+        *(f"Note: {note}.\n" for note in result["notes"]),
         *(grid.for_markdown() for grid in report_grids(result)),
         DEFINITIONS,
         "## Figures",

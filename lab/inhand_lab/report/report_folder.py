@@ -18,7 +18,7 @@ from rich.console import Console
 
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.observations import track_together
-from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.protocol import Candidate, Protocol, Trial
 from inhand_lab.evaluation.published import REFERENCE_METHOD
@@ -111,7 +111,7 @@ def _draw_frames(task: _Drawing, model: Model, file: Path) -> bool:
     candidate = Candidate(method, protocol.terms[0])
     tracker = candidate.new_tracker(model, entry)
     path = protocol.tested.path(entry)
-    frames = load_frames(path, entry.object)
+    frames = entry_frames(protocol.tested, entry)
     joints, (track,) = track_together([tracker], path, frames, candidate.needs())
     title = f"{entry.interaction}, participant {entry.participant}, {method}"
     return draw_tracked_frames(

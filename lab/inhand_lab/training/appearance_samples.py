@@ -15,8 +15,8 @@ from inhand_lab.datasets.recorded_frames import (
     RecordedFrame,
     iterate_pixels,
     load_camera_info,
-    load_frames,
 )
+from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.training.parameters import DEFAULT_TRAINING, TrainingParameters
 
 
@@ -38,7 +38,7 @@ def appearance_samples(
 def _samples_of(dataset: Dataset, entry: DatasetEntry, most: int) -> Iterator[AppearanceSample]:
     """Yield frames, evenly spaced, of one recording: ``most`` of them at the most."""
     path = dataset.path(entry)
-    frames = load_frames(path, entry.object)
+    frames = entry_frames(dataset, entry)
     camera = next((frame.label.camera for frame in frames if frame.label is not None), None)
     info = None if camera is None else load_camera_info(path, camera)
     if info is None:

@@ -1,6 +1,7 @@
 """Trains the model of one object and its interaction from a dataset."""
 
 from collections.abc import Callable, Collection, Sequence
+from functools import lru_cache
 
 from inhand_schemas.errors import MessageError
 from inhand_tracker.mapping.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
@@ -13,11 +14,14 @@ from inhand_tracker.sight.appearance import learn_appearance
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
+from inhand_lab.datasets.stretches import RecordingStretch, stretches_of
 from inhand_lab.training.appearance_samples import appearance_samples
 from inhand_lab.training.recording_checks import check_hands, check_sequence
 from inhand_lab.training.rotation_checks import check_rotations
 from inhand_lab.training.shape_checks import check_shape
 
+FEWEST_LEARNED = 2
+"""Number of recordings, or of stretches of one, that learning compares at the least."""
 READING, VIEWPOINTS, APPEARANCE, PRIOR = "recordings", "viewpoints", "appearance", "prior"
 
 
@@ -37,7 +41,8 @@ def entries_for(
 ) -> list[DatasetEntry]:
     """Choose the labelled recordings of one object, but for some participants'.
 
-    ``object_name`` may be left out where the dataset has one object. Raises DatasetError.
+    Where one recording is left it is cut into stretches. ``object_name`` may be left out where the
+    dataset has one object. Raises DatasetError.
     """
     labelled = [entry for entry in dataset.entries if entry.object is not None]
     objects = sorted({entry.object for entry in labelled if entry.object is not None})
@@ -60,7 +65,8 @@ def entries_for(
             f"{dataset.folder} has no participant {unknown[0]!r} with {name!r}; there are: "
             f"{', '.join(participants)}"
         )
-    return [entry for entry in chosen if entry.participant not in without]
+    left = [entry for entry in chosen if entry.participant not in without]
+    return list(stretches_of(dataset, left[0], FEWEST_LEARNED)) if len(left) == 1 else left
 
 
 def _only(objects: Sequence[str], dataset: Dataset) -> str:
@@ -103,7 +109,7 @@ def train(
 
 def _first_of(dataset: Dataset, entries: Sequence[DatasetEntry]) -> DatasetEntry:
     """Return the first recording; raises DatasetError where too few, or it, cannot be learned."""
-    if len(entries) < 2:
+    if len(entries) < FEWEST_LEARNED:
         raise DatasetError(
             f"{dataset.folder}: learning compares recordings, two at the least, and "
             f"{len(entries)} is left: add participants"
@@ -133,7 +139,13 @@ def checked_shape(dataset: Dataset, name: str) -> ObjectShape:
 
 
 def checked_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
-    """Read a recording for training; raises DatasetError for one that cannot be meant."""
+    """Read a recording, or a stretch of one, for training.
+
+    Raises DatasetError for one that cannot be meant.
+    """
+    if isinstance(entry, RecordingStretch):
+        whole = _whole_sequence(dataset, entry.whole())
+        return whole.cut(entry.first, entry.end)
     try:
         sequence = labelled_sequence(dataset, entry)
     except MessageError as error:
@@ -143,3 +155,9 @@ def checked_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
         ) from None
     check_sequence(entry, sequence)
     return sequence
+
+
+# The stretches of a recording are read one after the other.
+@lru_cache(maxsize=1)
+def _whole_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
+    return checked_sequence(dataset, entry)

@@ -41,6 +41,21 @@ def test_the_command_writes_what_the_contract_says(
     assert "…" not in told
 
 
+def test_one_long_take_is_evaluated_by_its_stretches_and_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_dataset(tmp_path / "take", 1, frames=600)
+    file = tmp_path / "result.json"
+    arguments = ["--no-images", "--methods", "gd-hand", "--json", str(file)]
+    assert main(["evaluate", str(tmp_path / "take"), *arguments]) == 0
+    result = json.loads(file.read_text())
+    assert result["frames"] == 480
+    assert result["methods"]["gd-hand"]["interactions"]["wave"]["sd"] > 0.0
+    (note,) = result["notes"]
+    assert "one person (p0) in one take" in note
+    assert note in " ".join(capsys.readouterr().out.split())
+
+
 def test_testing_on_another_set_learns_from_the_first(tmp_path: Path) -> None:
     write_dataset(tmp_path / "a", frames=20)
     write_dataset(tmp_path / "b", 1, frames=20, first=9)

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.stretches import RecordingStretch
 from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
+from waving import write_dataset
 
 
 def entry(
@@ -46,9 +48,34 @@ def test_interactions_are_kept_apart_and_unlabelled_recordings_left_out() -> Non
     assert all(len(fold.trained) == 2 for fold in folds)
 
 
-def test_too_few_recordings_are_refused_with_the_mend() -> None:
-    with pytest.raises(DatasetError, match=r"leaves 1 recordings.*add participants"):
-        leave_one_out(dataset(entry("a", "a"), entry("b", "b")))
+def frames_of(fold_entry: DatasetEntry) -> tuple[int, int]:
+    assert isinstance(fold_entry, RecordingStretch)
+    return fold_entry.first, fold_entry.end
+
+
+def test_of_a_single_recording_every_stretch_is_left_out_once(tmp_path: Path) -> None:
+    folds = leave_one_out(write_dataset(tmp_path, 1, frames=600))
+    assert [frames_of(fold.tested[0]) for fold in folds] == [(0, 170), (230, 370), (430, 600)]
+    for fold in folds:
+        first, end = frames_of(fold.tested[0])
+        assert len(fold.trained) == 2
+        for trained in map(frames_of, fold.trained):
+            assert trained[1] + 60 <= first or end + 60 <= trained[0]
+
+
+def test_a_single_recording_that_is_left_to_learn_from_is_cut(tmp_path: Path) -> None:
+    made = write_dataset(tmp_path, 2, frames=400)
+    for fold, other in zip(leave_one_out(made), reversed(made.entries), strict=True):
+        assert not isinstance(fold.tested[0], RecordingStretch)
+        assert [frames_of(one) for one in fold.trained] == [(0, 170), (230, 400)]
+        assert {one.file for one in fold.trained} == {other.file}
+
+
+def test_a_short_recording_is_refused_with_the_seconds_that_are_needed(tmp_path: Path) -> None:
+    with pytest.raises(DatasetError, match=r"6\.7 s of it have .* 3 stretches, which takes 19 s"):
+        leave_one_out(write_dataset(tmp_path / "one", 1, frames=200))
+    with pytest.raises(DatasetError, match=r"6\.7 s of it have .* 2 stretches, which takes 12 s"):
+        leave_one_out(write_dataset(tmp_path / "two", 2, frames=200))
 
 
 def test_nothing_labelled_is_refused() -> None:

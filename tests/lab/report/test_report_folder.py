@@ -28,6 +28,7 @@ def test_the_report_holds_tables_sequences_and_the_papers_figures(tmp_path: Path
         "terms": terms_name(EDGES),
         "compared": {"none": summarise(with_terms(trials, NONE))},
         "worth": {"none": worth(trials, EDGES, NONE)},
+        "notes": [],
         "frames": 240,
         "seconds": 1.0,
     }
@@ -64,6 +65,7 @@ def test_a_recording_without_camera_and_with_an_odd_name_is_reported_without_fra
         "terms": "none",
         "compared": {},
         "worth": {},
+        "notes": [],
         "frames": 30,
         "seconds": 1.0,
     }

@@ -6,6 +6,7 @@ from pathlib import Path
 from shutil import copytree
 
 import msgspec
+import numpy as np
 import pytest
 import trimesh
 from inhand_lab.datasets.dataset import Dataset, DatasetError, load_dataset
@@ -15,6 +16,7 @@ from inhand_lab.training.model_training import entries_for, model_stages, train
 from inhand_runtime.errors import InhandError
 from inhand_runtime.recording import RecordingWriter, read_recording
 from inhand_tracker.model.model_file import load_model
+from waving import write_dataset
 
 from inhand.__main__ import main
 
@@ -123,6 +125,19 @@ def test_the_command_saves_a_model_and_says_what_was_learned(
     for row in ("participants", "cluster radii", "re-initialise rotation", "predicted from"):
         assert row in shown
     assert f"{learned.translation_part[0]}, in" in shown
+
+
+def test_one_long_take_of_one_person_gives_a_model_and_says_what_it_is_of(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_dataset(tmp_path / "take", 1, frames=400)
+    assert main(["train", str(tmp_path / "take"), "-o", str(tmp_path / "m")]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "one person (p0) in one take" in shown
+    model = load_model(tmp_path / "m")
+    assert list(model.mapping.starts) == [0, 170, 340]
+    assert model.prior is not None
+    assert np.isfinite(model.prior.errors).all()
 
 
 def test_a_dataset_that_is_wrong_is_one_line_and_exit_code_1(

@@ -71,6 +71,15 @@ class LabelledSequence:
             self.frame_rate,
         )
 
+    def cut(self, first: int, end: int) -> "LabelledSequence":
+        """Return the frames from ``first`` up to, and without, ``end``."""
+        return replace(
+            self,
+            joints=self.joints[first:end],
+            translations=self.translations[first:end],
+            rotations=self.rotations[first:end],
+        )
+
 
 class UnusableSequenceError(ValueError):
     """A sequence, or a set of them, that nothing can be learned from."""
