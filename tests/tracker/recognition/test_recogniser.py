@@ -41,7 +41,7 @@ CLASSES = classes()
 
 
 def body(pose: np.ndarray) -> Body:
-    return Body(np.zeros((20, 3)), pose, Bases(np.zeros((19, 3)), np.zeros((19, 4))), 1.7)
+    return Body(np.zeros((20, 3)), pose, Bases(np.zeros(3), np.zeros(4)), 1.7)
 
 
 def run(

@@ -1,6 +1,7 @@
 """Reads bodies: from joints, some missing or wild, to a whole body that trackers predict from."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -25,14 +26,19 @@ from inhand_tracker.geometry.arrays import Array
 class Body:
     """One frame's whole body, right-handed.
 
-    ``joints`` (20, 3) in the camera frame, ``pose`` b (60,), ``parts`` the 19 part predictors, and
-    the person's ``height`` in metres.
+    ``joints`` (20, 3) in the camera frame, ``pose`` b (60,), the basis of the ``pelvis``, and the
+    person's ``height`` in metres.
     """
 
     joints: Array
     pose: Array
-    parts: Bases
+    pelvis: Bases
     height: float
+
+    @cached_property
+    def parts(self) -> Bases:
+        """The 19 part predictors."""
+        return part_bases(self.joints, self.pelvis)
 
 
 class HasBodyPoses(Protocol):
@@ -79,7 +85,7 @@ class BodyReader:
             return None
         pelvis = pelvis_basis(joints)
         complete = self._complete(joints, pelvis, height)
-        return Body(complete, self._last_pose.reshape(60), part_bases(complete, pelvis), height)
+        return Body(complete, self._last_pose.reshape(60), pelvis, height)
 
     def _complete(self, joints: Array, pelvis: Bases, height: float) -> Array:
         """Put missing joints (20, 3) where they were last."""

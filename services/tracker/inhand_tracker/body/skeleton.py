@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from inhand_schemas.joints import JOINT_NAMES, MIRRORED_JOINTS, PARENTS, SIDES, Joint
 
+from inhand_tracker.body.kernels import axes as kernels
+from inhand_tracker.body.kernels.running_medians import exchange, medians
 from inhand_tracker.body.parameters import DEFAULT_BODY, BodyParameters
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
@@ -26,6 +28,8 @@ PELVIS_JOINTS = np.array([Joint.HIP_CENTER, Joint.SPINE, Joint.HIP_LEFT, Joint.H
 LEG_SHARE = 0.491
 TRUNK_SHARE = 0.405
 
+_FOUR = np.empty(4)
+"""It tells the kernel how long a quaternion is."""
 _MIRRORED = np.array(MIRRORED_JOINTS)
 _TRUNK_PARTS = [PARTS.index(name) for name in ("Spine", "ShoulderCenter", "Head")]
 _LEG_PARTS = [[PARTS.index(f"{name}{side}") for name in ("Knee", "Ankle")] for side in SIDES]
@@ -56,21 +60,12 @@ class Bases:
 
 def pelvis_basis(joints: Array) -> Bases:
     """H*: find the basis at HipCenter: x from the right hip to the left, y up, z forwards."""
-    x = joints[..., Joint.HIP_LEFT, :] - joints[..., Joint.HIP_RIGHT, :]
-    upwards = joints[..., Joint.SPINE, :] - joints[..., Joint.HIP_CENTER, :]
-    z = np.cross(x, upwards)
-    y = np.cross(z, x)
-    axes = np.stack([_unit(axis) for axis in (x, y, z)], axis=-1)
-    return Bases(joints[..., Joint.HIP_CENTER, :], rotations.from_matrix(axes))
+    return Bases(joints[..., Joint.HIP_CENTER, :], kernels.pelvis_rotation(joints, _FOUR))
 
 
 def has_pelvis(joints: Array) -> bool:
     """Whether the pelvis basis of one person's (20, 3) joints is defined."""
-    if not np.isfinite(joints[PELVIS_JOINTS]).all():
-        return False
-    x = joints[Joint.HIP_LEFT] - joints[Joint.HIP_RIGHT]
-    upwards = joints[Joint.SPINE] - joints[Joint.HIP_CENTER]
-    return bool(np.linalg.norm(np.cross(x, upwards)) > 1e-6)
+    return bool(1e-6 < kernels.pelvis_area(joints) < np.inf)
 
 
 def part_bases(joints: Array, pelvis: Bases) -> Bases:
@@ -124,11 +119,16 @@ def stature(lengths: Array) -> float:
     # np.nanmedian gives the same where nothing is missing, and takes ten times as long.
     median = np.median if np.isfinite(measured).all() else np.nanmedian
     typical[seen] = median(measured, axis=0)
-    trunk = typical[_TRUNK_PARTS].sum()
-    legs = typical[_LEG_PARTS].sum(axis=1)
-    if not np.isfinite(legs).any():
+    return _stature_of(typical)
+
+
+def _stature_of(typical: Array) -> float:
+    """Estimate stature in metres from the medians (19,) of part lengths."""
+    trunk = sum(typical[part] for part in _TRUNK_PARTS)
+    legs = [leg for leg in (sum(typical[part] for part in leg) for leg in _LEG_PARTS) if leg == leg]
+    if not legs:
         return float(trunk / TRUNK_SHARE)
-    return float((trunk + np.nanmean(legs)) / (TRUNK_SHARE + LEG_SHARE))
+    return float((trunk + sum(legs) / len(legs)) / (TRUNK_SHARE + LEG_SHARE))
 
 
 class RunningHeight:
@@ -145,6 +145,8 @@ class RunningHeight:
         self._proportions = proportions
         self._wild_ratio = parameters.wild_ratio
         self._lengths = np.full((parameters.height_frames, len(PARTS)), np.nan)
+        self._ordered = np.empty((len(PARTS), parameters.height_frames))
+        self._counts = np.zeros(len(PARTS), np.int64)
         self._frames = 0
 
     def update(self, joints: Array) -> float:
@@ -152,9 +154,11 @@ class RunningHeight:
         lengths = part_lengths(joints)
         if self._proportions is not None:
             lengths = _in_proportion(lengths, self._proportions, self._wild_ratio)
-        self._lengths[self._frames % len(self._lengths)] = lengths
+        row = self._frames % len(self._lengths)
+        exchange(self._ordered, self._counts, self._lengths[row], lengths)
+        self._lengths[row] = lengths
         self._frames += 1
-        return stature(self._lengths[: self._frames])
+        return _stature_of(medians(self._ordered, self._counts))
 
 
 def _in_proportion(lengths: Array, proportions: Array, wild_ratio: float) -> Array:
@@ -192,7 +196,3 @@ def mirror_pose(
     turn_normal = np.concatenate(([0.0], mirror_normal))
     turned = rotations.multiply(rotations.multiply(turn_x, orientations), turn_normal)
     return translations * np.array([-1.0, 1.0, 1.0]), turned
-
-
-def _unit(vector: Array) -> Array:
-    return vector / np.linalg.norm(vector, axis=-1, keepdims=True)

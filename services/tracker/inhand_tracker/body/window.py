@@ -11,11 +11,10 @@ from collections import deque
 import numpy as np
 from inhand_schemas.joints import JOINT_NAMES, Joint
 
-from inhand_tracker.body.anchors import trunk_axes
+from inhand_tracker.body.kernels import describe as kernels
 from inhand_tracker.body.parameters import DEFAULT_BODY, BodyParameters
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
 
-WHOLE_BODY = np.arange(20)
 UPPER_BODY = np.array(
     [Joint.SPINE, Joint.SHOULDER_CENTER, Joint.HEAD]
     + [
@@ -50,20 +49,19 @@ def describe_bodies(
     the memories of ``PlaceMemory``. Places are from the middle of the trunk; places and ways are in
     the trunk's directions and in body heights.
     """
-    axes = trunk_axes(joints)
-    ways = 0.5 * np.einsum("tljk,tki->tlji", joints[:, None] - earlier, axes) / height
-    described = np.concatenate((trunk_places(joints, height)[:, None], ways), axis=1)
+    places = trunk_places(joints, height)
+    ways = kernels.ways(joints, earlier, height)
+    described = np.concatenate((places[:, None], ways), axis=1)
     whole, upper, memories = (
         array.reshape(len(joints), -1).astype(np.float32)
-        for array in (described[:, :, WHOLE_BODY], described[:, :, UPPER_BODY], remembered)
+        for array in (described, described[:, :, UPPER_BODY], remembered)
     )
     return [whole, upper, np.concatenate((upper, memories), axis=1)]
 
 
 def trunk_places(joints: Array, height: float) -> Array:
-    """Give joints (T, 20, 3) from the middle of the trunk, in its directions, in body heights."""
-    middle = 0.5 * (joints[:, Joint.HIP_CENTER] + joints[:, Joint.SHOULDER_CENTER])
-    return np.asarray((joints - middle[:, None]) @ trunk_axes(joints)) / height
+    """Give joints (..., 20, 3) from the middle of the trunk, in its directions, in body heights."""
+    return kernels.places(joints, height)
 
 
 def earlier_frames(

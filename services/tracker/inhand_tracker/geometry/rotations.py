@@ -1,8 +1,25 @@
-"""Unit quaternions (w, x, y, z) on arrays of shape (..., 4)."""
+"""Unit quaternions (w, x, y, z) on arrays of shape (..., 4).
+
+What trackers call often, on few poses at once, is compiled (``kernels/quaternions``).
+"""
 
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.kernels.compiled import compiled
+from inhand_tracker.geometry.kernels.quaternions import (
+    product,
+    quaternion_in,
+    quaternion_of,
+    quaternion_of_matrix,
+    turned,
+    vector_in,
+    vector_of,
+)
+
+_CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
+_THREE, _FOUR = np.empty(3), np.empty(4)
+"""They tell compiled functions how long their results are."""
 
 
 def components(array: Array) -> tuple[Array, ...]:
@@ -12,91 +29,37 @@ def components(array: Array) -> tuple[Array, ...]:
 
 def multiply(first: Array, second: Array) -> Array:
     """Chain rotations: ``second`` followed by ``first``, (..., 4)."""
-    w, x, y, z = components(first)
-    a, b, c, d = components(second)
-    return np.stack(
-        (
-            w * a - x * b - y * c - z * d,
-            w * b + x * a + y * d - z * c,
-            w * c - x * d + y * a + z * b,
-            w * d + x * c - y * b + z * a,
-        ),
-        axis=-1,
-    )
+    return _multiply(first, second)
 
 
 def conjugate(quaternion: Array) -> Array:
     """Invert rotations, (..., 4)."""
-    return quaternion * np.array([1.0, -1.0, -1.0, -1.0])
+    return quaternion * _CONJUGATE
 
 
 def rotate(quaternion: Array, vector: Array) -> Array:
     """Turn vectors (..., 3) by quaternions (..., 4)."""
-    w, x, y, z = components(quaternion)
-    a, b, c = components(vector)
-    # Twice the cross product of axis and vector; np.cross is many times slower on small arrays.
-    u, v, s = 2.0 * (y * c - z * b), 2.0 * (z * a - x * c), 2.0 * (x * b - y * a)
-    return np.stack(
-        (
-            a + w * u + y * s - z * v,
-            b + w * v + z * u - x * s,
-            c + w * s + x * v - y * u,
-        ),
-        axis=-1,
-    )
+    return _rotate(quaternion, vector)
 
 
 def to_matrix(quaternion: Array) -> Array:
     """Rotation matrices (..., 3, 3)."""
-    w, x, y, z = components(quaternion)
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    return _to_matrix(quaternion, _THREE)
 
 
 def from_matrix(matrix: Array) -> Array:
     """Quaternions (..., 4) of rotation matrices (..., 3, 3), by the largest component."""
-    diagonal = np.einsum("...ii->...i", matrix)
-    trace = diagonal.sum(axis=-1, keepdims=True)
-    squares = np.concatenate((trace, 2.0 * diagonal - trace), axis=-1) + 1.0
-    largest = np.argmax(squares, axis=-1)
-    skew = np.stack(
-        (
-            matrix[..., 2, 1] - matrix[..., 1, 2],
-            matrix[..., 0, 2] - matrix[..., 2, 0],
-            matrix[..., 1, 0] - matrix[..., 0, 1],
-        ),
-        axis=-1,
-    )
-    symmetric = matrix + np.swapaxes(matrix, -1, -2)
-    candidates = np.empty((*matrix.shape[:-2], 4, 4))
-    candidates[..., 0, 0] = squares[..., 0]
-    candidates[..., 0, 1:] = candidates[..., 1:, 0] = skew
-    candidates[..., 1:, 1:] = symmetric
-    for axis in range(3):
-        candidates[..., axis + 1, axis + 1] = squares[..., axis + 1]
-    chosen = np.take_along_axis(candidates, largest[..., None, None], axis=-2)[..., 0, :]
-    return normalise(chosen)
+    return _from_matrix(matrix, _FOUR)
 
 
 def from_vector(vector: Array) -> Array:
     """Quaternions (..., 4) of rotation vectors (..., 3) in radians."""
-    angle = np.linalg.norm(vector, axis=-1, keepdims=True)
-    return np.concatenate(
-        (np.cos(angle / 2.0), vector * (0.5 * np.sinc(angle / (2.0 * np.pi)))), axis=-1
-    )
+    return _from_vector(vector, _FOUR)
 
 
 def to_vector(quaternion: Array) -> Array:
     """Rotation vectors (..., 3) in radians, no longer than π."""
-    upper = np.where(quaternion[..., :1] < 0.0, -quaternion, quaternion)
-    sine = np.linalg.norm(upper[..., 1:], axis=-1, keepdims=True)
-    angle = 2.0 * np.arctan2(sine, upper[..., :1])
-    scale = np.divide(angle, sine, out=np.full_like(sine, 2.0), where=sine > 1e-12)
-    return upper[..., 1:] * scale
+    return _to_vector(quaternion, _THREE)
 
 
 def normalise(quaternion: Array) -> Array:
@@ -129,3 +92,41 @@ def principal(scatter: Array) -> Array:
     """Find the mean rotations (..., 4) of scatter matrices Σ w q qᵀ, (..., 4, 4)."""
     _, vectors = np.linalg.eigh(scatter)
     return vectors[..., -1]
+
+
+@compiled("(q),(q)->(q)")
+def _multiply(first: Array, second: Array, chained: Array) -> None:
+    w, x, y, z = product(quaternion_in(first), quaternion_in(second))
+    chained[0], chained[1], chained[2], chained[3] = w, x, y, z
+
+
+@compiled("(q),(v)->(v)")
+def _rotate(quaternion: Array, vector: Array, rotated: Array) -> None:
+    rotated[0], rotated[1], rotated[2] = turned(quaternion_in(quaternion), vector_in(vector))
+
+
+@compiled("(v),(q)->(q)")
+def _from_vector(vector: Array, four: Array, quaternion: Array) -> None:
+    w, x, y, z = quaternion_of(vector_in(vector))
+    quaternion[0], quaternion[1], quaternion[2], quaternion[3] = w, x, y, z
+
+
+@compiled("(q),(v)->(v)")
+def _to_vector(quaternion: Array, three: Array, vector: Array) -> None:
+    vector[0], vector[1], vector[2] = vector_of(quaternion_in(quaternion))
+
+
+@compiled("(q),(v)->(v,v)")
+def _to_matrix(quaternion: Array, three: Array, matrix: Array) -> None:
+    w, x, y, z = quaternion_in(quaternion)
+    matrix[0, 0], matrix[1, 1] = 1 - 2 * (y * y + z * z), 1 - 2 * (x * x + z * z)
+    matrix[2, 2] = 1 - 2 * (x * x + y * y)
+    matrix[0, 1], matrix[1, 0] = 2 * (x * y - w * z), 2 * (x * y + w * z)
+    matrix[0, 2], matrix[2, 0] = 2 * (x * z + w * y), 2 * (x * z - w * y)
+    matrix[1, 2], matrix[2, 1] = 2 * (y * z - w * x), 2 * (y * z + w * x)
+
+
+@compiled("(v,v),(q)->(q)")
+def _from_matrix(matrix: Array, four: Array, quaternion: Array) -> None:
+    w, x, y, z = quaternion_of_matrix(matrix)
+    quaternion[0], quaternion[1], quaternion[2], quaternion[3] = w, x, y, z

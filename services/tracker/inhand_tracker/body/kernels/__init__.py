@@ -1,0 +1,1 @@
+"""Compiled code of bodies: joints in, coordinate systems and descriptions out."""

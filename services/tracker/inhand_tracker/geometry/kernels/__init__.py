@@ -1,0 +1,1 @@
+"""Compiled algebra of rotations and small matrices, which all other kernels share."""
