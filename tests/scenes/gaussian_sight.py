@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from inhand_tracker.geometry.pose_gaussian import PoseGaussian
+from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
 from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.refinement import Refined
 
@@ -39,7 +39,7 @@ class GaussianSight:
 
     def log_likelihood(self, origins: np.ndarray, turns: np.ndarray, view: "View") -> np.ndarray:
         self.weighed += len(origins)
-        return self.bonus + TRUE.log_density(origins, turns) - TRUE.log_density(*pose(TRUE))
+        return self.bonus + _log_density(origins, turns) - _log_density(*pose(TRUE))
 
     def log_likelihoods_by_term(
         self, origins: np.ndarray, turns: np.ndarray, view: "View"
@@ -86,3 +86,13 @@ class View:
 def pose(one: PoseGaussian) -> tuple[np.ndarray, np.ndarray]:
     """The mean as arrays of one pose, (1, 3) and (1, 4)."""
     return one.centre[None], one.rotation[None]
+
+
+def alone(one: PoseGaussian) -> PoseMixture:
+    """The mixture of one distribution."""
+    return PoseMixture((one,), np.ones(1))
+
+
+def _log_density(centres: np.ndarray, turns: np.ndarray) -> np.ndarray:
+    densities: np.ndarray = alone(TRUE).log_densities(centres, turns)[0]
+    return densities

@@ -162,3 +162,14 @@ def test_opposite_rotations_still_have_a_finite_mean() -> None:
     opposite = np.array([[1.0, 0, 0, 0], [0, 1.0, 0, 0]])
     mean = rotations.mean(opposite, np.ones(2))
     assert np.linalg.norm(mean) == pytest.approx(1.0)
+
+
+@given(st.integers(0, 200))
+def test_no_rotation_is_nearer_than_the_nearest(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    matrix = random.normal(size=(3, 3))
+    found = rotations.nearest(matrix)
+    assert np.linalg.det(found) == pytest.approx(1.0)
+    others = Rotation.random(200, random_state=seed).as_matrix()
+    distances = np.linalg.norm(others - matrix, axis=(1, 2))
+    assert np.linalg.norm(found - matrix) <= distances.min() + 1e-9

@@ -1,14 +1,12 @@
 """The combination of predictions: weights, covariances and rotations by their definitions."""
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from inhand_tracker.prior.combination import (
     combination_weights,
     covariance_at,
     locality,
-    nearest_rotation,
     products_at,
     rotation_error,
 )
@@ -43,17 +41,6 @@ def test_weights_are_shares(seed: int, rank: int) -> None:
 def test_predictions_without_error_weigh_the_same() -> None:
     weights = weights_at(np.ones((1, 1)), np.zeros((1, 4, 4), np.float32))
     np.testing.assert_allclose(weights, 0.25)
-
-
-@given(st.integers(0, 200))
-def test_no_rotation_is_nearer_than_the_nearest(seed: int) -> None:
-    random = np.random.default_rng(seed)
-    matrix = random.normal(size=(3, 3))
-    found = nearest_rotation(matrix)
-    assert np.linalg.det(found) == pytest.approx(1.0)
-    others = Rotation.random(200, random_state=seed).as_matrix()
-    distances = np.linalg.norm(others - matrix, axis=(1, 2))
-    assert np.linalg.norm(found - matrix) <= distances.min() + 1e-9
 
 
 def test_no_other_shares_combine_correlated_predictions_better() -> None:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from inhand_tracker.body.anchors import ANCHORS, find_anchors
 from inhand_tracker.body.window import VIEWS, BodyWindow
 from inhand_tracker.mapping.learning import LabelledSequence
-from inhand_tracker.prior.combination import fuse, repeated
+from inhand_tracker.prior.combination import fuse
 from inhand_tracker.prior.learning import CHI_SQUARE_90, learn_prior
 from inhand_tracker.prior.prior import TARGETS, Prior, predict
 from people import (
@@ -119,14 +119,11 @@ def single_predictions(prior: Prior, joints: np.ndarray) -> tuple[np.ndarray, np
                 for regression, description in zip(prior.regressions, described, strict=True)
             ]
         )
-        anchors = repeated(find_anchors(one), VIEWS)
+        anchors = find_anchors(one)
         alone = np.eye(VIEWS * len(ANCHORS))
-        placed = [
-            fuse(said[None], anchors, height, (only[None], only[None]), prior.spread)
-            for only in alone
-        ]
-        centres.append([place[0] for place, _ in placed])
-        turns.append([turn[0] for _, turn in placed])
+        placed = [fuse(said, anchors, height, (only, only), prior.spread) for only in alone]
+        centres.append([place for place, _ in placed])
+        turns.append([turn for _, turn in placed])
     return np.array(centres), np.array(turns)
 
 

@@ -6,12 +6,17 @@ Deviations are (translation of the centre, rotation vector on the left), in metr
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.kernels import pose_normals as kernels
 from inhand_tracker.geometry.weights import normalised_weights
+
+_SIX = np.empty(6)
+"""It tells kernels how long a deviation is."""
 
 
 @dataclass(frozen=True)
@@ -22,32 +27,24 @@ class PoseGaussian:
     rotation: Array
     covariance: Array
 
+    @cached_property
+    def root(self) -> Array:
+        """The triangular root (6, 6) of the covariance; raises LinAlgError if it has none."""
+        return roots_of(self.covariance)
+
     def deviations(self, centres: Array, orientations: Array) -> Array:
-        """Deviations (P, 6) of poses (P, 3) and (P, 4) from the mean."""
-        turns = rotations.multiply(orientations, rotations.conjugate(self.rotation))
-        return np.concatenate((centres - self.centre, rotations.to_vector(turns)), axis=1)
+        """Deviations (..., 6) of poses (..., 3) and (..., 4) from the mean."""
+        return kernels.deviations(self.centre, self.rotation, centres, orientations, _SIX)
 
     def deviated(self, deviations: Array) -> tuple[Array, Array]:
-        """Give the poses (P, 3) and (P, 4) with deviations (P, 6) from the mean."""
-        turns = rotations.from_vector(deviations[:, 3:])
-        return self.centre + deviations[:, :3], rotations.multiply(turns, self.rotation)
+        """Give the poses (..., 3) and (..., 4) with deviations (..., 6) from the mean."""
+        poses: tuple[Array, Array] = kernels.deviated(self.centre, self.rotation, deviations)
+        return poses
 
     def square_distance(self, other: "PoseGaussian") -> float:
         """Squared Mahalanobis distance of another one's mean, by this covariance."""
-        off = self.deviations(other.centre[None], other.rotation[None])[0]
-        return float(off @ np.linalg.solve(self.covariance, off))
-
-    def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
-        """Draw ``count`` poses (P, 3) and (P, 4)."""
-        root = np.linalg.cholesky(self.covariance)
-        return self.deviated(random.normal(size=(count, 6)) @ root.T)
-
-    def log_density(self, centres: Array, orientations: Array) -> Array:
-        """Log density (P,) of poses (P, 3) and (P, 4)."""
-        root = np.linalg.cholesky(self.covariance)
-        whitened = np.linalg.solve(root, self.deviations(centres, orientations).T)
-        scale = np.log(np.diag(root)).sum() + 3.0 * np.log(2.0 * np.pi)
-        return np.asarray(-0.5 * np.square(whitened).sum(axis=0) - scale)
+        mean = self.centre, self.rotation, self.root
+        return float(kernels.square_distances(*mean, other.centre, other.rotation))
 
 
 @dataclass(frozen=True)
@@ -57,32 +54,61 @@ class PoseMixture:
     parts: tuple[PoseGaussian, ...]
     weights: Array
 
+    @cached_property
+    def _means(self) -> tuple[Array, Array]:
+        """The parts' centres (K, 3) and rotations (K, 4)."""
+        centres = np.array([part.centre for part in self.parts])
+        return centres, np.array([part.rotation for part in self.parts])
+
+    @cached_property
+    def _roots(self) -> Array:
+        """The triangular roots (K, 6, 6) of the parts' covariances."""
+        return np.array([part.root for part in self.parts])
+
     def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
         """Draw ``count`` poses (P, 3) and (P, 4), of each part in proportion to its weight."""
         ends = np.rint(np.cumsum(self.weights) * count).astype(int)
-        counts = np.diff(ends, prepend=0)
-        drawn = [p.sample(n, random) for p, n in zip(self.parts, counts, strict=True) if n]
-        centres, orientations = zip(*drawn, strict=True)
-        return np.concatenate(centres), np.concatenate(orientations)
+        parts = np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
+        normals = random.normal(size=(len(parts), 6))
+        poses: tuple[Array, Array] = kernels.draw(parts, *self._means, self._roots, normals)
+        return poses
 
     def log_densities(self, centres: Array, orientations: Array) -> Array:
         """Log densities (K, P) of poses, of each part times its weight."""
-        logs = [part.log_density(centres, orientations) for part in self.parts]
+        means, turns = self._means
+        squares = kernels.square_distances(
+            means[:, None], turns[:, None], self._roots[:, None], centres, orientations
+        )
+        diagonals = np.diagonal(self._roots, axis1=1, axis2=2)
         with np.errstate(divide="ignore"):
-            return np.array(logs) + np.log(self.weights)[:, None]
+            scales = np.log(self.weights) - np.log(diagonals).sum(axis=1) - kernels.LOG_TURNS
+        return scales[:, None] - 0.5 * squares
 
     def moments(self) -> PoseGaussian:
         """Give the normal distribution of the same mean and covariance."""
-        centres = np.array([part.centre for part in self.parts])
-        turns = np.array([part.rotation for part in self.parts])
+        centres, turns = self._means
         mean = PoseGaussian(
             self.weights @ centres, rotations.mean(turns, self.weights), np.zeros((6, 6))
         )
         apart = mean.deviations(centres, turns)
         within = np.array([part.covariance for part in self.parts])
-        covariance = np.einsum("k,ki,kj->ij", self.weights, apart, apart)
-        covariance += np.einsum("k,kij->ij", self.weights, within)
+        covariance = (self.weights[:, None] * apart).T @ apart
+        covariance += (self.weights @ within.reshape(-1, 36)).reshape(6, 6)
         return PoseGaussian(mean.centre, mean.rotation, covariance)
+
+
+def roots_of(covariances: Array) -> Array:
+    """Find the triangular roots (..., 6, 6) of covariances; raises LinAlgError where one has
+    none, as it is not positive definite."""
+    roots: Array = kernels.roots(covariances)
+    if np.isnan(roots[..., 0, 0]).any():
+        raise np.linalg.LinAlgError("a covariance of poses is not positive definite")
+    return roots
+
+
+def turn_blocks(matrices: Array, turns: Array) -> Array:
+    """Rotate deviations of the pose by turns (..., 3, 3): T M Tᵀ of matrices (..., 6, 6)."""
+    return kernels.turn_blocks(matrices, turns)
 
 
 def mixture(parts: Sequence[PoseGaussian], log_weights: Array) -> PoseMixture:

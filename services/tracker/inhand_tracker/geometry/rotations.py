@@ -7,6 +7,7 @@ import numpy as np
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels.compiled import compiled
+from inhand_tracker.geometry.kernels.nearest_rotation import nearest_rotation
 from inhand_tracker.geometry.kernels.quaternions import (
     product,
     quaternion_in,
@@ -94,6 +95,11 @@ def principal(scatter: Array) -> Array:
     return vectors[..., -1]
 
 
+def nearest(matrix: Array) -> Array:
+    """The rotation (..., 3, 3) nearest to each matrix: the orthogonal Procrustes problem."""
+    return _nearest(matrix)
+
+
 @compiled("(q),(q)->(q)")
 def _multiply(first: Array, second: Array, chained: Array) -> None:
     w, x, y, z = product(quaternion_in(first), quaternion_in(second))
@@ -130,3 +136,8 @@ def _to_matrix(quaternion: Array, three: Array, matrix: Array) -> None:
 def _from_matrix(matrix: Array, four: Array, quaternion: Array) -> None:
     w, x, y, z = quaternion_of_matrix(matrix)
     quaternion[0], quaternion[1], quaternion[2], quaternion[3] = w, x, y, z
+
+
+@compiled("(v,v)->(v,v)")
+def _nearest(matrix: Array, rotation: Array) -> None:
+    nearest_rotation(matrix, rotation)

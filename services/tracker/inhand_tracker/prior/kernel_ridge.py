@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
+from inhand_tracker.prior.kernels.regress import gaussian_of_one, predicted_by
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR_LEARNING, PriorLearningParameters
 
 CHUNK = 8192
@@ -30,6 +31,14 @@ class KernelRidge:
     def kernel(self, inputs: Singles) -> Array:
         """The kernel (T, L) of inputs (T, D): 1 at a landmark, 0 far from it."""
         return gaussian(inputs, self.landmarks, self.width)
+
+    def kernel_of_one(self, one: Singles) -> Array:
+        """The kernel (L,) of one input (D,), as ``kernel``."""
+        return gaussian_of_one(one, self.landmarks, self.width)
+
+    def predict_by(self, kernel: Array) -> Array:
+        """(M,) for an input by its kernel (L,)."""
+        return predicted_by(kernel, self.coefficients, self.offset)
 
     def predict(self, inputs: Singles) -> Array:
         """(T, M) for inputs (T, D)."""

@@ -179,7 +179,7 @@ def _regressions(
 def _products(residuals: Array, landmarks: _Samples, spread: Array) -> tuple[Singles, Singles]:
     """Inner products (L, E, E) of errors (L, E, 12): of translations in metres, and of rotations by
     how far they take the marked vertices."""
-    axes = combination.repeated(landmarks.anchors, VIEWS).axes
+    axes = np.tile(landmarks.anchors.axes, (1, VIEWS, 1, 1))
     moved = np.einsum("leij,lej->lei", axes, residuals[..., :3]) * landmarks.heights[:, None, None]
     root = np.linalg.cholesky(spread + 1e-9 * np.eye(3))
     turned = axes @ residuals[..., 3:].reshape(*residuals.shape[:-1], 3, 3) @ root
@@ -205,9 +205,10 @@ def _errors(
         combination.combination_weights(translation_products),
         combination.combination_weights(rotation_products),
     )
-    anchors = combination.repeated(landmarks.anchors, VIEWS)
     predicted = np.tile(targets, (1, VIEWS, 1)) - residuals
-    centres, turns = combination.fuse(predicted, anchors, landmarks.heights, weights, spread)
+    centres, turns = combination.fuse(
+        predicted, landmarks.anchors, landmarks.heights, weights, spread
+    )
     axes = landmarks.anchors.axes[:, 0]
     moved = (centres - landmarks.centres) / landmarks.heights[:, None]
     turned = combination.rotation_error(turns, landmarks.rotations)

@@ -15,6 +15,7 @@ import numpy as np
 
 from inhand_tracker.body.anchors import Anchors
 from inhand_tracker.geometry.arrays import Array, Singles
+from inhand_tracker.geometry.pose_gaussian import turn_blocks
 from inhand_tracker.prior.combination import (
     TINY,
     combination_weights,
@@ -22,7 +23,6 @@ from inhand_tracker.prior.combination import (
     fuse,
     locality,
     products_at,
-    repeated,
     rotation_error,
 )
 from inhand_tracker.prior.kernel_ridge import KernelRidge
@@ -85,7 +85,7 @@ def predict(
     """Predict the object's pose for one body: descriptions (1, D) of each view, its anchors and
     height."""
     kernels = [
-        regression.kernel(description)
+        regression.kernel_of_one(description[0])
         for regression, description in zip(prior.regressions, descriptions, strict=True)
     ]
     nearest = [float(kernel.max()) for kernel in kernels]
@@ -93,23 +93,22 @@ def predict(
     local, nearness = locality(kernels[0])
     here = _Predictions(
         _predicted(prior, kernels, stretches),
-        repeated(anchors, len(prior.regressions)),
+        anchors,
         height,
         products_at(local, prior.translation_products),
         products_at(local, prior.rotation_products),
     )
     centre, rotation = here.fused(prior.spread, parameters.distrust)
-    doubt = float(np.clip(stretches[0], 1.0, parameters.most_stretched)) ** 2
-    covariance = (
-        doubt
-        * prior.calibration
-        * covariance_at(local, nearness, prior.errors, parameters.everywhere_share)
-    )
-    usual = Prediction(centre, rotation, _in_camera(covariance[0], anchors.axes[0], height))
+    doubt = min(max(stretches[0], 1.0), parameters.most_stretched) ** 2
+    covariance = covariance_at(local, nearness, prior.errors, parameters.everywhere_share)
+    scale = doubt * prior.calibration
+    usual = Prediction(centre, rotation, _in_camera(scale * covariance, anchors.axes[0], height))
     novelty = 1.0 - nearest[0] / parameters.new_kernel
     if novelty <= 0.0:
         return usual
-    taken = here.taken_along(novelty, np.tensordot(local[0], prior.landmark_targets, axes=1))
+    targets = prior.landmark_targets
+    at_nearest = (local @ targets.reshape(len(local), -1)).reshape(targets.shape[1:])
+    taken = here.taken_along(novelty, at_nearest)
     return _doubted(usual, *taken.fused(prior.spread, parameters.distrust))
 
 
@@ -117,7 +116,7 @@ def predict(
 class _Predictions:
     """All predictions for one body, E of them.
 
-    ``predicted`` (E, 12) in ``anchors`` (1, E), and the expected inner products (1, E, E) of the
+    ``predicted`` (E, 12) in ``anchors`` (A,), and the expected inner products (E, E) of the
     errors of translations and rotations.
     """
 
@@ -133,8 +132,7 @@ class _Predictions:
             combination_weights(self.translation_products, distrust),
             combination_weights(self.rotation_products, distrust),
         )
-        centres, turns = fuse(self.predicted[None], self.anchors, self.height, weights, spread)
-        return centres[0], turns[0]
+        return fuse(self.predicted, self.anchors, self.height, weights, spread)
 
     def taken_along(self, novelty: float, nearest: Array) -> "_Predictions":
         """The same for a new body, the more different the newer it is, ``novelty`` from 0 to 1.
@@ -154,23 +152,19 @@ class _Predictions:
 
 
 def _predicted(prior: Prior, kernels: list[Array], stretches: list[float]) -> Array:
-    """What every regression predicts in every anchor, (E, 12), by kernels (1, L) that are stretched
+    """What every regression predicts in every anchor, (E, 12), by kernels (L,) that are stretched
     where all landmarks are far away."""
-    return np.concatenate(
-        [
-            (stretch * kernel @ regression.coefficients + regression.offset).reshape(-1, TARGETS)
-            for stretch, kernel, regression in zip(
-                stretches, kernels, prior.regressions, strict=True
-            )
-        ]
-    )
+    predicted = [
+        regression.predict_by(stretch * kernel)
+        for stretch, kernel, regression in zip(stretches, kernels, prior.regressions, strict=True)
+    ]
+    return np.concatenate(predicted).reshape(-1, TARGETS)
 
 
 def _in_camera(covariance: Array, trunk: Array, height: float) -> Array:
     """A covariance (6, 6) in the trunk's axes (3, 3) and body heights, in the camera frame."""
-    turn = np.kron(np.eye(2), trunk)
-    scale = np.repeat([height, 1.0], 3)
-    return turn @ (covariance * scale[:, None] * scale) @ turn.T
+    scale = np.array([height, height, height, 1.0, 1.0, 1.0])
+    return turn_blocks(covariance * scale[:, None] * scale, trunk)
 
 
 def _doubted(usual: Prediction, centre: Array, rotation: Array) -> Prediction:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gaussian_sight import TRUE, GaussianSight, View, pose
+from gaussian_sight import TRUE, GaussianSight, View, alone, pose
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
@@ -28,14 +28,16 @@ def posterior(
 
 @pytest.mark.parametrize("sharpness", [1.0, 0.25])
 def test_a_score_is_the_belief_and_the_tempered_image(sharpness: float) -> None:
-    poses = TRUE.sample(10, np.random.default_rng(0))
+    poses = alone(TRUE).sample(10, np.random.default_rng(0))
     scores, seen = posterior(WIDE, sharpness=sharpness).scores(*poses)
     np.testing.assert_allclose(seen, SIGHT.log_likelihood(*poses, View(None, None)))
-    np.testing.assert_allclose(scores, 0.4 * sharpness * seen + WIDE.log_density(*poses))
+    np.testing.assert_allclose(
+        scores, 0.4 * sharpness * seen + alone(WIDE).log_densities(*poses)[0]
+    )
 
 
 def test_starts_that_lead_to_one_place_give_one_mode() -> None:
-    starts = WIDE.sample(5, np.random.default_rng(1))
+    starts = alone(WIDE).sample(5, np.random.default_rng(1))
     (mode,) = posterior(WIDE).modes(*starts)
     np.testing.assert_allclose(mode.centre, TRUE.centre)
     information = np.linalg.inv(WIDE.covariance) + 0.1 * np.linalg.inv(TRUE.covariance)

@@ -16,7 +16,12 @@ from inhand_tracker.body.skeleton import mirror_pose
 from inhand_tracker.body.window import BodyWindow
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, mixture
+from inhand_tracker.geometry.pose_gaussian import (
+    PoseGaussian,
+    PoseMixture,
+    mixture,
+    turn_blocks,
+)
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
 from inhand_tracker.prior.prior import Prior, predict
@@ -99,12 +104,12 @@ def _stays(
     turned = rotations.to_vector(rotations.multiply(inverse, before.believed.rotation))
     rotation = rotations.multiply(expected.rotation, rotations.from_vector(kept * turned))
     turn = rotations.multiply(rotation, rotations.conjugate(before.believed.rotation))
-    axes = np.kron(np.eye(2), rotations.to_matrix(turn))
+    turned_covariance = turn_blocks(before.believed.covariance, rotations.to_matrix(turn))
     sure = float(np.exp(-elapsed_s / forgetting_s)) ** 2
     return PoseGaussian(
         expected.centre + rotations.rotate(expected.rotation, kept * moved),
         rotation,
-        sure * axes @ before.believed.covariance @ axes.T + (1.0 - sure) * expected.covariance,
+        sure * turned_covariance + (1.0 - sure) * expected.covariance,
     )
 
 

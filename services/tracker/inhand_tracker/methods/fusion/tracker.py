@@ -16,6 +16,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.estimate import AGREEMENT_M, AGREEMENT_RAD, Estimate
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.geometry.kernels.pose_normals import share_near
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever
 from inhand_tracker.methods.follower import Follower, FollowingTracker
 from inhand_tracker.methods.fusion.belief import Belief, BodyExpectation, carry_over
@@ -153,9 +154,8 @@ class FusionFollower(Follower):
 
 def confidence_of(pose: PoseGaussian, samples: int) -> float:
     """Probability that the true pose is within 10 cm and 30° of the mean."""
-    off = _standard_normal(samples) @ np.linalg.cholesky(pose.covariance).T
-    near = np.linalg.norm(off[:, :3], axis=1) < AGREEMENT_M
-    return float((near & (np.linalg.norm(off[:, 3:], axis=1) < AGREEMENT_RAD)).mean())
+    near = AGREEMENT_M, AGREEMENT_RAD
+    return float(share_near(_standard_normal(samples), pose.root, *near))
 
 
 @cache

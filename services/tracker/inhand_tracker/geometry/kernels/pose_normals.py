@@ -1,0 +1,150 @@
+"""Normal distributions over poses: deviations from a mean, densities, draws.
+
+A deviation (6,) is a translation and a rotation vector on the left.
+"""
+
+import numpy as np
+from numba import njit
+
+from inhand_tracker.geometry.arrays import Array, Indices
+from inhand_tracker.geometry.kernels.compiled import compiled
+from inhand_tracker.geometry.kernels.matrices import find_root, solve_lower
+from inhand_tracker.geometry.kernels.quaternions import (
+    inverse,
+    product,
+    quaternion_in,
+    quaternion_of,
+    vector_in,
+    vector_of,
+)
+
+LOG_TURNS = 3.0 * np.log(2.0 * np.pi)
+"""Logarithm of a standard normal distribution's scale in six dimensions."""
+
+
+@njit(cache=True, nogil=True, inline="always")
+def set_deviation(
+    centre: Array, rotation: Array, pose_centre: Array, pose_rotation: Array, deviation: Array
+) -> None:
+    """Fill ``deviation`` (6,) with that of a pose from a mean."""
+    turn = product(quaternion_in(pose_rotation), inverse(quaternion_in(rotation)))
+    for axis in range(3):
+        deviation[axis] = pose_centre[axis] - centre[axis]
+    deviation[3], deviation[4], deviation[5] = vector_of(turn)
+
+
+@njit(cache=True, nogil=True, inline="always")
+def set_deviated(
+    centre: Array, rotation: Array, deviation: Array, pose_centre: Array, pose_rotation: Array
+) -> None:
+    """Fill a pose, (3,) and (4,), by its deviation (6,) from a mean."""
+    for axis in range(3):
+        pose_centre[axis] = centre[axis] + deviation[axis]
+    w, x, y, z = product(quaternion_of(vector_in(deviation[3:])), quaternion_in(rotation))
+    pose_rotation[0], pose_rotation[1], pose_rotation[2], pose_rotation[3] = w, x, y, z
+
+
+@njit(cache=True, nogil=True)
+def draw(
+    parts: Indices, centres: Array, rotations: Array, roots: Array, normals: Array
+) -> tuple[Array, Array]:
+    """Return poses (P, 3) and (P, 4), of standard ``normals`` (P, 6) about the means of parts (P,),
+    whose covariances have ``roots`` (K, 6, 6)."""
+    drawn_centres, drawn_rotations = np.empty((len(parts), 3)), np.empty((len(parts), 4))
+    deviation = np.empty(6)
+    for pose in range(len(parts)):
+        part = parts[pose]
+        for row in range(6):
+            deviation[row] = 0.0
+            for column in range(row + 1):
+                deviation[row] += roots[part, row, column] * normals[pose, column]
+        set_deviated(
+            centres[part], rotations[part], deviation, drawn_centres[pose], drawn_rotations[pose]
+        )
+    return drawn_centres, drawn_rotations
+
+
+@compiled("(v),(q),(v),(q),(s)->(s)")
+def deviations(
+    centre: Array,
+    rotation: Array,
+    pose_centre: Array,
+    pose_rotation: Array,
+    six: Array,
+    deviation: Array,
+) -> None:
+    """Find deviations (6,) of poses from means."""
+    set_deviation(centre, rotation, pose_centre, pose_rotation, deviation)
+
+
+@compiled("(v),(q),(s)->(v),(q)")
+def deviated(
+    centre: Array, rotation: Array, deviation: Array, pose_centre: Array, pose_rotation: Array
+) -> None:
+    """Find poses (3,) and (4,) by their deviations (6,) from means."""
+    set_deviated(centre, rotation, deviation, pose_centre, pose_rotation)
+
+
+@compiled("(s,s)->(s,s)")
+def roots(matrix: Array, root: Array) -> None:
+    """Find the triangular roots of matrices; NaN of one that is not positive definite."""
+    root[:] = 0.0
+    if not find_root(matrix, root):
+        root[:] = np.nan
+
+
+@compiled("(v),(q),(s,s),(v),(q)->()")
+def square_distances(
+    centre: Array,
+    rotation: Array,
+    root: Array,
+    pose_centre: Array,
+    pose_rotation: Array,
+    square: Array,
+) -> None:
+    """Find the squared Mahalanobis distances of poses by roots (6, 6) of covariances."""
+    deviation = np.empty(6)
+    set_deviation(centre, rotation, pose_centre, pose_rotation, deviation)
+    solve_lower(root, deviation)
+    total = 0.0
+    for axis in range(6):
+        total += deviation[axis] * deviation[axis]
+    square[0] = total
+
+
+@compiled("(s,s),(v,v)->(s,s)")
+def turn_blocks(matrix: Array, turn: Array, turned: Array) -> None:
+    """Rotate both kinds of deviations that a matrix (6, 6) is of: T M Tᵀ, T of two (3, 3)."""
+    half = np.empty((6, 6))
+    for row in range(6):
+        first = 3 * (row // 3)
+        for column in range(6):
+            half[row, column] = 0.0
+            for k in range(3):
+                half[row, column] += turn[row - first, k] * matrix[first + k, column]
+    for row in range(6):
+        for column in range(6):
+            first = 3 * (column // 3)
+            turned[row, column] = 0.0
+            for k in range(3):
+                turned[row, column] += half[row, first + k] * turn[column - first, k]
+
+
+@compiled("(p,s),(s,s),(),()->()")
+def share_near(normals: Array, root: Array, near_m: float, near_rad: float, share: Array) -> None:
+    """Find the share of standard ``normals`` (P, 6) that a covariance's root takes to deviations
+    of less than some metres and radians."""
+    near = 0
+    for index in range(len(normals)):
+        moved, turned = 0.0, 0.0
+        for row in range(6):
+            value = 0.0
+            for column in range(row + 1):
+                value += root[row, column] * normals[index, column]
+            if row < 3:
+                moved += value * value
+            else:
+                turned += value * value
+        if moved < near_m * near_m and turned < near_rad * near_rad:
+            near += 1
+    share[0] = near / len(normals)

@@ -1,0 +1,1 @@
+"""Compiled code of the prior: kernels of regressions, and the combination of predictions."""

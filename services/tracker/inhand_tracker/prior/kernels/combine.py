@@ -1,0 +1,102 @@
+"""Combining E predictions of one body, and what is expected of their errors at L landmarks."""
+
+import numpy as np
+
+from inhand_tracker.geometry.arrays import Array, Singles
+from inhand_tracker.geometry.kernels.compiled import compiled
+from inhand_tracker.geometry.kernels.matrices import find_root, solve
+from inhand_tracker.geometry.kernels.nearest_rotation import nearest_rotation
+
+MOST_RIDGE = 1e3
+"""Ridge at which products that are no products (NaN) are given up; the weights are NaN then."""
+FARTHEST_SHARE = 1e-9
+"""Share of all landmarks below which one of them is left out."""
+
+
+@compiled("(l),(l,e,f)->(e,f)", singles=[1])
+def products_at(local: Array, products: Singles, expected: Array) -> None:
+    """Fill ``expected`` (E, E) with the inner products of errors at landmarks (L, E, E), by
+    their shares (L,)."""
+    expected[:] = 0.0
+    for landmark in range(len(local)):
+        share = local[landmark]
+        if share < FARTHEST_SHARE:
+            continue
+        for one in range(expected.shape[0]):
+            for other in range(expected.shape[1]):
+                expected[one, other] += share * products[landmark, one, other]
+
+
+@compiled("(e,e),()->(e)")
+def best_weights(products: Array, distrust: float, weights: Array) -> None:
+    """Fill ``weights`` (E,) with the shares of predictions, 0 or more, that keep the fused error
+    least, where their errors have inner products (E, E)."""
+    root = np.empty_like(products)
+    ridge = distrust
+    while True:
+        root[:] = products
+        for one in range(len(root)):
+            root[one, one] += ridge * products[one, one] + 1e-12
+        if find_root(root, root) or not ridge < MOST_RIDGE:
+            break
+        ridge = 10.0 * ridge + 1e-6  # rounding: the products are those of errors
+    weights[:] = 1.0
+    solve(root, weights)
+    total = 0.0
+    for one in range(len(root)):
+        weights[one] = max(weights[one], 0.0)
+        total += weights[one]
+    for one in range(len(root)):
+        weights[one] /= total
+
+
+@compiled("(e,t),(a,v),(a,v,v),(),(e),(e),(v,v)->(v),(v,v)")
+def fused(
+    predicted: Array,
+    origins: Array,
+    axes: Array,
+    height: float,
+    translation_weights: Array,
+    rotation_weights: Array,
+    spread: Array,
+    centre: Array,
+    rotation: Array,
+) -> None:
+    """Fill ``centre`` (3,) and ``rotation`` (3, 3) from predictions (E, 12) in A anchors, in turns.
+
+    Rotations differ by how far they take points of covariance ``spread`` (3, 3).
+    """
+    centre[:] = 0.0
+    mean = np.zeros((3, 3))
+    for one in range(len(predicted)):
+        anchor = one % len(origins)
+        at, turning = translation_weights[one], rotation_weights[one]
+        for row in range(3):
+            place = origins[anchor, row]
+            for k in range(3):
+                axis = axes[anchor, row, k]
+                place += height * axis * predicted[one, k]
+                for column in range(3):
+                    mean[row, column] += turning * axis * predicted[one, 3 + 3 * k + column]
+            centre[row] += at * place
+    matrix = np.zeros((3, 3))
+    for row in range(3):
+        for column in range(3):
+            for k in range(3):
+                matrix[row, column] += mean[row, k] * spread[k, column]
+    nearest_rotation(matrix, rotation)
+
+
+@compiled("(l),(),(l,i),()->(i,i)")
+def moments_at(
+    local: Array, nearness: float, errors: Array, everywhere_share: float, moments: Array
+) -> None:
+    """Fill ``moments`` (6, 6) with those of errors (L, 6) by landmarks' shares (L,), and a share
+    of those over all landmarks, the whole of it far from all."""
+    moments[:] = 0.0
+    everywhere = (everywhere_share + 1.0 - nearness) / len(local)
+    for landmark in range(len(local)):
+        share = local[landmark] + everywhere
+        for one in range(moments.shape[0]):
+            for other in range(moments.shape[0]):
+                moments[one, other] += share * errors[landmark, one] * errors[landmark, other]
