@@ -11,7 +11,7 @@ import numpy as np
 from inhand_schemas.joints import JOINT_NAMES, MIRRORED_JOINTS, PARENTS, SIDES, Joint
 
 from inhand_tracker.body.kernels import axes as kernels
-from inhand_tracker.body.kernels.running_medians import exchange, medians
+from inhand_tracker.body.kernels.part_lengths import exchange, in_proportion, medians
 from inhand_tracker.body.parameters import DEFAULT_BODY, BodyParameters
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
@@ -153,23 +153,12 @@ class RunningHeight:
         """Take one frame's (20, 3) joints and give the height in metres; NaN while unknown."""
         lengths = part_lengths(joints)
         if self._proportions is not None:
-            lengths = _in_proportion(lengths, self._proportions, self._wild_ratio)
+            lengths = in_proportion(lengths, self._proportions, self._wild_ratio)
         row = self._frames % len(self._lengths)
         exchange(self._ordered, self._counts, self._lengths[row], lengths)
         self._lengths[row] = lengths
         self._frames += 1
         return _stature_of(medians(self._ordered, self._counts))
-
-
-def _in_proportion(lengths: Array, proportions: Array, wild_ratio: float) -> Array:
-    """Give wild lengths (19,) the value that the others make one expect."""
-    shares = lengths / np.maximum(proportions, 1e-9)
-    seen = np.isfinite(shares)
-    if not seen.any():
-        return lengths
-    typical = np.median(shares[seen])
-    wild = (shares > wild_ratio * typical) | (shares < typical / wild_ratio)
-    return np.where(wild, typical * proportions, lengths)
 
 
 def without_impossible(joints: Array, farthest_m: float = DEFAULT_BODY.farthest_joint_m) -> Array:

@@ -134,6 +134,9 @@ class BodyWindow:
 
     def _earlier(self, time_ns: int) -> Array:
         """The joints (1, L, 20, 3) of the frames nearest to each lag."""
-        ages = np.array([time_ns - frame_ns for frame_ns, _ in self._frames]) / 1e9
-        nearest = [int(np.argmin(np.abs(ages - lag))) for lag in self._parameters.lags_s]
-        return np.stack([self._frames[row][1] for row in nearest])[None]
+        nearest = [self._nearest(time_ns - round(1e9 * lag)) for lag in self._parameters.lags_s]
+        return np.array(nearest)[None]
+
+    def _nearest(self, time_ns: int) -> Array:
+        """The joints (20, 3) of the frame nearest to a time."""
+        return min(self._frames, key=lambda frame: abs(frame[0] - time_ns))[1]

@@ -30,7 +30,8 @@ def locality(kernel: Array) -> tuple[Array, Array]:
 def products_at(local: Array, products: Singles) -> Array:
     """The inner products of errors (..., E, E) that are expected, of those at landmarks (L, E, E),
     by their shares (..., L)."""
-    return kernels.products_at(local, products)
+    flat = local.astype(np.float32) @ products.reshape(len(products), -1)
+    return flat.astype(np.float64).reshape(*local.shape[:-1], *products.shape[1:])
 
 
 def combination_weights(products: Array, distrust: float = DEFAULT_PRIOR.distrust) -> Array:

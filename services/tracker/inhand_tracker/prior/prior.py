@@ -85,7 +85,7 @@ def predict(
     """Predict the object's pose for one body: descriptions (1, D) of each view, its anchors and
     height."""
     kernels = [
-        regression.kernel_of_one(description[0])
+        regression.kernel(description[0])
         for regression, description in zip(prior.regressions, descriptions, strict=True)
     ]
     nearest = [float(kernel.max()) for kernel in kernels]

@@ -2,29 +2,13 @@
 
 import numpy as np
 
-from inhand_tracker.geometry.arrays import Array, Singles
+from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels.compiled import compiled
 from inhand_tracker.geometry.kernels.matrices import find_root, solve
 from inhand_tracker.geometry.kernels.nearest_rotation import nearest_rotation
 
 MOST_RIDGE = 1e3
 """Ridge at which products that are no products (NaN) are given up; the weights are NaN then."""
-FARTHEST_SHARE = 1e-9
-"""Share of all landmarks below which one of them is left out."""
-
-
-@compiled("(l),(l,e,f)->(e,f)", singles=[1])
-def products_at(local: Array, products: Singles, expected: Array) -> None:
-    """Fill ``expected`` (E, E) with the inner products of errors at landmarks (L, E, E), by
-    their shares (L,)."""
-    expected[:] = 0.0
-    for landmark in range(len(local)):
-        share = local[landmark]
-        if share < FARTHEST_SHARE:
-            continue
-        for one in range(expected.shape[0]):
-            for other in range(expected.shape[1]):
-                expected[one, other] += share * products[landmark, one, other]
 
 
 @compiled("(e,e),()->(e)")

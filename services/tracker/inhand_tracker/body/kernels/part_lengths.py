@@ -1,4 +1,4 @@
-"""Medians of the last values of several rows, kept sorted: a new value costs one insertion."""
+"""Lengths of a body's parts: their running medians, kept sorted, and wild ones among them."""
 
 import numpy as np
 from numba import njit
@@ -38,3 +38,21 @@ def medians(ordered: Array, counts: Indices) -> Array:
         if count > 0:
             found[row] = 0.5 * (ordered[row, (count - 1) // 2] + ordered[row, count // 2])
     return found
+
+
+@njit(cache=True, nogil=True)
+def in_proportion(lengths: Array, proportions: Array, wild_ratio: float) -> Array:
+    """Return lengths (N,), the wild ones of which have the value that the others make one expect.
+
+    ``proportions`` (N,) are usual lengths, in any unit. Missing lengths (NaN) stay missing.
+    """
+    shares = lengths / np.maximum(proportions, 1e-9)
+    seen = shares[np.isfinite(shares)]
+    if len(seen) == 0:
+        return lengths
+    typical = np.median(seen)
+    expected = lengths.copy()
+    for part in range(len(lengths)):
+        if shares[part] > wild_ratio * typical or shares[part] < typical / wild_ratio:
+            expected[part] = typical * proportions[part]
+    return expected
