@@ -33,9 +33,16 @@ class GaussianSight:
     def view(self, frame: Any, colours: Colours, joints: Any) -> "View":
         return View(frame, colours)
 
-    def compare_unseen(self, origins: Any, turns: Any, view: "View", trust: float) -> "View":
+    def compare_unseen(self, weighed: Any, view: "View", trust: float) -> "View":
         self.trusts.append(trust)
         return view
+
+    def weigh(self, origins: np.ndarray, turns: np.ndarray, view: "View") -> np.ndarray:
+        """The likelihoods (P, 1) themselves are what poses weigh here."""
+        return self.log_likelihood(origins, turns, view)[:, None]
+
+    def log_likelihood_by(self, weighed: np.ndarray, view: "View") -> np.ndarray:
+        return weighed[:, 0]
 
     def log_likelihood(self, origins: np.ndarray, turns: np.ndarray, view: "View") -> np.ndarray:
         self.weighed += len(origins)

@@ -3,7 +3,6 @@ import numpy as np
 import pytest
 from inhand_tracker.geometry import rotations
 from inhand_tracker.sight.frame import SightFrame
-from inhand_tracker.sight.kernels.gather import Equations
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT
 from inhand_tracker.sight.refinement import PosePrior, PoseRefiner
 from inhand_tracker.sight.view import SightView
@@ -27,13 +26,6 @@ def test_log_density_falls_by_half_a_deviations_square() -> None:
     assert PRIOR.log_density(*off(0.0, 0.0)) == pytest.approx(0.0)
     assert PRIOR.log_density(*off(0.05, 0.0)) == pytest.approx(-0.5)
     assert PRIOR.log_density(*off(0.0, 0.4)) == pytest.approx(-2.0)
-
-
-def test_the_equations_of_a_prior_alone_lead_back_to_it() -> None:
-    nothing = Equations(np.zeros((1, 6, 6)), np.zeros((1, 6)))
-    information, gradients = PRIOR.added_to(nothing, *off(0.03, 0.1))
-    step = np.linalg.solve(information[0], gradients[0])
-    np.testing.assert_allclose(step, [-0.03, 0.0, 0.0, -0.1, 0.0, 0.0], atol=1e-12)
 
 
 def empty_view() -> SightView:

@@ -194,7 +194,8 @@ def compared(image: Image) -> tuple[np.ndarray, float]:
     out, turn = out_of_view()
     half = np.arange(len(places)) % 2 == 1
     places[half], turns[half] = out, turn
-    said = eyes.log_likelihood(places, turns, eyes.compare_unseen(places, turns, view, 0.4))
+    weighed = eyes.weigh(places, turns, view)
+    said = eyes.log_likelihood_by(weighed, eyes.compare_unseen(weighed, view, 0.4))
     assert np.ptp(said[half]) == 0.0
     return said[~half], float(said[half][0])
 

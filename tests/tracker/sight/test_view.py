@@ -21,7 +21,7 @@ def test_each_pixel_is_scored_by_its_colours_bin() -> None:
     assert frame.bins is not None
     np.testing.assert_array_equal(view.colour_scores, colour_scores(colours())[frame.bins])
     assert not view.limbs.any()
-    pixels = view.pixels()
+    pixels = view.pixels
     np.testing.assert_array_equal(pixels.lens, [100.0, 100.0, 31.5, 23.5])
     assert pixels.edges.shape == (4, 48, 64)
     np.testing.assert_array_equal(pixels.depth, np.zeros((48, 64)))
@@ -39,4 +39,4 @@ def test_a_colour_of_the_object_speaks_for_within_and_against_beside() -> None:
 def test_a_frame_without_colour_scores_nothing(depth: np.ndarray | None) -> None:
     view = view_frame(prepare(Image(None, CAMERA, depth, None)), colours())
     assert not view.colour_scores.any()
-    assert view.pixels().depth.any() == (depth is not None)
+    assert view.pixels.depth.any() == (depth is not None)

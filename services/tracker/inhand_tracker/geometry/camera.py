@@ -1,11 +1,13 @@
 """The pinhole camera: projection of points to pixels and back."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from inhand_schemas.messages import CameraInfo
 
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.kernels.compiled import compiled
 
 NEAREST_M = 0.05
 """Metres before the camera within which a point is taken to have no pixel."""
@@ -36,15 +38,29 @@ class Intrinsics:
 
     def project(self, points: Array) -> Array:
         """Project points (..., 3) in the camera frame to pixels (..., 2); NaN behind the camera."""
-        depth = points[..., 2:]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            plane = np.where(depth > NEAREST_M, points[..., :2] / depth, np.nan)
-        return plane * [self.fx, self.fy] + [self.cx, self.cy]
+        return _project(points, self._lens, _PIXEL)
+
+    @cached_property
+    def _lens(self) -> Array:
+        return np.array([self.fx, self.fy, self.cx, self.cy])
 
     def unproject(self, pixels: Array, depths: Array) -> Array:
         """Find the points (N, 3) in the camera frame at pixels (N, 2) and depths (N,) in metres."""
         across = (pixels - [self.cx, self.cy]) / [self.fx, self.fy]
         return np.column_stack((across * depths[:, None], depths))
+
+
+_PIXEL = np.empty(2)
+"""It tells the compiled function how long a pixel is."""
+
+
+@compiled("(v),(l),(p)->(p)")
+def _project(point: Array, lens: Array, two: Array, pixel: Array) -> None:
+    if point[2] > NEAREST_M:
+        pixel[0] = point[0] / point[2] * lens[0] + lens[2]
+        pixel[1] = point[1] / point[2] * lens[1] + lens[3]
+    else:
+        pixel[:] = np.nan
 
 
 def intrinsics_of(info: CameraInfo) -> Intrinsics:

@@ -116,6 +116,18 @@ def mixture(parts: Sequence[PoseGaussian], log_weights: Array) -> PoseMixture:
     return PoseMixture(tuple(parts), normalised_weights(log_weights))
 
 
+def log_sum(logs: Array) -> Array:
+    """Return the logarithms (P,) of the sums of K numbers by their logarithms (K, P)."""
+    most = logs.max(axis=0)
+    return most + np.log(np.exp(logs - most).sum(axis=0))
+
+
+def moved_information(information: Array, arms: Array) -> Array:
+    """Take the information (..., 6, 6) of a point at ``arms`` (..., 3) from the centre of a pose
+    to that centre: Lᵀ I L, L of ``lever``."""
+    return kernels.moved_information(information, arms)
+
+
 def lever(arm: Array) -> Array:
     """Give the matrix (6, 6) that takes deviations of a pose to those of a point that moves along.
 

@@ -7,7 +7,10 @@ import numpy as np
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels.compiled import compiled
-from inhand_tracker.geometry.kernels.nearest_rotation import nearest_rotation
+from inhand_tracker.geometry.kernels.nearest_rotation import (
+    nearest_rotation,
+    principal_vector,
+)
 from inhand_tracker.geometry.kernels.quaternions import (
     product,
     quaternion_in,
@@ -90,9 +93,9 @@ def mean(quaternion: Array, weights: Array) -> Array:
 
 
 def principal(scatter: Array) -> Array:
-    """Find the mean rotations (..., 4) of scatter matrices Σ w q qᵀ, (..., 4, 4)."""
-    _, vectors = np.linalg.eigh(scatter)
-    return vectors[..., -1]
+    """Find the mean rotations (..., 4) of scatter matrices Σ w q qᵀ, (..., 4, 4); the greatest
+    component of each is positive."""
+    return _principal(scatter)
 
 
 def nearest(matrix: Array) -> Array:
@@ -141,3 +144,10 @@ def _from_matrix(matrix: Array, four: Array, quaternion: Array) -> None:
 @compiled("(v,v)->(v,v)")
 def _nearest(matrix: Array, rotation: Array) -> None:
     nearest_rotation(matrix, rotation)
+
+
+@compiled("(q,q)->(q)")
+def _principal(scatter: Array, quaternion: Array) -> None:
+    found = principal_vector(scatter.copy())
+    greatest = found[np.argmax(np.abs(found))]
+    quaternion[:] = found if greatest >= 0.0 else -found

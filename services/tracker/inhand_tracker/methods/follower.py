@@ -26,8 +26,13 @@ class Follower(ABC):
         self._reader = reader
         self._estimate = LOST
         self._time_ns = 0
-        self.support: Support | None = None
+        self._looked = False
         self.effort = 1.0
+
+    @property
+    def support(self) -> Support | None:
+        """Support of the last step's image for the object; None where it shows nothing of it."""
+        return None
 
     @abstractmethod
     def estimate(self, body: Body, time_ns: int, image: Image | None) -> Estimate:
@@ -42,7 +47,7 @@ class Follower(ABC):
         return self.step_body(body, time_ns, image)
 
     def step_body(self, body: Body | None, time_ns: int, image: Image | None) -> Estimate:
-        self.support = None
+        self._looked = False
         if body is None:
             return self._coast(time_ns)
         self._estimate = self.estimate(body, time_ns, image)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from inhand_tracker.geometry.arrays import Bytes, Singles
 from inhand_tracker.sight.kernels.count import count
 from inhand_tracker.sight.kernels.quantise import quantise
+from inhand_tracker.sight.kernels.smooth import smooth
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
 Bins = NDArray[np.uint16]
@@ -48,16 +49,10 @@ def histogram(
 
 def smoothed(histogram: Singles, parameters: SightParameters = DEFAULT_SIGHT) -> Singles:
     """Spread a histogram (4096,) to neighbouring colours; it still sums to 1."""
-    cube = histogram.reshape(LEVELS, LEVELS, LEVELS)
-    width = parameters.smoothing_levels
-    kernel = np.exp(-np.square([-1.0, 0.0, 1.0]) / (2.0 * width**2)).astype(np.float32)
-    kernel /= kernel.sum()
-    for axis in range(3):
-        padded = np.pad(cube, [(1, 1) if a == axis else (0, 0) for a in range(3)], mode="edge")
-        parts = [np.take(padded, range(k, k + LEVELS), axis=axis) for k in range(3)]
-        cube = kernel[0] * parts[0] + kernel[1] * parts[1] + kernel[2] * parts[2]
-    flat = cube.ravel()
-    return np.asarray(flat / flat.sum(), np.float32)
+    spread = np.empty(BINS, np.float32)
+    weight = float(np.exp(-0.5 / parameters.smoothing_levels**2))
+    smooth(np.ascontiguousarray(histogram, np.float32), LEVELS, weight, spread)
+    return np.asarray(spread / spread.sum(), np.float32)
 
 
 def blend(old: Singles | None, new: Singles | None, rate: float) -> Singles | None:

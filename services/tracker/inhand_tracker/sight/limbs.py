@@ -1,17 +1,15 @@
 """Where in an image the person's forearms and hands may cover an object."""
 
-import cv2
 import numpy as np
 from inhand_schemas.joints import JOINT_NAMES
 
 from inhand_tracker.geometry.arrays import Array, Bytes, Singles
-from inhand_tracker.geometry.camera import NEAREST_M, Intrinsics
+from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.sight.kernels.mark_limb import mark_limb
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
-THICKEST_LINE = 255
-"""Pixels of the thickest line that OpenCV draws here."""
 FARTHEST_PIXEL = 1e4
-"""Pixel beyond which a limb is nowhere near the image, and OpenCV's lines overflow."""
+"""Pixel beyond which a limb is nowhere near the image."""
 
 _ARMS = [
     [JOINT_NAMES.index(joint + side) for joint in ("Elbow", "Wrist", "Hand")]
@@ -33,36 +31,29 @@ def limb_mask(
     mask = np.zeros((camera.height, camera.width), np.uint8)
     if joints is None:
         return mask
-    for elbow, wrist, hand in joints[_ARMS]:
-        along = hand - wrist
-        length = np.linalg.norm(along)
-        tip = hand + (parameters.fingers_m * along / length if length > 1e-6 else 0.0)
-        for ends, radius in (
-            (np.array([elbow, wrist]), parameters.forearm_m),
-            (np.array([wrist, tip]), parameters.hand_m),
-        ):
-            limb = _limb(ends, radius, camera)
-            if limb is None:
-                continue
-            if depth is not None:
-                nearest, farthest = ends[:, 2].min(), ends[:, 2].max()
-                behind = depth > float(farthest) + parameters.limb_depth_m
-                before = (depth > 0.0) & (depth < float(nearest) - parameters.limb_depth_m)
-                limb[behind | before] = 0
-            np.maximum(mask, limb, out=mask)
+    depth = np.zeros(mask.shape, np.float32) if depth is None else depth
+    ends = _limbs(joints, parameters)
+    pixels = camera.project(ends)
+    for limb, radius, points in zip(pixels, np.tile(_radii(parameters), 2), ends, strict=True):
+        # Missing joints and those behind the camera have no pixels.
+        if not np.abs(limb).max() <= FARTHEST_PIXEL:
+            continue
+        nearest, farthest = points[:, 2].min(), points[:, 2].max()
+        within = float(nearest) - parameters.limb_depth_m, float(farthest) + parameters.limb_depth_m
+        thickness = max(0.5, radius * camera.fx / float(nearest))
+        mark_limb((*limb[0], *limb[1]), thickness, within, depth, mask)
     return mask
 
 
-def _limb(ends: Array, radius: float, camera: Intrinsics) -> Bytes | None:
-    """Draw the pixels (H, W) of a limb between two points (2, 3); None where it is not before the
-    camera."""
-    if not (np.isfinite(ends).all() and (ends[:, 2] > NEAREST_M).all()):
-        return None
-    pixels = camera.project(ends)
-    if np.abs(pixels).max() > FARTHEST_PIXEL:
-        return None
-    limb = np.zeros((camera.height, camera.width), np.uint8)
-    thickness = max(1, round(2.0 * radius * camera.fx / float(ends[:, 2].min())))
-    first, last = np.rint(pixels).astype(int).tolist()
-    cv2.line(limb, first, last, 1, min(thickness, THICKEST_LINE))
-    return limb
+def _radii(parameters: SightParameters) -> list[float]:
+    return [parameters.forearm_m, parameters.hand_m]
+
+
+def _limbs(joints: Array, parameters: SightParameters) -> Array:
+    """Find the ends (4, 2, 3) of each side's forearm and hand, with its fingers."""
+    elbows, wrists, hands = np.swapaxes(joints[_ARMS], 0, 1)
+    along = hands - wrists
+    length = np.sqrt(np.square(along).sum(axis=1, keepdims=True))
+    tips = hands + along * (parameters.fingers_m / np.maximum(length, 1e-6))
+    ends = np.array([[elbows, wrists], [wrists, tips]])
+    return np.ascontiguousarray(ends.transpose(2, 0, 1, 3)).reshape(4, 2, 3)

@@ -8,47 +8,40 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Flags
+from inhand_tracker.geometry.kernels.pose_normals import deviations
 from inhand_tracker.sight.depth_table import sensor_of
-from inhand_tracker.sight.kernels.gather import Equations, GatherSettings, gather
+from inhand_tracker.sight.kernels.gather import GatherSettings
 from inhand_tracker.sight.kernels.inputs import Outlines
+from inhand_tracker.sight.kernels.refine import Priors, Steps, refine
 from inhand_tracker.sight.parameters import SightParameters
 from inhand_tracker.sight.view import SightView
 
+_SIX = np.empty(6)
+"""It tells the kernel how long a deviation is."""
 _REFINED_TERMS = [0, 1, 3]
 """Edges, region and depth; the interior's colours hardly change with a small step."""
 
 
 @dataclass(frozen=True)
 class PosePrior:
-    """A Gaussian about one pose, ``translation`` (3,) and ``rotation`` (4,), by its
-    ``information`` (6, 6): of a translation in the camera frame, then of a rotation vector on the
-    left."""
+    """Gaussians about poses, ``translation`` (..., 3) and ``rotation`` (..., 4), by their
+    ``information`` (..., 6, 6): of a translation in the camera frame, then of a rotation vector on
+    the left."""
 
     translation: Array
     rotation: Array
     information: Array
 
-    def reach(self) -> tuple[float, float]:
-        """The root mean squares of its translation and rotation, in metres and radians."""
-        variances = np.diag(np.linalg.inv(self.information))
-        return float(np.sqrt(variances[:3].sum())), float(np.sqrt(variances[3:].sum()))
+    def reach(self) -> Array:
+        """The root mean squares (..., 2) of translation and rotation, in metres and radians."""
+        variances = np.diagonal(np.linalg.inv(self.information), axis1=-2, axis2=-1)
+        return np.sqrt(variances.reshape(*variances.shape[:-1], 2, 3).sum(axis=-1))
 
     def log_density(self, translations: Array, orientations: Array) -> Array:
         """The log-density (K,) of poses (K, 3) and (K, 4), up to a constant."""
-        turns = rotations.multiply(orientations, rotations.conjugate(self.rotation))
-        off = np.concatenate((translations - self.translation, rotations.to_vector(turns)), axis=1)
-        return -0.5 * np.einsum("ki,ij,kj->k", off, self.information, off)
-
-    def added_to(self, equations: Equations, translations: Array, orientations: Array) -> Equations:
-        """The equations of poses (K, 3) and (K, 4) with the prior's information and gradients."""
-        turns = rotations.multiply(self.rotation, rotations.conjugate(orientations))
-        off = np.concatenate((self.translation - translations, rotations.to_vector(turns)), axis=1)
-        return Equations(
-            equations.information + self.information,
-            equations.gradients + off @ self.information,
-        )
+        off = deviations(self.translation, self.rotation, translations, orientations, _SIX)
+        return -0.5 * (off[:, None] @ self.information @ off[..., None])[:, 0, 0]
 
 
 @dataclass(frozen=True)
@@ -74,9 +67,7 @@ class PoseRefiner:
         self._wanted = wanted[_REFINED_TERMS]
         self._returned = returned
         self._parameters = parameters
-        self._damping = np.diag(
-            np.repeat([parameters.damping_per_m2, parameters.damping_per_rad2], 3)
-        )
+        self._damping = np.repeat([parameters.damping_per_m2, parameters.damping_per_rad2], 3)
 
     def refine(
         self,
@@ -89,48 +80,40 @@ class PoseRefiner:
 
         The frame counts by ``trust``. The information is the last step's.
         """
-        translations, orientations = poses
-        pixels = view.pixels()
-        settings = self._settings(view, prior, trust)
-        information = np.zeros((len(translations), 6, 6))
-        for share in np.geomspace(
-            1.0, self._parameters.last_reach, self._parameters.refinement_steps
-        ).tolist():
-            information = np.zeros((len(translations), 6, 6))
-            equations = Equations(information, np.zeros((len(translations), 6)))
-            nearer = settings._replace(
-                reach_m=share * settings.reach_m, reach_rad=share * settings.reach_rad
-            )
-            gather(translations, orientations, self._outlines, pixels, nearer, equations)
-            translations, orientations = self._step(equations, translations, orientations, prior)
-        return Refined(translations, orientations, self._parameters.information_share * information)
-
-    def _step(
-        self,
-        equations: Equations,
-        translations: Array,
-        orientations: Array,
-        prior: PosePrior | None,
-    ) -> tuple[Array, Array]:
-        """Move poses to where their equations have their solutions."""
-        total = equations._replace(information=equations.information + self._damping)
-        if prior is not None:
-            total = prior.added_to(total, translations, orientations)
-        steps = np.linalg.solve(total.information, total.gradients[..., None])[..., 0]
-        turns = rotations.from_vector(np.asarray(steps[:, 3:], np.float64))
-        return (
-            translations + steps[:, :3],
-            rotations.normalise(rotations.multiply(turns, orientations)),
+        parameters, count = self._parameters, len(poses[0])
+        moved = poses[0].astype(np.float64), poses[1].astype(np.float64)
+        priors, reaches = self._priors(prior, count)
+        shares = np.geomspace(1.0, parameters.last_reach, parameters.refinement_steps)
+        information = np.zeros((count, 6, 6))
+        refine(
+            moved,
+            priors,
+            Steps(shares, reaches, self._damping),
+            self._outlines,
+            view.pixels,
+            self._settings(view, trust),
+            information,
         )
+        return Refined(*moved, parameters.information_share * information)
 
-    def _settings(self, view: SightView, prior: PosePrior | None, trust: float) -> GatherSettings:
+    def _priors(self, prior: PosePrior | None, count: int) -> tuple[Priors, Array]:
+        """A prior of each of K poses, and how far they may be off, (K, 2)."""
+        parameters = self._parameters
+        if prior is None:
+            nothing = Priors(np.zeros((count, 3)), np.zeros((count, 4)), np.zeros((count, 6, 6)))
+            return nothing, np.tile([parameters.reach_m, parameters.reach_rad], (count, 1))
+        each = Priors(
+            np.array(np.broadcast_to(prior.translation, (count, 3))),
+            np.array(np.broadcast_to(prior.rotation, (count, 4))),
+            np.array(np.broadcast_to(prior.information, (count, 6, 6))),
+        )
+        return each, np.array(np.broadcast_to(prior.reach(), (count, 2)))
+
+    def _settings(self, view: SightView, trust: float) -> GatherSettings:
         coloured, deep = view.frame.bins is not None, view.frame.depth is not None
         parameters = self._parameters
-        reach = (parameters.reach_m, parameters.reach_rad) if prior is None else prior.reach()
         return GatherSettings(
             wanted=self._wanted & [coloured, coloured, deep],
-            reach_m=reach[0],
-            reach_rad=reach[1],
             returned=self._returned,
             outline_weight=trust * parameters.outline_point_weight,
             surface_weight=trust * parameters.surface_point_weight,

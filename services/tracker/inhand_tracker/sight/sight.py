@@ -105,29 +105,35 @@ class Sight:
         """Score a frame for the object with these colours, and a person with joints (20, 3)."""
         return view_frame(frame, colours, joints, self._parameters)
 
+    def weigh(self, translations: Array, orientations: Array, view: SightView) -> Array:
+        """Weigh poses (P, 3) and (P, 4): each term's mean over their points, and the share of
+        points that are visible, (P, 5)."""
+        return self._weigher.scores(translations, orientations, view)
+
+    def log_likelihood_by(self, weighed: Array, view: SightView) -> Array:
+        """Return the ``log_likelihood`` of poses that ``weigh`` has weighed, (P,)."""
+        seen = weighed[:, :VISIBLE] @ self._term_weights
+        return seen + (1.0 - weighed[:, VISIBLE]) * view.unseen
+
     def log_likelihood(self, translations: Array, orientations: Array, view: SightView) -> Array:
         """Return how many times likelier (log) the frame is with the object at each of poses
         (P, 3) and (P, 4) than with none, (P,); 0 where the frame says nothing."""
-        scores = self._weigher.scores(translations, orientations, view)
-        return scores[:, :VISIBLE] @ self._term_weights + (1.0 - scores[:, VISIBLE]) * view.unseen
+        return self.log_likelihood_by(self.weigh(translations, orientations, view), view)
 
-    def compare_unseen(
-        self, translations: Array, orientations: Array, view: SightView, trust: float
-    ) -> SightView:
+    def compare_unseen(self, weighed: Array, view: SightView, trust: float) -> SightView:
         """Return the view in which an object that is not seen is as likely as one that is, by a
-        sample of what is believed, poses (P, 3) and (P, 4).
+        sample of what is believed, poses that ``weigh`` has weighed, (P, 5).
 
         Not to be seen is no evidence, but a pose that could be seen is unlikely by a frame without
         the object: to come off better others need only lie out of it. So they get the mean
         likelihood of those that can be seen (of their seen part, as if it were all), where that
         is less than 1. The frame counts by ``trust``.
         """
-        scores = self._weigher.scores(translations, orientations, view)
-        visible = scores[:, VISIBLE]
+        visible = weighed[:, VISIBLE]
         if visible.sum() < self._parameters.fewest_visible:
             return view
         whole = np.maximum(visible, self._parameters.least_visible)
-        likelihoods = trust * (scores[:, :VISIBLE] @ self._term_weights) / whole
+        likelihoods = trust * (weighed[:, :VISIBLE] @ self._term_weights) / whole
         most = float(likelihoods.max())
         mean = most + float(np.log(visible @ np.exp(likelihoods - most) / visible.sum()))
         return replace(view, unseen=min(mean / trust, 0.0))
@@ -136,8 +142,7 @@ class Sight:
         self, translations: Array, orientations: Array, view: SightView
     ) -> dict[str, Array]:
         """Return the parts of ``log_likelihood``, each (P,)."""
-        scores = self._weigher.scores(translations, orientations, view)
-        parts = scores[:, :VISIBLE] * self._term_weights
+        parts = self.weigh(translations, orientations, view)[:, :VISIBLE] * self._term_weights
         return dict(zip(SIGHT_TERMS, parts.T, strict=True))
 
     def refine(
@@ -154,12 +159,13 @@ class Sight:
         The frame counts by ``trust``: less than 1 where earlier frames showed the same.
         """
         moved = self._refiner.refine((translations, orientations), view, prior, trust)
+        before = self._log_posterior(translations, orientations, view, prior, trust)
         after = self._log_posterior(moved.translations, moved.rotations, view, prior, trust)
-        worse = after < self._log_posterior(translations, orientations, view, prior, trust)
+        worse = (after < before)[:, None]
         return Refined(
-            np.where(worse[:, None], translations, moved.translations),
-            np.where(worse[:, None], orientations, moved.rotations),
-            np.where(worse[:, None, None], 0.0, moved.information),
+            np.where(worse, translations, moved.translations),
+            np.where(worse, orientations, moved.rotations),
+            np.where(worse[..., None], 0.0, moved.information),
         )
 
     def _log_posterior(

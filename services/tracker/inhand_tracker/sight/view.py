@@ -1,6 +1,7 @@
 """A frame as it is scored for one object: what each pixel's colour says, and where limbs are."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -25,6 +26,7 @@ class SightView:
     limbs: Bytes
     unseen: float = 0.0
 
+    @cached_property
     def pixels(self) -> ScoredPixels:
         """The view as kernels take it; what the frame lacks is not read, or says nothing."""
         frame, camera = self.frame, self.frame.camera

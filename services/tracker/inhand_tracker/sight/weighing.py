@@ -36,7 +36,7 @@ class PoseWeigher:
 
     def scores(self, translations: Array, orientations: Array, view: SightView) -> Array:
         """Return what ``weigh`` finds of poses (P, 3) and (P, 4), (P, 5)."""
-        pixels, settings = view.pixels(), self._settings(view)
+        pixels, settings = view.pixels, self._settings(view)
         scores = np.zeros((len(translations), VISIBLE + 1), np.float32)
 
         def weigh_some(part: slice) -> None:

@@ -3,10 +3,9 @@ import numpy as np
 import pytest
 from inhand_tracker.sight.kernels.gather import Equations, GatherSettings, gather
 
+REACH = 0.02, 0.1
 SETTINGS = GatherSettings(
     wanted=np.array([True, True, True]),
-    reach_m=0.02,
-    reach_rad=0.1,
     returned=0.8,
     outline_weight=0.2,
     surface_weight=0.7,
@@ -29,7 +28,15 @@ def gathered(settings: GatherSettings = SETTINGS) -> Equations:
     translations, orientations = arrays.poses()
     count = len(translations)
     equations = Equations(np.zeros((count, 6, 6)), np.zeros((count, 6)))
-    gather(translations, orientations, OUTLINES, PIXELS, settings, equations)
+    gather(
+        translations,
+        orientations,
+        np.tile(REACH, (len(translations), 1)),
+        OUTLINES,
+        PIXELS,
+        settings,
+        equations,
+    )
     return equations
 
 
@@ -44,7 +51,7 @@ def summed(measurements: list[Measurement]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def reach_at(arm: np.ndarray) -> float:
-    return SETTINGS.reach_m + SETTINGS.reach_rad * float(np.linalg.norm(arm))
+    return REACH[0] + REACH[1] * float(np.linalg.norm(arm))
 
 
 def noise_at(depth: float) -> float:
@@ -141,8 +148,24 @@ def test_what_is_not_wanted_adds_nothing() -> None:
 def test_equations_are_added_to_what_was_there() -> None:
     translations, orientations = arrays.poses(3)
     equations = Equations(np.ones((3, 6, 6)), np.ones((3, 6)))
-    gather(translations, orientations, OUTLINES, PIXELS, SETTINGS, equations)
+    gather(
+        translations,
+        orientations,
+        np.tile(REACH, (len(translations), 1)),
+        OUTLINES,
+        PIXELS,
+        SETTINGS,
+        equations,
+    )
     alone = Equations(np.zeros((3, 6, 6)), np.zeros((3, 6)))
-    gather(translations, orientations, OUTLINES, PIXELS, SETTINGS, alone)
+    gather(
+        translations,
+        orientations,
+        np.tile(REACH, (len(translations), 1)),
+        OUTLINES,
+        PIXELS,
+        SETTINGS,
+        alone,
+    )
     np.testing.assert_allclose(equations.information, 1.0 + alone.information)
     np.testing.assert_allclose(equations.gradients, 1.0 + alone.gradients)

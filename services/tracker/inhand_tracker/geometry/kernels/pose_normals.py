@@ -148,3 +148,22 @@ def share_near(normals: Array, root: Array, near_m: float, near_rad: float, shar
         if moved < near_m * near_m and turned < near_rad * near_rad:
             near += 1
     share[0] = near / len(normals)
+
+
+@compiled("(s,s),(v)->(s,s)")
+def moved_information(information: Array, arm: Array, moved: Array) -> None:
+    """Find Lᵀ I L, where L takes deviations of a pose to those of a point at ``arm`` (3,)."""
+    x, y, z = vector_in(arm)
+    half = np.empty((6, 6))
+    for row in range(6):
+        a, b, c = information[row, 0], information[row, 1], information[row, 2]
+        half[row, 0], half[row, 1], half[row, 2] = a, b, c
+        half[row, 3] = information[row, 3] - b * z + c * y
+        half[row, 4] = information[row, 4] + a * z - c * x
+        half[row, 5] = information[row, 5] - a * y + b * x
+    for column in range(6):
+        a, b, c = half[0, column], half[1, column], half[2, column]
+        moved[0, column], moved[1, column], moved[2, column] = a, b, c
+        moved[3, column] = half[3, column] - b * z + c * y
+        moved[4, column] = half[4, column] + a * z - c * x
+        moved[5, column] = half[5, column] - a * y + b * x

@@ -4,9 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
-from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever, mixture
+from inhand_tracker.geometry.pose_gaussian import (
+    PoseGaussian,
+    PoseMixture,
+    log_sum,
+    mixture,
+    moved_information,
+)
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.sight.refinement import PosePrior
 from inhand_tracker.sight.sight import Sight
@@ -31,8 +37,14 @@ class ImagePosterior:
         """Return the log-posterior (P,) of poses (P, 3) and (P, 4), up to a constant, and the
         image's log-likelihood in it, untempered, (P,)."""
         origins = self.sphere.origins(centres, orientations)
-        seen = self.sight.log_likelihood(origins, orientations, self.view)
-        expected = np.logaddexp.reduce(self.belief.log_densities(centres, orientations), axis=0)
+        return self.scores_by(
+            self.sight.weigh(origins, orientations, self.view), centres, orientations
+        )
+
+    def scores_by(self, weighed: Array, centres: Array, orientations: Array) -> tuple[Array, Array]:
+        """Return the ``scores`` of poses that ``Sight.weigh`` has weighed, (P, 5)."""
+        seen = self.sight.log_likelihood_by(weighed, self.view)
+        expected = log_sum(self.belief.log_densities(centres, orientations))
         return self.parameters.image_temper * self.sharpness * seen + expected, seen
 
     def weigh(self, modes: list[PoseGaussian]) -> tuple[PoseMixture, Array]:
@@ -41,54 +53,57 @@ class ImagePosterior:
         scores, seen = self.scores(
             np.array([mode.centre for mode in modes]), np.array([mode.rotation for mode in modes])
         )
-        volumes = np.array([0.5 * np.linalg.slogdet(mode.covariance)[1] for mode in modes])
+        volumes = np.array([np.log(np.diag(mode.root)).sum() for mode in modes])
         return mixture(modes, scores + volumes), seen
 
     def modes(self, centres: Array, orientations: Array) -> list[PoseGaussian]:
         """Find where image and belief agree best near each start (S, 3), (S, 4), each once."""
         nearest = np.argmax(self.belief.log_densities(centres, orientations), axis=0)
-        modes: list[PoseGaussian] = []
-        for index, part in enumerate(self.belief.parts):
-            chosen = nearest == index
-            if not chosen.any():
-                continue
-            starts = centres[chosen], orientations[chosen]
-            if not self.parameters.refines:
-                poses = zip(*starts, strict=True)
-                modes += [PoseGaussian(*pose, part.covariance) for pose in poses]
-                continue
-            for mode in self._refined(*starts, part):
-                if not any(self._same(mode, other) for other in modes):
-                    modes.append(mode)
-        return modes
+        order = np.argsort(nearest, kind="stable")
+        starts, nearest = (centres[order], orientations[order]), nearest[order]
+        if not self.parameters.refines:
+            return [
+                PoseGaussian(centre, rotation, self.belief.parts[part].covariance)
+                for centre, rotation, part in zip(*starts, nearest, strict=True)
+            ]
+        return self._each_once(*self._refined(*starts, nearest))
 
     def _refined(
-        self, centres: Array, orientations: Array, part: PoseGaussian
-    ) -> list[PoseGaussian]:
-        """Move poses to where the image and one part of the belief agree."""
-        information = np.asarray(np.linalg.inv(part.covariance), np.float64)
-        arm = self.sphere.arm(part.rotation)
-        forth = lever(arm)
+        self, centres: Array, orientations: Array, nearest: Indices
+    ) -> tuple[Array, Array, Array]:
+        """Move poses to where the image and each's ``nearest`` (S,) part of the belief agree;
+        also the covariance (S, 6, 6) there."""
+        parts = self.belief.parts
+        turns = np.array([part.rotation for part in parts])
+        arms = self.sphere.arm(turns)
+        information = np.linalg.inv(np.array([part.covariance for part in parts]))
+        of_origins = moved_information(information, arms)
+        means = np.array([part.centre for part in parts]) - arms
         refined = self.sight.refine(
             self.sphere.origins(centres, orientations),
             orientations,
             self.view,
-            PosePrior(part.centre - arm, part.rotation, forth.T @ information @ forth),
+            PosePrior(means[nearest], turns[nearest], of_origins[nearest]),
             self.parameters.refinement_temper * self.sharpness,
         )
-        modes = []
-        for origin, rotation, seen in zip(
-            refined.translations, refined.rotations, refined.information, strict=True
-        ):
-            arm = self.sphere.arm(rotation)
-            back = lever(-arm)
-            covariance = np.linalg.inv(information + back.T @ seen @ back)
-            modes.append(PoseGaussian(origin + arm, rotation, covariance))
+        arms = self.sphere.arm(refined.rotations)
+        seen = moved_information(refined.information, -arms)
+        covariances = np.asarray(np.linalg.inv(information[nearest] + seen), np.float64)
+        return refined.translations + arms, refined.rotations, covariances
+
+    def _each_once(
+        self, centres: Array, orientations: Array, covariances: Array
+    ) -> list[PoseGaussian]:
+        """Leave out modes at which another one before already is."""
+        modes: list[PoseGaussian] = []
+        for mode in map(PoseGaussian, centres, orientations, covariances):
+            if not any(self._same(mode, other) for other in modes):
+                modes.append(mode)
         return modes
 
     def _same(self, one: PoseGaussian, other: PoseGaussian) -> bool:
-        apart = one.deviations(other.centre[None], other.rotation[None])[0]
+        apart = one.deviations(other.centre, other.rotation)
         return bool(
-            np.linalg.norm(apart[:3]) < self.parameters.same_mode_m
-            and np.linalg.norm(apart[3:]) < self.parameters.same_mode_rad
+            apart[:3] @ apart[:3] < self.parameters.same_mode_m**2
+            and apart[3:] @ apart[3:] < self.parameters.same_mode_rad**2
         )

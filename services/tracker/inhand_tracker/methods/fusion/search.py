@@ -4,7 +4,7 @@ The image weighs hypotheses (``posterior``), more are tried near the likeliest, 
 are refined.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.methods.fusion.posterior import ImagePosterior
+from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.frame import Region, SightFrame, prepare
 from inhand_tracker.sight.sight import Sight
 from inhand_tracker.sight.support import Support
@@ -33,7 +34,8 @@ class ImageSearch:
         self._parameters = parameters
         self._random = np.random.default_rng(seed)
         self._colours = sight.start()
-        self.support: Support | None = None
+        self._found: _Found | None = None
+        self._support: Support | None = None
 
     def look(
         self, belief: PoseMixture, image: Image, joints: Array, sharpness: float
@@ -42,18 +44,28 @@ class ImageSearch:
 
         ``joints`` (20, 3) in the camera frame; an image counts by ``sharpness``, from 0 to 1.
         """
-        self.support = None
+        self._found = self._support = None
         hypotheses = belief.sample(self._parameters.hypotheses, self._random)
         region = self._region(hypotheses[0], image.camera)
         if region is None:
             return None
         view = self._open(belief.parts[0], image, region, joints)
-        posterior = self._posterior(belief, view, hypotheses, sharpness)
-        modes = posterior.modes(*self._starts(posterior, *hypotheses))
+        posterior, scores = self._posterior(belief, view, hypotheses, sharpness)
+        modes = posterior.modes(*self._starts(posterior, *hypotheses, scores))
         weighed, seen = posterior.weigh(modes)
         self._learn_colours(modes, weighed.weights, seen, view.frame)
-        self.support = self._supported(modes, posterior.view, joints)
+        self._found = _Found(modes, posterior.view, self._colours, joints)
         return weighed.moments()
+
+    @property
+    def support(self) -> Support | None:
+        """The last image's support for the object; None where it shows nothing of it.
+
+        It is found when it is first asked for: only recognition does.
+        """
+        if self._support is None and self._found is not None:
+            self._support = self._supported(self._found)
+        return self._support
 
     def _region(self, centres: Array, camera: Intrinsics) -> Region | None:
         """The part of the image that hypotheses (P, 3) lie in; None where they are out of it."""
@@ -84,24 +96,24 @@ class ImageSearch:
         view: SightView,
         hypotheses: tuple[Array, Array],
         sharpness: float,
-    ) -> ImagePosterior:
-        """The posterior in which not to be seen is as likely as to be, of these hypotheses."""
-        centres, orientations = hypotheses
-        origins = self._sphere.origins(centres, orientations)
-        sharp = max(sharpness, self._parameters.least_sharpness)
-        view = self._sight.compare_unseen(
-            origins, orientations, view, self._parameters.image_temper * sharp
-        )
-        return ImagePosterior(self._sight, self._sphere, view, belief, sharpness, self._parameters)
+    ) -> tuple[ImagePosterior, Array]:
+        """The posterior in which not to be seen is as likely as to be, of these hypotheses, and
+        their log-posterior (P,)."""
+        parameters = self._parameters
+        weighed = self._sight.weigh(self._sphere.origins(*hypotheses), hypotheses[1], view)
+        trust = parameters.image_temper * max(sharpness, parameters.least_sharpness)
+        view = self._sight.compare_unseen(weighed, view, trust)
+        posterior = ImagePosterior(self._sight, self._sphere, view, belief, sharpness, parameters)
+        scores, _ = posterior.scores_by(weighed, *hypotheses)
+        return posterior, scores
 
     def _starts(
-        self, posterior: ImagePosterior, centres: Array, orientations: Array
+        self, posterior: ImagePosterior, centres: Array, orientations: Array, scores: Array
     ) -> tuple[Array, Array]:
         """Poses (S, 3), (S, 4) to refine: the mean of each part believed, and the likeliest of all
-        rounds of hypotheses, of which the first are given, (P, 3) and (P, 4)."""
+        rounds of hypotheses, of which the first are given, (P, 3), (P, 4), and their scores."""
         parameters, parts = self._parameters, posterior.belief.parts
-        scores, _ = posterior.scores(centres, orientations)
-        root = np.linalg.cholesky(posterior.belief.moments().covariance)
+        root = posterior.belief.moments().root
         for round_ in range(1, parameters.rounds):
             count = parameters.hypotheses
             best = np.resize(np.argsort(scores)[::-1][: parameters.best_hypotheses], count)
@@ -129,19 +141,31 @@ class ImageSearch:
         rate, rotation = self._parameters.learning_rate, modes[best].rotation
         self._colours = self._sight.learn(self._colours, frame, origin, rotation, of_object=rate)
 
-    def _supported(self, modes: list[PoseGaussian], view: SightView, joints: Array) -> Support:
+    def _supported(self, found: "_Found") -> Support:
         """The image's support by the colours of training: what was learned since may be another
         thing's."""
-        trained = replace(self._colours, of_object=self._sight.start().of_object)
-        trained_view = self._sight.view(view.frame, trained, joints)
-        orientations = np.array([mode.rotation for mode in modes])
-        origins = self._sphere.origins(np.array([mode.centre for mode in modes]), orientations)
+        trained = replace(found.colours, of_object=self._sight.start().of_object)
+        trained_view = self._sight.view(found.view.frame, trained, found.joints)
+        orientations = np.array([mode.rotation for mode in found.modes])
+        centres = np.array([mode.centre for mode in found.modes])
+        origins = self._sphere.origins(centres, orientations)
         terms = self._sight.log_likelihoods_by_term(origins, orientations, trained_view)
         best = int(np.argmax(sum(terms.values())))
         by_training = {term: float(values[best]) for term, values in terms.items()}
         if trained.of_object is None:
             return Support(**by_training)
         pose = origins[best : best + 1], orientations[best : best + 1]
-        by_learning = self._sight.log_likelihoods_by_term(*pose, view)
+        by_learning = self._sight.log_likelihoods_by_term(*pose, found.view)
         recoloured = float(by_learning["interior"][0]) - by_training["interior"]
         return Support(**by_training, recoloured=recoloured)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What a look found: the modes in a view, the colours after it, and the person's joints
+    (20, 3)."""
+
+    modes: list[PoseGaussian]
+    view: SightView
+    colours: Colours
+    joints: Array

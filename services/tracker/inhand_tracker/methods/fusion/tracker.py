@@ -24,6 +24,7 @@ from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParam
 from inhand_tracker.methods.fusion.search import ImageSearch
 from inhand_tracker.model.model import Model, ModelError
 from inhand_tracker.sight.sight import SIGHT_TERMS, Sight, SightTerm
+from inhand_tracker.sight.support import Support
 
 
 class FusionTracker(FollowingTracker):
@@ -105,6 +106,10 @@ class FusionFollower(Follower):
         self._before = Belief(expected, believed, time_ns)
         return self._state(believed, seen=seen is not None)
 
+    @property
+    def support(self) -> Support | None:
+        return self._search.support if self._search is not None and self._looked else None
+
     def _carry_over(self, expected: PoseGaussian, time_ns: int) -> PoseMixture:
         """What is believed before the image is seen; after a gap, what the body says alone."""
         before, alone = self._before, PoseMixture((expected,), np.ones(1))
@@ -123,7 +128,7 @@ class FusionFollower(Follower):
             return None
         joints = mirror_joints(body.joints) if self._expectation.left_handed else body.joints
         seen = self._search.look(belief, image, joints, self._sharpness(expected, image))
-        self.support = self._search.support
+        self._looked = True
         return seen
 
     def _sharpness(self, expected: PoseGaussian, image: Image) -> float:

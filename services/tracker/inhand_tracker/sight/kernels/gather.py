@@ -17,13 +17,11 @@ from inhand_tracker.sight.kernels.projection import Matrix
 
 
 class GatherSettings(NamedTuple):
-    """Which of edges, colours and depth are ``wanted`` (3,), how far poses may be off
-    (``reach_m``, ``reach_rad``), which share of the surface returns depth, how much a point of
-    the outline and of the surface counts, and numbers of ``SightParameters``."""
+    """Which of edges, colours and depth are ``wanted`` (3,), which share of the surface returns
+    depth, how much a point of the outline and of the surface counts, and numbers of
+    ``SightParameters``."""
 
     wanted: Flags
-    reach_m: float
-    reach_rad: float
     returned: float
     outline_weight: float
     surface_weight: float
@@ -50,17 +48,20 @@ class Equations(NamedTuple):
 def gather(
     translations: Array,
     orientations: Array,
+    reaches: Array,
     outlines: Outlines,
     pixels: ScoredPixels,
     settings: GatherSettings,
     equations: Equations,
 ) -> None:
-    """Add to the ``equations`` of poses (K, 3) and (K, 4) what a frame says of each."""
+    """Add to the ``equations`` of poses (K, 3) and (K, 4) what a frame says of each, which may be
+    off by its one of ``reaches`` (K, 2), in metres and radians."""
     information, gradients = equations
     count = 2 * settings.samples + 1
     log_posterior, within, beside = np.empty(count), np.empty(count), np.empty(count)
     for pose in range(len(translations)):
         place = translations[pose, 0], translations[pose, 1], translations[pose, 2]
+        reach = reaches[pose, 0], reaches[pose, 1]
         w, x, y, z = orientations[pose]
         turn = projection.rotation_matrix(w, x, y, z)
         view = projection.view_of_pose(
@@ -69,6 +70,7 @@ def gather(
         if settings.wanted[0] or settings.wanted[1]:
             _gather_outline(
                 (turn, place, view),
+                reach,
                 outlines,
                 pixels,
                 settings,
@@ -78,6 +80,7 @@ def gather(
         if settings.wanted[2]:
             _gather_surface(
                 (turn, place, view),
+                reach,
                 outlines,
                 pixels,
                 settings,
@@ -88,6 +91,7 @@ def gather(
 @njit(cache=True, nogil=True)
 def _gather_outline(
     seen: tuple[Matrix, tuple[float, float, float], int],
+    most: tuple[float, float],
     outlines: Outlines,
     pixels: ScoredPixels,
     settings: GatherSettings,
@@ -104,7 +108,7 @@ def _gather_outline(
         arm, (px, py, pz), (u, v) = _placed(turn, place, (a, b, c), lens)
         if not projection.in_image(u, v, width, height):
             continue
-        reach = _reach(arm, settings)
+        reach = _reach(arm, most)
         margin = settings.sensor.covered_m + 2.0 * _noise(pz, settings.sensor) + reach
         if projection.is_covered(pixels.depth[int(v), int(u)], pz, margin):
             continue
@@ -194,6 +198,7 @@ def _outline_offset(
 @njit(cache=True, nogil=True)
 def _gather_surface(
     seen: tuple[Matrix, tuple[float, float, float], int],
+    most: tuple[float, float],
     outlines: Outlines,
     pixels: ScoredPixels,
     settings: GatherSettings,
@@ -208,7 +213,7 @@ def _gather_surface(
         arm, (px, py, pz), (u, v) = _placed(turn, place, (a, b, c), lens)
         if not projection.in_image(u, v, width, height):
             continue
-        reach = _reach(arm, settings)
+        reach = _reach(arm, most)
         column, row = int(u), int(v)
         measured = pixels.depth[row, column]
         if measured <= 0.0:
@@ -259,10 +264,10 @@ def _placed(
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _reach(arm: tuple[float, float, float], settings: GatherSettings) -> float:
+def _reach(arm: tuple[float, float, float], most: tuple[float, float]) -> float:
     """Return how far a point may be off, in metres, at ``arm`` from the object's origin."""
     length = np.sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2])
-    return settings.reach_m + settings.reach_rad * length
+    return most[0] + most[1] * length
 
 
 @njit(cache=True, nogil=True, inline="always")
