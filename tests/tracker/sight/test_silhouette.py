@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 from inhand_tracker.geometry.camera import Intrinsics
-from inhand_tracker.sight.frame import SightFrame
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT
 from inhand_tracker.sight.silhouette import (
     interior,
@@ -44,10 +43,10 @@ def test_only_what_is_well_before_the_surface_covers_it() -> None:
     depths = np.full((48, 64), 1.0)
     measured = np.full((48, 64), 0.9, np.float32)
     measured[:, :10], measured[:, 10:20] = 0.0, 0.97
-    covered = pixels_covered(SightFrame(CAMERA, None, measured), depths)
+    covered = pixels_covered(measured, depths, DEFAULT_SIGHT.aside_m)
     assert not covered[:, :20].any()
     assert covered[:, 20:].all()
-    assert not pixels_covered(SightFrame(CAMERA, None, None), depths).any()
+    assert not pixels_covered(None, depths, DEFAULT_SIGHT.aside_m).any()
 
 
 def test_an_interior_has_no_rim_unless_that_is_all_there_is() -> None:

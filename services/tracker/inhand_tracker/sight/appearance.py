@@ -54,7 +54,9 @@ class _Counts:
         """Count what was measured of the surface where nothing covers it."""
         if frame.depth is None:
             return
-        uncovered = interior(silhouette) & ~pixels_covered(frame, depths)
+        uncovered = interior(silhouette) & ~pixels_covered(
+            frame.depth, depths, frame.parameters.aside_m
+        )
         off = frame.depth[uncovered] - depths[uncovered]
         self.returned += int((np.abs(off) < frame.parameters.aside_m).sum())
         self.behind += int((off >= frame.parameters.aside_m).sum())
@@ -90,7 +92,11 @@ def learn_appearance(
         depths = silhouette_depths(shape, translation, rotation, frame.camera)
         silhouette = np.isfinite(depths)
         counts.add_depths(frame, depths, silhouette)
-        counts.add_colours(frame, silhouette & ~pixels_covered(frame, depths), joints)
+        counts.add_colours(
+            frame,
+            silhouette & ~pixels_covered(frame.depth, depths, frame.parameters.aside_m),
+            joints,
+        )
     of_object, around = counts.of_object, counts.around
     if min(of_object.sum(), around.sum()) < parameters.fewest_pixels:
         return None

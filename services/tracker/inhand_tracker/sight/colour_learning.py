@@ -6,10 +6,9 @@ import cv2
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.image import Image
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.sight.colours import Colours, blend, histogram
-from inhand_tracker.sight.frame import SightFrame, prepare
+from inhand_tracker.sight.frame import SightFrame, cut
 from inhand_tracker.sight.silhouette import pixels_covered, region_around, silhouette_depths
 
 _WIDENED = np.ones((5, 5))
@@ -30,19 +29,18 @@ def learn_colours(
     """
     parameters = frame.parameters
     region = region_around(shape, *pose, frame.camera, parameters)
-    if frame.colour is None or region is None:
+    if frame.bins is None or region is None:
         return colours
-    part = prepare(Image(None, frame.camera, frame.depth, frame.colour), region, parameters)
-    if part.bins is None:
-        return colours
-    depths = silhouette_depths(shape, *pose, part.camera)
+    camera, pixels = cut(frame.camera, region)
+    bins, measured = frame.bins[pixels], None if frame.depth is None else frame.depth[pixels]
+    depths = silhouette_depths(shape, *pose, camera)
     object_rate, around_rate = rates
     if around_rate > 0.0:
         wide = cv2.dilate(np.isfinite(depths).astype(np.uint8), _WIDENED)
-        around = histogram(part.bins, (1 - wide).astype(np.float32), parameters)
+        around = histogram(bins, (1 - wide).astype(np.float32), parameters)
         colours = replace(colours, around=blend(colours.around, around, around_rate))
     if object_rate > 0.0:
-        within = np.isfinite(depths) & ~pixels_covered(part, depths)
-        of_object = histogram(part.bins, within.astype(np.float32), parameters)
+        within = np.isfinite(depths) & ~pixels_covered(measured, depths, parameters.aside_m)
+        of_object = histogram(bins, within.astype(np.float32), parameters)
         colours = replace(colours, of_object=blend(colours.of_object, of_object, object_rate))
     return colours

@@ -29,11 +29,15 @@ class Colours:
 
 
 def colour_bins(colour: Bytes) -> Bins:
-    """Find the histogram bin (H, W) of each pixel of an RGB image (H, W, 3), with less noise."""
-    smooth = np.asarray(cv2.GaussianBlur(colour, (3, 3), 0.0), np.uint8)
+    """Find the histogram bin (H, W) of each pixel of an RGB image (H, W, 3)."""
     bins = np.empty(colour.shape[:2], np.uint16)
-    quantise(smooth, bins)
+    quantise(colour, bins)
     return bins
+
+
+def without_noise(colour: Bytes) -> Bytes:
+    """Smooth an image (H, W, 3) a little."""
+    return np.asarray(cv2.GaussianBlur(colour, (3, 3), 0.0), np.uint8)
 
 
 def histogram(

@@ -1,5 +1,6 @@
 """What one frame shows, prepared once for however many objects are looked for in it."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -9,7 +10,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Bytes, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.sight.colours import Bins, colour_bins
+from inhand_tracker.sight.colours import Bins, colour_bins, without_noise
 from inhand_tracker.sight.oriented_edges import edge_distances, edge_scores
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
@@ -31,16 +32,21 @@ class SightFrame:
     parameters: SightParameters = DEFAULT_SIGHT
 
     @cached_property
+    def _smooth(self) -> Bytes | None:
+        """The colours (H, W, 3) with less noise, or None."""
+        return None if self.colour is None else without_noise(self.colour)
+
+    @cached_property
     def bins(self) -> Bins | None:
         """The colours' bins (H, W), or None."""
-        return None if self.colour is None else colour_bins(self.colour)
+        return None if self._smooth is None else colour_bins(self._smooth)
 
     @cached_property
     def edges(self) -> Bytes | None:
         """Distances (4, H, W) to oriented edges, or None without colour."""
-        if self.colour is None:
+        if self._smooth is None:
             return None
-        grey = np.asarray(cv2.cvtColor(self.colour, cv2.COLOR_RGB2GRAY), np.uint8)
+        grey = np.asarray(cv2.cvtColor(self._smooth, cv2.COLOR_RGB2GRAY), np.uint8)
         return edge_distances(grey, self.parameters)
 
     @cached_property
@@ -66,12 +72,9 @@ def prepare(
     if depth is not None and depth.shape[::-1] != size:
         depth = np.asarray(cv2.resize(depth, size, interpolation=cv2.INTER_NEAREST), np.float32)
     if region is not None:
-        left, top, right, bottom = _whole_pixels(region, camera)
-        camera = replace(
-            camera, cx=camera.cx - left, cy=camera.cy - top, width=right - left, height=bottom - top
-        )
-        colour = None if colour is None else colour[top:bottom, left:right]
-        depth = None if depth is None else depth[top:bottom, left:right]
+        camera, pixels = cut(camera, region)
+        colour = None if colour is None else colour[pixels]
+        depth = None if depth is None else depth[pixels]
     return SightFrame(
         camera,
         None if colour is None else np.ascontiguousarray(colour),
@@ -80,15 +83,22 @@ def prepare(
     )
 
 
+def cut(camera: Intrinsics, region: Region) -> tuple[Intrinsics, tuple[slice, slice]]:
+    """Give the camera of the part of an image within a region, and that part's rows and columns."""
+    left, top, right, bottom = _whole_pixels(region, camera)
+    width, height = right - left, bottom - top
+    part = replace(camera, cx=camera.cx - left, cy=camera.cy - top, width=width, height=height)
+    return part, (slice(top, bottom), slice(left, right))
+
+
 def _whole_pixels(region: Region, camera: Intrinsics) -> tuple[int, int, int, int]:
     """Round a region to pixels of the image, SMALLEST_PIXELS or more each way."""
-    ends = []
-    for low, high, size in (
-        (region[0], region[2], camera.width),
-        (region[1], region[3], camera.height),
-    ):
-        smallest = min(SMALLEST_PIXELS, size)
-        first = int(np.clip(np.floor(low), 0, size - smallest))
-        ends.append((first, int(np.clip(np.ceil(high), first + smallest, size))))
-    (left, right), (top, bottom) = ends
+    left, right = _whole(region[0], region[2], camera.width)
+    top, bottom = _whole(region[1], region[3], camera.height)
     return left, top, right, bottom
+
+
+def _whole(low: float, high: float, size: int) -> tuple[int, int]:
+    smallest = min(SMALLEST_PIXELS, size)
+    first = math.floor(min(max(low, 0.0), size - smallest))
+    return first, math.ceil(min(max(high, first + smallest), size))

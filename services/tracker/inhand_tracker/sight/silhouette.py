@@ -4,11 +4,11 @@ import cv2
 import numpy as np
 
 from inhand_tracker.geometry import rotations
-from inhand_tracker.geometry.arrays import Array, Flags
+from inhand_tracker.geometry.arrays import Array, Flags, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.shape.raster import nearest_depths
 from inhand_tracker.shape.shape import ObjectShape
-from inhand_tracker.sight.frame import Region, SightFrame
+from inhand_tracker.sight.frame import Region
 from inhand_tracker.sight.parameters import SightParameters
 
 
@@ -44,11 +44,12 @@ def silhouette_depths(
     return depths[: camera.height, : camera.width]
 
 
-def pixels_covered(frame: SightFrame, depths: Array) -> Flags:
-    """Find the pixels (H, W) where something nearer than the surface's ``depths`` was measured."""
-    if frame.depth is None:
+def pixels_covered(measured: Singles | None, depths: Array, aside_m: float) -> Flags:
+    """Find the pixels (H, W) where a depth was ``measured`` (H, W) that is nearer than the
+    surface's ``depths`` by more than ``aside_m``."""
+    if measured is None:
         return np.zeros(depths.shape, bool)
-    return (frame.depth > 0.0) & (frame.depth < depths - frame.parameters.aside_m)
+    return (measured > 0.0) & (measured < depths - aside_m)
 
 
 def interior(silhouette: Flags) -> Flags:
