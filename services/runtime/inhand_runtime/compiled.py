@@ -1,18 +1,21 @@
 """Compiled code (Numba), kept from one start to the next in a folder that the process may write.
 
-Every kernel is made with ``njit`` of this module, and nothing else imports Numba. By itself Numba
-keeps what it compiles beside the source, where an installed package cannot be written, and compiles
-again only when the file of the function itself changed: not when another file did, of which the
-kernel calls a function or holds a constant.
+Every kernel is made with ``njit`` or ``vectorised`` of this module, and nothing else imports Numba.
+By itself Numba keeps what it compiles beside the source, where an installed package cannot be
+written, and compiles again only when the file of the function itself changed: not when another file
+did, of which the kernel calls a function or holds a constant.
 """
 
 import hashlib
 import inspect
 import logging
 import numbers
+import pickle
+import re
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
@@ -21,6 +24,7 @@ import numba
 import numpy as np
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
+from numba.np.ufunc.gufunc import GUFunc
 
 from inhand_runtime.cache_folder import cache_folder
 
@@ -102,17 +106,56 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     def compiled(function: Callable[..., Any]) -> Any:
         kernel = numba.njit(**options)(function)
         if kept and isinstance(kernel, Dispatcher):
-            kernel._cache = _cache_of(function)  # type: ignore[attr-defined]
+            with _kept_here():
+                kernel._cache = KernelCache(function)  # type: ignore[attr-defined, no-untyped-call]
         return kernel
 
     return compiled
 
 
-def _cache_of(function: Callable[..., Any]) -> KernelCache:
+def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
+    """Compile a function of double arrays so that it takes any number of them, as NumPy's own do.
+
+    The ``layout`` is NumPy's signature of generalised functions: the function fills its last
+    arguments, which stand behind the arrow, and its callers get them as results. It is compiled
+    when it is defined: what it calls stands above it.
+    """
+    inputs, outputs = layout.split("->")
+    types = []
+    for number, dimensions in enumerate(re.findall(r"\(([^)]*)\)", inputs + outputs)):
+        scalar = not dimensions and number < inputs.count("(")
+        axes = ",".join(":" * max(1, len(dimensions.split(","))))
+        types.append("float64" if scalar else f"float64[{axes}]")
+
+    def compiled(function: Callable[..., None]) -> Any:
+        try:
+            return _vectorised(function, layout, types, kept=KEPT)
+        except (OSError, pickle.UnpicklingError, EOFError, AttributeError, ValueError) as error:
+            if not KEPT:
+                raise
+            log.warning("a file in %s is damaged (%s): not used", FOLDER, error)
+            return _vectorised(function, layout, types, kept=False)
+
+    return compiled
+
+
+def _vectorised(
+    function: Callable[..., None], layout: str, types: list[str], *, kept: bool
+) -> Any:
+    with _kept_here():
+        made: Any = GUFunc(function, layout, cache=kept, targetoptions={"nopython": True})  # type: ignore[no-untyped-call]
+        made.add(f"void({', '.join(types)})")
+        made.disable_compile()
+        return made.build_ufunc()
+
+
+@contextmanager
+def _kept_here() -> Iterator[None]:
+    """Let Numba keep what is made meanwhile in this module's folder."""
     usual = _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES
     _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES = LOCATOR
     try:
-        return KernelCache(function)  # type: ignore[no-untyped-call]
+        yield
     finally:
         _NUMBA_SETTINGS.CACHE_LOCATOR_CLASSES = usual
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from inhand_runtime.compiled import vectorised
 from inhand_schemas.messages import CameraInfo
 
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.kernels.compiled import compiled
 
 NEAREST_M = 0.05
 """Metres before the camera within which a point is taken to have no pixel."""
@@ -54,7 +54,7 @@ _PIXEL = np.empty(2)
 """It tells the compiled function how long a pixel is."""
 
 
-@compiled("(v),(l),(p)->(p)")
+@vectorised("(v),(l),(p)->(p)")
 def _project(point: Array, lens: Array, two: Array, pixel: Array) -> None:
     if point[2] > NEAREST_M:
         pixel[0] = point[0] / point[2] * lens[0] + lens[2]

@@ -4,9 +4,9 @@ What trackers call often, on few poses at once, is compiled (``kernels/quaternio
 """
 
 import numpy as np
+from inhand_runtime.compiled import vectorised
 
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.kernels.compiled import compiled
 from inhand_tracker.geometry.kernels.nearest_rotation import (
     nearest_rotation,
     principal_vector,
@@ -103,29 +103,29 @@ def nearest(matrix: Array) -> Array:
     return _nearest(matrix)
 
 
-@compiled("(q),(q)->(q)")
+@vectorised("(q),(q)->(q)")
 def _multiply(first: Array, second: Array, chained: Array) -> None:
     w, x, y, z = product(quaternion_in(first), quaternion_in(second))
     chained[0], chained[1], chained[2], chained[3] = w, x, y, z
 
 
-@compiled("(q),(v)->(v)")
+@vectorised("(q),(v)->(v)")
 def _rotate(quaternion: Array, vector: Array, rotated: Array) -> None:
     rotated[0], rotated[1], rotated[2] = turned(quaternion_in(quaternion), vector_in(vector))
 
 
-@compiled("(v),(q)->(q)")
+@vectorised("(v),(q)->(q)")
 def _from_vector(vector: Array, four: Array, quaternion: Array) -> None:
     w, x, y, z = quaternion_of(vector_in(vector))
     quaternion[0], quaternion[1], quaternion[2], quaternion[3] = w, x, y, z
 
 
-@compiled("(q),(v)->(v)")
+@vectorised("(q),(v)->(v)")
 def _to_vector(quaternion: Array, three: Array, vector: Array) -> None:
     vector[0], vector[1], vector[2] = vector_of(quaternion_in(quaternion))
 
 
-@compiled("(q),(v)->(v,v)")
+@vectorised("(q),(v)->(v,v)")
 def _to_matrix(quaternion: Array, three: Array, matrix: Array) -> None:
     w, x, y, z = quaternion_in(quaternion)
     matrix[0, 0], matrix[1, 1] = 1 - 2 * (y * y + z * z), 1 - 2 * (x * x + z * z)
@@ -135,18 +135,18 @@ def _to_matrix(quaternion: Array, three: Array, matrix: Array) -> None:
     matrix[1, 2], matrix[2, 1] = 2 * (y * z - w * x), 2 * (y * z + w * x)
 
 
-@compiled("(v,v),(q)->(q)")
+@vectorised("(v,v),(q)->(q)")
 def _from_matrix(matrix: Array, four: Array, quaternion: Array) -> None:
     w, x, y, z = quaternion_of_matrix(matrix)
     quaternion[0], quaternion[1], quaternion[2], quaternion[3] = w, x, y, z
 
 
-@compiled("(v,v)->(v,v)")
+@vectorised("(v,v)->(v,v)")
 def _nearest(matrix: Array, rotation: Array) -> None:
     nearest_rotation(matrix, rotation)
 
 
-@compiled("(q,q)->(q)")
+@vectorised("(q,q)->(q)")
 def _principal(scatter: Array, quaternion: Array) -> None:
     found = principal_vector(scatter.copy())
     greatest = found[np.argmax(np.abs(found))]

@@ -1,11 +1,10 @@
 """Coordinate systems of a body's joints (20, 3), by kernels; NaN where a joint is missing."""
 
 import numpy as np
+from inhand_runtime.compiled import njit, vectorised
 from inhand_schemas.joints import JOINT_NAMES
-from numba import njit
 
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.kernels.compiled import compiled
 from inhand_tracker.geometry.kernels.quaternions import Vector, quaternion_of_matrix, vector_in
 from inhand_tracker.geometry.kernels.vectors import (
     blended,
@@ -78,7 +77,7 @@ def _direction(vector: Vector) -> Vector:
     return vector[0] / length, vector[1] / length, vector[2] / length
 
 
-@compiled("(j,v),(q)->(q)")
+@vectorised("(j,v),(q)->(q)")
 def pelvis_rotation(joints: Array, four: Array, quaternion: Array) -> None:
     """Find the pelvis' rotation (4,): x from the right hip to the left, y up, z forwards."""
     x = minus(vector_in(joints[HIP_LEFT]), vector_in(joints[HIP_RIGHT]))
@@ -89,7 +88,7 @@ def pelvis_rotation(joints: Array, four: Array, quaternion: Array) -> None:
     quaternion[0], quaternion[1], quaternion[2], quaternion[3] = w, i, j, k
 
 
-@compiled("(j,v)->()")
+@vectorised("(j,v)->()")
 def pelvis_area(joints: Array, area: Array) -> None:
     """Find the area, in m², that the hips and the spine span; NaN where one of them is missing."""
     x = minus(vector_in(joints[HIP_LEFT]), vector_in(joints[HIP_RIGHT]))
@@ -97,14 +96,14 @@ def pelvis_area(joints: Array, area: Array) -> None:
     area[0] = np.sqrt(dot(z, z))
 
 
-@compiled("(j,v)->(v,v)")
+@vectorised("(j,v)->(v,v)")
 def trunk(joints: Array, axes: Array) -> None:
     """Find the trunk's left, up and forwards, the columns of ``axes`` (3, 3)."""
     x, up, forwards = trunk_of(joints)
     set_columns(axes, x, up, forwards)
 
 
-@compiled("(j,v),(),(a)->(a,v),(a,v,v)")
+@vectorised("(j,v),(),(a)->(a,v),(a,v,v)")
 def anchors(joints: Array, straight_arm: float, nine: Array, origins: Array, axes: Array) -> None:
     """Find the ``origins`` (A, 3) and ``axes`` (A, 3, 3) of ``anchors.ANCHORS``."""
     x, up, forwards = trunk_of(joints)

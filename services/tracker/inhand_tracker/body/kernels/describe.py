@@ -1,10 +1,9 @@
 """A body's joints from the middle of the trunk, in its directions."""
 
-from numba import njit
+from inhand_runtime.compiled import njit, vectorised
 
 from inhand_tracker.body.kernels.axes import CHEST, HIPS, trunk_of
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.kernels.compiled import compiled
 from inhand_tracker.geometry.kernels.quaternions import Vector, vector_in
 from inhand_tracker.geometry.kernels.vectors import blended, dot, minus, set_vector
 
@@ -19,7 +18,7 @@ def _scaled_in(axes: tuple[Vector, Vector, Vector], vector: Vector, scale: float
     )
 
 
-@compiled("(j,v),()->(j,v)")
+@vectorised("(j,v),()->(j,v)")
 def places(joints: Array, height: float, placed: Array) -> None:
     """Fill ``placed`` (20, 3) with the joints (20, 3) from the trunk, in body heights."""
     axes = trunk_of(joints)
@@ -29,7 +28,7 @@ def places(joints: Array, height: float, placed: Array) -> None:
         set_vector(placed[joint], _scaled_in(axes, away, 1.0 / height))
 
 
-@compiled("(j,v),(l,j,v),()->(l,j,v)")
+@vectorised("(j,v),(l,j,v),()->(l,j,v)")
 def ways(joints: Array, earlier: Array, height: float, gone: Array) -> None:
     """Fill ``gone`` (L, 20, 3) with half of the ways from earlier joints (L, 20, 3) to those of now
     (20, 3), in the trunk's directions and body heights."""

@@ -1,7 +1,7 @@
 """Lengths of a body's parts: their running medians, kept sorted, and wild ones among them."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array, Indices
 

@@ -1,7 +1,7 @@
 """Algebra of small symmetric matrices (N, N): their triangular roots, and what these solve."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array
 

@@ -1,7 +1,7 @@
 """The rotation nearest to a matrix, and the principal vector of a small symmetric matrix."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array
 
@@ -39,7 +39,7 @@ def principal_vector(symmetric: Array) -> Array:
 def _turn_to_nothing(symmetric: Array, vectors: Array, row: int, column: int) -> None:
     """Rotate two axes so that the element of both becomes 0."""
     element = symmetric[row, column]
-    if element == 0.0:
+    if abs(element) <= 1e-20 * (abs(symmetric[row, row]) + abs(symmetric[column, column])):
         return
     ratio = (symmetric[column, column] - symmetric[row, row]) / (2.0 * element)
     tangent = (1.0 if ratio >= 0.0 else -1.0) / (abs(ratio) + np.sqrt(1.0 + ratio * ratio))

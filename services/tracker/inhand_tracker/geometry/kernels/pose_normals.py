@@ -4,10 +4,9 @@ A deviation (6,) is a translation and a rotation vector on the left.
 """
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit, vectorised
 
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.geometry.kernels.compiled import compiled
 from inhand_tracker.geometry.kernels.matrices import find_root, solve_lower
 from inhand_tracker.geometry.kernels.quaternions import (
     inverse,
@@ -64,7 +63,7 @@ def draw(
     return drawn_centres, drawn_rotations
 
 
-@compiled("(v),(q),(v),(q),(s)->(s)")
+@vectorised("(v),(q),(v),(q),(s)->(s)")
 def deviations(
     centre: Array,
     rotation: Array,
@@ -77,7 +76,7 @@ def deviations(
     set_deviation(centre, rotation, pose_centre, pose_rotation, deviation)
 
 
-@compiled("(v),(q),(s)->(v),(q)")
+@vectorised("(v),(q),(s)->(v),(q)")
 def deviated(
     centre: Array, rotation: Array, deviation: Array, pose_centre: Array, pose_rotation: Array
 ) -> None:
@@ -85,7 +84,7 @@ def deviated(
     set_deviated(centre, rotation, deviation, pose_centre, pose_rotation)
 
 
-@compiled("(s,s)->(s,s)")
+@vectorised("(s,s)->(s,s)")
 def roots(matrix: Array, root: Array) -> None:
     """Find the triangular roots of matrices; NaN of one that is not positive definite."""
     root[:] = 0.0
@@ -93,7 +92,7 @@ def roots(matrix: Array, root: Array) -> None:
         root[:] = np.nan
 
 
-@compiled("(v),(q),(s,s),(v),(q)->()")
+@vectorised("(v),(q),(s,s),(v),(q)->()")
 def square_distances(
     centre: Array,
     rotation: Array,
@@ -112,7 +111,7 @@ def square_distances(
     square[0] = total
 
 
-@compiled("(s,s),(v,v)->(s,s)")
+@vectorised("(s,s),(v,v)->(s,s)")
 def turn_blocks(matrix: Array, turn: Array, turned: Array) -> None:
     """Rotate both kinds of deviations that a matrix (6, 6) is of: T M Tᵀ, T of two (3, 3)."""
     half = np.empty((6, 6))
@@ -130,7 +129,7 @@ def turn_blocks(matrix: Array, turn: Array, turned: Array) -> None:
                 turned[row, column] += half[row, first + k] * turn[column - first, k]
 
 
-@compiled("(p,s),(s,s),(),()->()")
+@vectorised("(p,s),(s,s),(),()->()")
 def share_near(normals: Array, root: Array, near_m: float, near_rad: float, share: Array) -> None:
     """Find the share of standard ``normals`` (P, 6) that a covariance's root takes to deviations
     of less than some metres and radians."""
@@ -150,7 +149,7 @@ def share_near(normals: Array, root: Array, near_m: float, near_rad: float, shar
     share[0] = near / len(normals)
 
 
-@compiled("(s,s),(v)->(s,s)")
+@vectorised("(s,s),(v)->(s,s)")
 def moved_information(information: Array, arm: Array, moved: Array) -> None:
     """Find Lᵀ I L, where L takes deviations of a pose to those of a point at ``arm`` (3,)."""
     x, y, z = vector_in(arm)

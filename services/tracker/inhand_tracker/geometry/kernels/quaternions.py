@@ -6,7 +6,7 @@ Everything here is compiled into its callers. ``geometry/rotations`` has the sam
 from typing import TypeAlias
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array
 

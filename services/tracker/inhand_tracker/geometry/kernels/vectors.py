@@ -1,7 +1,7 @@
 """Vectors one by one, as tuples of three numbers. Everything here is compiled into its callers."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels.quaternions import Vector

@@ -1,9 +1,9 @@
 """Combining E predictions of one body, and what is expected of their errors at L landmarks."""
 
 import numpy as np
+from inhand_runtime.compiled import vectorised
 
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.kernels.compiled import compiled
 from inhand_tracker.geometry.kernels.matrices import find_root, solve
 from inhand_tracker.geometry.kernels.nearest_rotation import nearest_rotation
 
@@ -11,7 +11,7 @@ MOST_RIDGE = 1e3
 """Ridge at which products that are no products (NaN) are given up; the weights are NaN then."""
 
 
-@compiled("(e,e),()->(e)")
+@vectorised("(e,e),()->(e)")
 def best_weights(products: Array, distrust: float, weights: Array) -> None:
     """Fill ``weights`` (E,) with the shares of predictions, 0 or more, that keep the fused error
     least, where their errors have inner products (E, E)."""
@@ -34,7 +34,7 @@ def best_weights(products: Array, distrust: float, weights: Array) -> None:
         weights[one] /= total
 
 
-@compiled("(e,t),(a,v),(a,v,v),(),(e),(e),(v,v)->(v),(v,v)")
+@vectorised("(e,t),(a,v),(a,v,v),(),(e),(e),(v,v)->(v),(v,v)")
 def fused(
     predicted: Array,
     origins: Array,
@@ -71,7 +71,7 @@ def fused(
     nearest_rotation(matrix, rotation)
 
 
-@compiled("(l),(),(l,i),()->(i,i)")
+@vectorised("(l),(),(l,i),()->(i,i)")
 def moments_at(
     local: Array, nearness: float, errors: Array, everywhere_share: float, moments: Array
 ) -> None:

@@ -1,7 +1,7 @@
 """Pixels of a limb: a line of some width between two points."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Bytes, Singles
 

@@ -1,7 +1,7 @@
 """Spreading a histogram of colours to neighbouring ones."""
 
 import numpy as np
-from numba import njit
+from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Singles
 
