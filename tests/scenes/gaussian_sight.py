@@ -37,7 +37,9 @@ class GaussianSight:
         self.trusts.append(trust)
         return view
 
-    def weigh(self, origins: np.ndarray, turns: np.ndarray, view: "View") -> np.ndarray:
+    def weigh(
+        self, origins: np.ndarray, turns: np.ndarray, view: "View", *, quickly: bool = False
+    ) -> np.ndarray:
         """The likelihoods (P, 1) themselves are what poses weigh here."""
         return self.log_likelihood(origins, turns, view)[:, None]
 

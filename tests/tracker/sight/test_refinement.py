@@ -37,7 +37,9 @@ def empty_view() -> SightView:
 
 @pytest.mark.parametrize("trust", [1.0, 0.1])
 def test_a_pose_of_which_nothing_is_seen_stays_or_goes_to_its_prior(trust: float) -> None:
-    refiner = PoseRefiner(arrays.outlines(), np.ones(4, bool), 0.9, DEFAULT_SIGHT)
+    refiner = PoseRefiner(
+        arrays.outlines(), arrays.outlines(), np.ones(4, bool), 0.9, DEFAULT_SIGHT
+    )
     start = off(0.03, 0.1)
     unmoved = refiner.refine(start, empty_view(), None, trust)
     np.testing.assert_array_equal(unmoved.translations, start[0])

@@ -41,6 +41,9 @@ class SightParameters:
     """Least factor on the term ``interior``, for objects that are small in the image."""
     most_interior_scale: float = 3.0
     """Greatest factor on the term ``interior``, for objects that are large in the image."""
+    thinning: int = 2
+    """Number of points of which one is looked at where many poses are weighed, and in the first
+    steps of refinement."""
     fewest_in_thread: int = 500
     """Number of poses for which another thread is worth its start (`inhand bench tracker`)."""
 
@@ -97,6 +100,8 @@ class SightParameters:
     # How poses are refined (refinement, kernels/gather).
     refinement_steps: int = 8
     """Number of Gauss-Newton steps."""
+    thin_steps: int = 5
+    """Number of steps, of those, that look at one point in ``thinning`` only."""
     last_reach: float = 0.12
     """Share of the first step's reach that is left for the last one."""
     reach_m: float = 0.05

@@ -57,17 +57,26 @@ class Refined:
 class PoseRefiner:
     """Moves poses of one object by the ``wanted`` (4,) terms of a view.
 
-    ``returned`` is the share of the surface of which depth is measured.
+    The first steps look at the points of the ``thin`` outlines only. ``returned`` is the share of
+    the surface of which depth is measured.
     """
 
     def __init__(
-        self, outlines: Outlines, wanted: Flags, returned: float, parameters: SightParameters
+        self,
+        outlines: Outlines,
+        thin: Outlines,
+        wanted: Flags,
+        returned: float,
+        parameters: SightParameters,
     ) -> None:
         self._outlines = outlines
+        self._thin = thin
         self._wanted = wanted[_REFINED_TERMS]
         self._returned = returned
         self._parameters = parameters
         self._damping = np.repeat([parameters.damping_per_m2, parameters.damping_per_rad2], 3)
+        steps = parameters.refinement_steps
+        self._shares = np.geomspace(1.0, parameters.last_reach, steps)
 
     def refine(
         self,
@@ -83,18 +92,26 @@ class PoseRefiner:
         parameters, count = self._parameters, len(poses[0])
         moved = poses[0].astype(np.float64), poses[1].astype(np.float64)
         priors, reaches = self._priors(prior, count)
-        shares = np.geomspace(1.0, parameters.last_reach, parameters.refinement_steps)
         information = np.zeros((count, 6, 6))
-        refine(
-            moved,
-            priors,
-            Steps(shares, reaches, self._damping),
-            self._outlines,
-            view.pixels,
-            self._settings(view, trust),
-            information,
-        )
+        first = parameters.thin_steps
+        for outlines, shares in (
+            (self._thin, self._shares[:first]),
+            (self._outlines, self._shares[first:]),
+        ):
+            refine(
+                moved,
+                priors,
+                Steps(shares, reaches, self._damping),
+                outlines,
+                view.pixels,
+                self._settings(view, trust * self._thinness(outlines)),
+                information,
+            )
         return Refined(*moved, parameters.information_share * information)
+
+    def _thinness(self, outlines: Outlines) -> float:
+        """How many points one of these outlines' stands for."""
+        return self._outlines.points.shape[2] / outlines.points.shape[2]
 
     def _priors(self, prior: PosePrior | None, count: int) -> tuple[Priors, Array]:
         """A prior of each of K poses, and how far they may be off, (K, 2)."""

@@ -55,10 +55,14 @@ class Sight:
         if appearance is not None:
             returned, behind = appearance.returned, appearance.behind
         returned = returned if returned >= parameters.least_returned else 0.0
-        outlines = _outlines(shape, viewpoints)
+        whole = _outlines(shape, viewpoints)
+        thin = _thinned(whole, parameters.thinning)
         wanted = np.array([term in terms for term in SIGHT_TERMS])
-        self._weigher = PoseWeigher(outlines, wanted, (returned, behind), parameters, threads)
-        self._refiner = PoseRefiner(outlines, wanted, returned, parameters)
+        self._weigher, self._quick_weigher = (
+            PoseWeigher(outlines, wanted, (returned, behind), parameters, threads)
+            for outlines in (whole, thin)
+        )
+        self._refiner = PoseRefiner(whole, thin, wanted, returned, parameters)
         self._term_weights = np.array(
             [
                 parameters.edges_weight,
@@ -105,10 +109,16 @@ class Sight:
         """Score a frame for the object with these colours, and a person with joints (20, 3)."""
         return view_frame(frame, colours, joints, self._parameters)
 
-    def weigh(self, translations: Array, orientations: Array, view: SightView) -> Array:
+    def weigh(
+        self, translations: Array, orientations: Array, view: SightView, *, quickly: bool = False
+    ) -> Array:
         """Weigh poses (P, 3) and (P, 4): each term's mean over their points, and the share of
-        points that are visible, (P, 5)."""
-        return self._weigher.scores(translations, orientations, view)
+        points that are visible, (P, 5).
+
+        ``quickly`` by some of their points only: enough to tell which of many are worth a look.
+        """
+        weigher = self._quick_weigher if quickly else self._weigher
+        return weigher.scores(translations, orientations, view)
 
     def log_likelihood_by(self, weighed: Array, view: SightView) -> Array:
         """Return the ``log_likelihood`` of poses that ``weigh`` has weighed, (P,)."""
@@ -203,3 +213,19 @@ def _outlines(shape: ObjectShape, viewpoints: Viewpoints) -> Outlines:
 def _points_last(points: Singles) -> Singles:
     """(V, B, 3) as (V, 3, B), so that points are weighed several at once."""
     return np.ascontiguousarray(np.swapaxes(points, 1, 2))
+
+
+def _thinned(outlines: Outlines, step: int) -> Outlines:
+    """Keep one in ``step`` points of outlines and surfaces."""
+    points = {
+        name: np.ascontiguousarray(getattr(outlines, name)[..., ::step])
+        for name in (
+            "points",
+            "normals",
+            "inside",
+            "outside",
+            "surface_points",
+            "surface_normals",
+        )
+    }
+    return outlines._replace(**points)

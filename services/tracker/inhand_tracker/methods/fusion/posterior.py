@@ -33,13 +33,14 @@ class ImagePosterior:
     sharpness: float
     parameters: FusionParameters
 
-    def scores(self, centres: Array, orientations: Array) -> tuple[Array, Array]:
+    def scores(
+        self, centres: Array, orientations: Array, *, quickly: bool = False
+    ) -> tuple[Array, Array]:
         """Return the log-posterior (P,) of poses (P, 3) and (P, 4), up to a constant, and the
-        image's log-likelihood in it, untempered, (P,)."""
+        image's log-likelihood in it, untempered, (P,); ``quickly`` as ``Sight.weigh``."""
         origins = self.sphere.origins(centres, orientations)
-        return self.scores_by(
-            self.sight.weigh(origins, orientations, self.view), centres, orientations
-        )
+        weighed = self.sight.weigh(origins, orientations, self.view, quickly=quickly)
+        return self.scores_by(weighed, centres, orientations)
 
     def scores_by(self, weighed: Array, centres: Array, orientations: Array) -> tuple[Array, Array]:
         """Return the ``scores`` of poses that ``Sight.weigh`` has weighed, (P, 5)."""

@@ -100,7 +100,9 @@ class ImageSearch:
         """The posterior in which not to be seen is as likely as to be, of these hypotheses, and
         their log-posterior (P,)."""
         parameters = self._parameters
-        weighed = self._sight.weigh(self._sphere.origins(*hypotheses), hypotheses[1], view)
+        weighed = self._sight.weigh(
+            self._sphere.origins(*hypotheses), hypotheses[1], view, quickly=True
+        )
         trust = parameters.image_temper * max(sharpness, parameters.least_sharpness)
         view = self._sight.compare_unseen(weighed, view, trust)
         posterior = ImagePosterior(self._sight, self._sphere, view, belief, sharpness, parameters)
@@ -123,7 +125,7 @@ class ImageSearch:
             turned = rotations.multiply(rotations.from_vector(shifts[:, 3:]), orientations[best])
             centres = np.concatenate((centres, nearer))
             orientations = np.concatenate((orientations, turned))
-            scores = np.concatenate((scores, posterior.scores(nearer, turned)[0]))
+            scores = np.concatenate((scores, posterior.scores(nearer, turned, quickly=True)[0]))
         likeliest = np.argsort(scores)[::-1][: parameters.refined_hypotheses]
         return (
             np.concatenate(([part.centre for part in parts], centres[likeliest])),
