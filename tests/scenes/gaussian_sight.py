@@ -48,7 +48,7 @@ class GaussianSight:
 
     def log_likelihood(self, origins: np.ndarray, turns: np.ndarray, view: "View") -> np.ndarray:
         self.weighed += len(origins)
-        return self.bonus + _log_density(origins, turns) - _log_density(*pose(TRUE))
+        return self._likelihoods(origins, turns)
 
     def log_likelihoods_by_term(
         self, origins: np.ndarray, turns: np.ndarray, view: "View"
@@ -65,10 +65,12 @@ class GaussianSight:
         count = len(origins)
         information = np.tile(trust * np.linalg.inv(TRUE.covariance), (count, 1, 1))
         if not self.refines:
-            return Refined(origins, turns, information)
-        return Refined(
-            np.tile(TRUE.centre, (count, 1)), np.tile(TRUE.rotation, (count, 1)), information
-        )
+            return Refined(origins, turns, information, self._likelihoods(origins, turns))
+        moved = np.tile(TRUE.centre, (count, 1)), np.tile(TRUE.rotation, (count, 1))
+        return Refined(*moved, information, self._likelihoods(*moved))
+
+    def _likelihoods(self, origins: np.ndarray, turns: np.ndarray) -> np.ndarray:
+        return self.bonus + _log_density(origins, turns) - _log_density(*pose(TRUE))
 
     def learn(
         self,

@@ -2,7 +2,6 @@
 
 import numpy as np
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
-from inhand_tracker.geometry.pose_gaussian import PoseGaussian
 from people import quaternion_of
 from scipy.spatial.transform import Rotation
 
@@ -20,8 +19,8 @@ def test_the_origin_is_an_arm_away_from_the_centre() -> None:
 
 
 def test_its_ends_lie_on_it_opposite_in_pairs_and_turn_along() -> None:
-    pose = PoseGaussian(np.array([0.0, 0.0, 2.0]), quaternion_of(TURNS[0]), np.eye(6))
-    offsets = SPHERE.ends(pose) - pose.centre
+    centre = np.array([0.0, 0.0, 2.0])
+    offsets = SPHERE.ends(centre, quaternion_of(TURNS[0])) - centre
     np.testing.assert_allclose(np.linalg.norm(offsets, axis=1), SPHERE.radius)
     np.testing.assert_allclose(offsets[:3], -offsets[3:])
     np.testing.assert_allclose(offsets[:3] / SPHERE.radius, TURNS[0].as_matrix().T, atol=1e-12)

@@ -6,7 +6,6 @@ import numpy as np
 
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.pose_gaussian import PoseGaussian
 
 
 @dataclass(frozen=True)
@@ -20,10 +19,10 @@ class BoundingSphere:
         """Give the translations (P, 3) of poses by their spheres' centres (P, 3)."""
         return centres - rotations.rotate(orientations, self.centre)
 
-    def ends(self, pose: PoseGaussian) -> Array:
-        """Give six points (6, 3) of the sphere at a pose, opposite in pairs."""
+    def ends(self, centres: Array, orientations: Array) -> Array:
+        """Give six points (..., 6, 3) of the sphere, opposite in pairs, at its centres (..., 3)."""
         axes = self.radius * np.concatenate((np.eye(3), -np.eye(3)))
-        return pose.centre + rotations.rotate(pose.rotation, axes)
+        return centres[..., None, :] + rotations.rotate(orientations[..., None, :], axes)
 
     def arm(self, rotation: Array) -> Array:
         """Give the way (3,) from the object's origin to the centre, as a rotation (4,) turns it."""

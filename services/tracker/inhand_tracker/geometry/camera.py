@@ -38,10 +38,11 @@ class Intrinsics:
 
     def project(self, points: Array) -> Array:
         """Project points (..., 3) in the camera frame to pixels (..., 2); NaN behind the camera."""
-        return _project(points, self._lens, _PIXEL)
+        return _project(points, self.lens, _PIXEL)
 
     @cached_property
-    def _lens(self) -> Array:
+    def lens(self) -> Array:
+        """Focal lengths and principal point as compiled functions take them, (4,)."""
         return np.array([self.fx, self.fy, self.cx, self.cy])
 
     def unproject(self, pixels: Array, depths: Array) -> Array:

@@ -56,9 +56,7 @@ class PoseMixture:
 
     @cached_property
     def _means(self) -> tuple[Array, Array]:
-        """The parts' centres (K, 3) and rotations (K, 4)."""
-        centres = np.array([part.centre for part in self.parts])
-        return centres, np.array([part.rotation for part in self.parts])
+        return means_of(self.parts)
 
     @cached_property
     def _roots(self) -> Array:
@@ -114,6 +112,12 @@ def turn_blocks(matrices: Array, turns: Array) -> Array:
 def mixture(parts: Sequence[PoseGaussian], log_weights: Array) -> PoseMixture:
     """Make a mixture by log-weights (K,) that are known up to a constant."""
     return PoseMixture(tuple(parts), normalised_weights(log_weights))
+
+
+def means_of(parts: Sequence[PoseGaussian]) -> tuple[Array, Array]:
+    """Return the centres (K, 3) and rotations (K, 4) of distributions."""
+    centres = np.array([part.centre for part in parts])
+    return centres, np.array([part.rotation for part in parts])
 
 
 def log_sum(logs: Array) -> Array:

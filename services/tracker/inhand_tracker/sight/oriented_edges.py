@@ -10,13 +10,15 @@ import cv2
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Bytes, Singles
-from inhand_tracker.sight.kernels.mark_edges import mark_edges
+from inhand_tracker.sight.kernels.mark_edges import count_distances, mark_edges
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
 CHANNELS = 4
 """Number of channels: normals to the right, down to the right, down, and down to the left."""
 DOWN = 2
 """The channel of normals down."""
+COUNTED_LINES = 9
+"""Number of lines of pixels of which one is counted to tell how common edges are."""
 FARTHEST_PIXELS = 7
 """The greatest distance from an edge that is distinguished, in pixels: the scores' columns."""
 
@@ -60,12 +62,7 @@ def edge_scores(distances: Bytes, parameters: SightParameters = DEFAULT_SIGHT) -
     near = np.exp(-np.square(steps / parameters.matched_pixels) / 2.0)
     near /= near.sum()
     matched = parameters.matched_share
-    scores = np.empty((CHANNELS, FARTHEST_PIXELS + 1), np.float32)
-    for channel in range(CHANNELS):
-        # Whole lines across the channel's edges: others would fall in with them, or miss them.
-        lines = distances[channel, :, ::9] if channel == DOWN else distances[channel, ::9]
-        pixels = lines.ravel()
-        anywhere = np.bincount(pixels, minlength=FARTHEST_PIXELS + 1) + 1.0
-        anywhere /= anywhere.sum()
-        scores[channel] = np.log((1.0 - matched) + matched * near / anywhere)
-    return scores
+    anywhere = np.ones((CHANNELS, FARTHEST_PIXELS + 1))
+    count_distances(distances, DOWN, COUNTED_LINES, anywhere)
+    anywhere /= anywhere.sum(axis=1, keepdims=True)
+    return np.log((1.0 - matched) + matched * near / anywhere).astype(np.float32)

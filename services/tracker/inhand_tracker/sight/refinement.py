@@ -45,13 +45,21 @@ class PosePrior:
 
 
 @dataclass(frozen=True)
-class Refined:
+class Moved:
     """Poses (K, 3) and (K, 4), and ``information`` (K, 6, 6), what the image alone says of each,
-    in the order of ``PosePrior.information``; none of a pose that could not be made likelier."""
+    in the order of ``PosePrior.information``."""
 
     translations: Array
     rotations: Array
     information: Array
+
+
+@dataclass(frozen=True)
+class Refined(Moved):
+    """Poses that moved where they became likelier, and the image's ``log_likelihoods`` (K,); there
+    is no information of the others."""
+
+    log_likelihoods: Array
 
 
 class PoseRefiner:
@@ -84,7 +92,7 @@ class PoseRefiner:
         view: SightView,
         prior: PosePrior | None,
         trust: float,
-    ) -> Refined:
+    ) -> Moved:
         """Move poses, (K, 3) and (K, 4), by all steps, each looking less far around them.
 
         The frame counts by ``trust``. The information is the last step's.
@@ -107,7 +115,7 @@ class PoseRefiner:
                 self._settings(view, trust * self._thinness(outlines)),
                 information,
             )
-        return Refined(*moved, parameters.information_share * information)
+        return Moved(*moved, parameters.information_share * information)
 
     def _thinness(self, outlines: Outlines) -> float:
         """How many points one of these outlines' stands for."""

@@ -169,27 +169,27 @@ class Sight:
         The frame counts by ``trust``: less than 1 where earlier frames showed the same.
         """
         moved = self._refiner.refine((translations, orientations), view, prior, trust)
-        before = self._log_posterior(translations, orientations, view, prior, trust)
-        after = self._log_posterior(moved.translations, moved.rotations, view, prior, trust)
-        worse = (after < before)[:, None]
-        return Refined(
-            np.where(worse, translations, moved.translations),
-            np.where(worse, orientations, moved.rotations),
-            np.where(worse[..., None], 0.0, moved.information),
+        both = (
+            np.concatenate((translations, moved.translations)),
+            np.concatenate((orientations, moved.rotations)),
         )
-
-    def _log_posterior(
-        self,
-        translations: Array,
-        orientations: Array,
-        view: SightView,
-        prior: PosePrior | None,
-        trust: float,
-    ) -> Array:
-        likelihood = trust * self.log_likelihood(translations, orientations, view)
-        if prior is None:
-            return likelihood
-        return likelihood + prior.log_density(translations, orientations)
+        seen = self.log_likelihood(*both, view)
+        posterior = trust * seen
+        if prior is not None:
+            posterior = posterior + np.concatenate(
+                [
+                    prior.log_density(translations, orientations),
+                    prior.log_density(moved.translations, moved.rotations),
+                ]
+            )
+        count = len(translations)
+        worse = posterior[count:] < posterior[:count]
+        return Refined(
+            np.where(worse[:, None], translations, moved.translations),
+            np.where(worse[:, None], orientations, moved.rotations),
+            np.where(worse[:, None, None], 0.0, moved.information),
+            np.where(worse, seen[:count], seen[count:]),
+        )
 
 
 def _outlines(shape: ObjectShape, viewpoints: Viewpoints) -> Outlines:

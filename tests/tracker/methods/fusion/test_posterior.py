@@ -38,8 +38,9 @@ def test_a_score_is_the_belief_and_the_tempered_image(sharpness: float) -> None:
 
 def test_starts_that_lead_to_one_place_give_one_mode() -> None:
     starts = alone(WIDE).sample(5, np.random.default_rng(1))
-    (mode,) = posterior(WIDE).modes(*starts)
+    (mode,), seen = posterior(WIDE).modes(*starts)
     np.testing.assert_allclose(mode.centre, TRUE.centre)
+    np.testing.assert_allclose(seen, 5.0)
     information = np.linalg.inv(WIDE.covariance) + 0.1 * np.linalg.inv(TRUE.covariance)
     np.testing.assert_allclose(mode.covariance, np.linalg.inv(information), rtol=1e-9)
 
@@ -48,7 +49,7 @@ def test_each_start_is_refined_with_the_part_of_the_belief_that_it_is_near() -> 
     starts = np.stack((WIDE.centre, ELSEWHERE.centre)), np.tile(TRUE.rotation, (2, 1))
     parameters = replace(DEFAULT_FUSION, refines=False)
     narrow = replace(ELSEWHERE, covariance=0.01 * WIDE.covariance)
-    modes = posterior(narrow, WIDE, parameters=parameters).modes(*starts)
+    modes, _ = posterior(narrow, WIDE, parameters=parameters).modes(*starts)
     assert [one.covariance[0, 0] for one in modes] == pytest.approx([0.0004, 0.04])
     np.testing.assert_allclose([one.centre[0] for one in modes], TRUE.centre[0] + [1.0, 0.0])
 
@@ -57,7 +58,7 @@ def test_each_start_is_refined_with_the_part_of_the_belief_that_it_is_near() -> 
 def test_poses_no_farther_apart_than_a_centimetre_are_the_same(apart_m: float, count: int) -> None:
     centres = TRUE.centre + np.array([[0.0, 0.0, 0.0], [apart_m, 0.0, 0.0]])
     one = posterior(WIDE, sight=GaussianSight(refines=False))
-    assert len(one.modes(centres, np.tile(TRUE.rotation, (2, 1)))) == count
+    assert len(one.modes(centres, np.tile(TRUE.rotation, (2, 1)))[0]) == count
 
 
 def test_a_mode_weighs_by_its_height_and_its_volume() -> None:
@@ -67,15 +68,14 @@ def test_a_mode_weighs_by_its_height_and_its_volume() -> None:
         PoseGaussian(TRUE.centre, TRUE.rotation, np.diag([scale, 1, 1, 1, 1, 1]))
         for scale in (1, 4)
     )
-    mixture, seen = posterior(WIDE).weigh([narrow, wide])
+    mixture = posterior(WIDE).weigh([narrow, wide], np.full(2, 5.0))
     np.testing.assert_allclose(mixture.weights, [1 / 3, 2 / 3])
-    np.testing.assert_allclose(seen, 5.0)
 
 
 def test_the_likelier_of_two_modes_weighs_more() -> None:
     farther = replace(WIDE, centre=TRUE.centre + np.array([0.03, 0.0, 0.0]))
     near, off = (replace(one, covariance=WIDE.covariance) for one in (TRUE, farther))
     one = posterior(WIDE)
-    mixture, _ = one.weigh([near, off])
-    scores = np.concatenate([one.scores(*pose(mode))[0] for mode in (near, off)])
+    scores, seen = np.hstack([one.scores(*pose(mode)) for mode in (near, off)])
+    mixture = one.weigh([near, off], seen)
     assert np.log(mixture.weights[0] / mixture.weights[1]) == pytest.approx(scores[0] - scores[1])

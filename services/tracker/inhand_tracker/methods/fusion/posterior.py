@@ -1,5 +1,6 @@
 """How likely poses are by one image and by what is believed beforehand; the likeliest of them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from inhand_tracker.geometry.pose_gaussian import (
     PoseGaussian,
     PoseMixture,
     log_sum,
+    means_of,
     mixture,
     moved_information,
 )
@@ -46,61 +48,56 @@ class ImagePosterior:
         """Return the ``scores`` of poses that ``Sight.weigh`` has weighed, (P, 5)."""
         seen = self.sight.log_likelihood_by(weighed, self.view)
         expected = log_sum(self.belief.log_densities(centres, orientations))
-        return self.parameters.image_temper * self.sharpness * seen + expected, seen
+        return self._tempered(seen) + expected, seen
 
-    def weigh(self, modes: list[PoseGaussian]) -> tuple[PoseMixture, Array]:
-        """Weigh modes by their probability (Laplace's approximation); also the image's
-        log-likelihood (K,) of each."""
-        scores, seen = self.scores(
-            np.array([mode.centre for mode in modes]), np.array([mode.rotation for mode in modes])
-        )
-        volumes = np.array([np.log(np.diag(mode.root)).sum() for mode in modes])
-        return mixture(modes, scores + volumes), seen
+    def weigh(self, modes: Sequence[PoseGaussian], seen: Array) -> PoseMixture:
+        """Weigh modes by their probability (Laplace's approximation); ``seen`` (K,) is the image's
+        log-likelihood of each."""
+        centres, orientations = means_of(modes)
+        expected = log_sum(self.belief.log_densities(centres, orientations))
+        volumes = [np.log(np.diag(mode.root)).sum() for mode in modes]
+        return mixture(modes, self._tempered(seen) + expected + volumes)
 
-    def modes(self, centres: Array, orientations: Array) -> list[PoseGaussian]:
-        """Find where image and belief agree best near each start (S, 3), (S, 4), each once."""
+    def modes(self, centres: Array, orientations: Array) -> tuple[list[PoseGaussian], Array]:
+        """Find where image and belief agree best near each start (S, 3), (S, 4), each once; also
+        the image's log-likelihood (K,) there."""
         nearest = np.argmax(self.belief.log_densities(centres, orientations), axis=0)
         order = np.argsort(nearest, kind="stable")
         starts, nearest = (centres[order], orientations[order]), nearest[order]
-        if not self.parameters.refines:
-            return [
-                PoseGaussian(centre, rotation, self.belief.parts[part].covariance)
-                for centre, rotation, part in zip(*starts, nearest, strict=True)
-            ]
-        return self._each_once(*self._refined(*starts, nearest))
+        if self.parameters.refines:
+            return self._refined(*starts, nearest)
+        covariances = np.array([part.covariance for part in self.belief.parts])[nearest]
+        modes = list(map(PoseGaussian, *starts, covariances))
+        return modes, self.scores(*starts)[1]
 
     def _refined(
         self, centres: Array, orientations: Array, nearest: Indices
-    ) -> tuple[Array, Array, Array]:
-        """Move poses to where the image and each's ``nearest`` (S,) part of the belief agree;
-        also the covariance (S, 6, 6) there."""
+    ) -> tuple[list[PoseGaussian], Array]:
+        """Move poses to where the image and each's ``nearest`` (S,) part of the belief agree."""
         parts = self.belief.parts
-        turns = np.array([part.rotation for part in parts])
+        means, turns = means_of(parts)
         arms = self.sphere.arm(turns)
         information = np.linalg.inv(np.array([part.covariance for part in parts]))
         of_origins = moved_information(information, arms)
-        means = np.array([part.centre for part in parts]) - arms
         refined = self.sight.refine(
             self.sphere.origins(centres, orientations),
             orientations,
             self.view,
-            PosePrior(means[nearest], turns[nearest], of_origins[nearest]),
+            PosePrior((means - arms)[nearest], turns[nearest], of_origins[nearest]),
             self.parameters.refinement_temper * self.sharpness,
         )
         arms = self.sphere.arm(refined.rotations)
         seen = moved_information(refined.information, -arms)
         covariances = np.asarray(np.linalg.inv(information[nearest] + seen), np.float64)
-        return refined.translations + arms, refined.rotations, covariances
+        modes = list(map(PoseGaussian, refined.translations + arms, refined.rotations, covariances))
+        chosen: list[int] = []
+        for index, mode in enumerate(modes):
+            if not any(self._same(mode, modes[other]) for other in chosen):
+                chosen.append(index)
+        return [modes[index] for index in chosen], refined.log_likelihoods[chosen]
 
-    def _each_once(
-        self, centres: Array, orientations: Array, covariances: Array
-    ) -> list[PoseGaussian]:
-        """Leave out modes at which another one before already is."""
-        modes: list[PoseGaussian] = []
-        for mode in map(PoseGaussian, centres, orientations, covariances):
-            if not any(self._same(mode, other) for other in modes):
-                modes.append(mode)
-        return modes
+    def _tempered(self, seen: Array) -> Array:
+        return self.parameters.image_temper * self.sharpness * seen
 
     def _same(self, one: PoseGaussian, other: PoseGaussian) -> bool:
         apart = one.deviations(other.centre, other.rotation)

@@ -13,11 +13,12 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
+from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, means_of
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.methods.fusion.posterior import ImagePosterior
 from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.frame import Region, SightFrame, prepare
+from inhand_tracker.sight.kernels.spheres_region import spheres_region
 from inhand_tracker.sight.sight import Sight
 from inhand_tracker.sight.support import Support
 from inhand_tracker.sight.view import SightView
@@ -44,16 +45,20 @@ class ImageSearch:
 
         ``joints`` (20, 3) in the camera frame; an image counts by ``sharpness``, from 0 to 1.
         """
-        self._found = self._support = None
+        self._support = None
         hypotheses = belief.sample(self._parameters.hypotheses, self._random)
         region = self._region(hypotheses[0], image.camera)
         if region is None:
+            self._found = None
             return None
         view = self._open(belief.parts[0], image, region, joints)
         posterior, scores = self._posterior(belief, view, hypotheses, sharpness)
-        modes = posterior.modes(*self._starts(posterior, *hypotheses, scores))
-        weighed, seen = posterior.weigh(modes)
-        self._learn_colours(modes, weighed.weights, seen, view.frame)
+        modes, seen = posterior.modes(*self._starts(posterior, *hypotheses, scores))
+        weighed = posterior.weigh(modes, seen)
+        best = int(np.argmax(weighed.weights))
+        shown = seen[best] > self._parameters.learning_log_likelihood
+        rate = self._parameters.learning_rate if shown else 0.0
+        self._learn_colours(modes[best], view.frame, of_object=rate)
         self._found = _Found(modes, posterior.view, self._colours, joints)
         return weighed.moments()
 
@@ -69,25 +74,18 @@ class ImageSearch:
 
     def _region(self, centres: Array, camera: Intrinsics) -> Region | None:
         """The part of the image that hypotheses (P, 3) lie in; None where they are out of it."""
-        pixels = camera.project(centres)
-        seen = np.isfinite(pixels).all(axis=1)
-        if not seen.any():
-            return None
         reach = self._parameters.region_margin * self._sphere.radius
-        around = reach * max(camera.fx, camera.fy) / centres[seen, 2]
-        left, top = (pixels[seen] - around[:, None]).min(axis=0).tolist()
-        right, bottom = (pixels[seen] + around[:, None]).max(axis=0).tolist()
-        if right <= 0.0 or bottom <= 0.0 or left >= camera.width or top >= camera.height:
+        left, top, right, bottom = spheres_region(centres, reach, camera.lens)
+        # Compared so that nothing is there where no centre is before the camera.
+        if not (right > 0.0 and bottom > 0.0 and left < camera.width and top < camera.height):
             return None
         return left, top, right, bottom
 
     def _open(self, guess: PoseGaussian, image: Image, region: Region, joints: Array) -> SightView:
-        """Prepare a region of the image, and learn its surroundings' colours."""
+        """Prepare a region of the image; in the first one the surroundings' colours are learned."""
         frame = prepare(image, region, self._parameters.sight)
-        origin = guess.centre - self._sphere.arm(guess.rotation)
-        self._colours = self._sight.learn(
-            self._colours, frame, origin, guess.rotation, around=self._parameters.around_rate
-        )
+        if self._found is None:
+            self._learn_colours(guess, frame, of_object=0.0)
         return self._sight.view(frame, self._colours, joints)
 
     def _posterior(
@@ -114,7 +112,8 @@ class ImageSearch:
     ) -> tuple[Array, Array]:
         """Poses (S, 3), (S, 4) to refine: the mean of each part believed, and the likeliest of all
         rounds of hypotheses, of which the first are given, (P, 3), (P, 4), and their scores."""
-        parameters, parts = self._parameters, posterior.belief.parts
+        parameters = self._parameters
+        means, turns = means_of(posterior.belief.parts)
         root = posterior.belief.moments().root
         for round_ in range(1, parameters.rounds):
             count = parameters.hypotheses
@@ -128,28 +127,27 @@ class ImageSearch:
             scores = np.concatenate((scores, posterior.scores(nearer, turned, quickly=True)[0]))
         likeliest = np.argsort(scores)[::-1][: parameters.refined_hypotheses]
         return (
-            np.concatenate(([part.centre for part in parts], centres[likeliest])),
-            np.concatenate(([part.rotation for part in parts], orientations[likeliest])),
+            np.concatenate((means, centres[likeliest])),
+            np.concatenate((turns, orientations[likeliest])),
         )
 
-    def _learn_colours(
-        self, modes: list[PoseGaussian], weights: Array, seen: Array, frame: SightFrame
-    ) -> None:
-        """Learn the object's colours at the likeliest mode, where the image supports it enough."""
-        best = int(np.argmax(weights))
-        if seen[best] <= self._parameters.learning_log_likelihood:
-            return
-        origin = modes[best].centre - self._sphere.arm(modes[best].rotation)
-        rate, rotation = self._parameters.learning_rate, modes[best].rotation
-        self._colours = self._sight.learn(self._colours, frame, origin, rotation, of_object=rate)
+    def _learn_colours(self, pose: PoseGaussian, frame: SightFrame, *, of_object: float) -> None:
+        """Learn the surroundings' colours at a pose, and with a share ``of_object`` the object's."""
+        self._colours = self._sight.learn(
+            self._colours,
+            frame,
+            pose.centre - self._sphere.arm(pose.rotation),
+            pose.rotation,
+            of_object=of_object,
+            around=self._parameters.around_rate,
+        )
 
     def _supported(self, found: "_Found") -> Support:
         """The image's support by the colours of training: what was learned since may be another
         thing's."""
         trained = replace(found.colours, of_object=self._sight.start().of_object)
         trained_view = self._sight.view(found.view.frame, trained, found.joints)
-        orientations = np.array([mode.rotation for mode in found.modes])
-        centres = np.array([mode.centre for mode in found.modes])
+        centres, orientations = means_of(found.modes)
         origins = self._sphere.origins(centres, orientations)
         terms = self._sight.log_likelihoods_by_term(origins, orientations, trained_view)
         best = int(np.argmax(sum(terms.values())))

@@ -17,7 +17,7 @@ from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.estimate import AGREEMENT_M, AGREEMENT_RAD, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.kernels.pose_normals import share_near
-from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever
+from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever, means_of
 from inhand_tracker.methods.follower import Follower, FollowingTracker
 from inhand_tracker.methods.fusion.belief import Belief, BodyExpectation, carry_over
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
@@ -135,11 +135,10 @@ class FusionFollower(Follower):
         """Sharpness, from 0 to 1, of an object that moved to where it is expected."""
         if self._before is None:
             return 1.0
-        earlier, now = (
-            image.camera.project(self._sphere.ends(pose))
-            for pose in (self._before.expected, expected)
-        )
-        way = float(np.nan_to_num(np.linalg.norm(now - earlier, axis=1)).max())
+        poses = means_of((self._before.expected, expected))
+        earlier, now = image.camera.project(self._sphere.ends(*poses))
+        squares = np.square(now - earlier).sum(axis=1)
+        way = float(np.sqrt(squares, where=squares >= 0.0, out=np.zeros(len(squares))).max())
         return 1.0 / (1.0 + (way / self._parameters.blurred_pixels) ** 2)
 
     def _state(self, believed: PoseGaussian, *, seen: bool) -> Estimate:

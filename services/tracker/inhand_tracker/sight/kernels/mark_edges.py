@@ -4,7 +4,7 @@ import numpy as np
 from inhand_runtime.compiled import njit
 from numpy.typing import NDArray
 
-from inhand_tracker.geometry.arrays import Bytes
+from inhand_tracker.geometry.arrays import Array, Bytes
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -49,3 +49,19 @@ def mark_edges(
             for channel in range(4):
                 if strengths[channel] >= least:
                     no_edge[channel, row, column] = 0
+
+
+@njit(cache=True, nogil=True)
+def count_distances(distances: Bytes, down: int, every: int, counts: Array) -> None:
+    """Add up in ``counts`` (4, N) how often each distance to the next edge is, in ``distances``
+    (4, H, W).
+
+    One line in ``every`` is looked at, across the channel's edges, as others would fall in with
+    them, or miss them: columns of the channel ``down``, else rows.
+    """
+    channels, height, width = distances.shape
+    for channel in range(channels):
+        rows, columns = (1, every) if channel == down else (every, 1)
+        for row in range(0, height, rows):
+            for column in range(0, width, columns):
+                counts[channel, distances[channel, row, column]] += 1.0
