@@ -139,11 +139,9 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
     return compiled
 
 
-def _vectorised(
-    function: Callable[..., None], layout: str, types: list[str], *, kept: bool
-) -> Any:
+def _vectorised(function: Callable[..., None], layout: str, types: list[str], *, kept: bool) -> Any:
     with _kept_here():
-        made: Any = GUFunc(function, layout, cache=kept, targetoptions={"nopython": True})  # type: ignore[no-untyped-call]
+        made: Any = GUFunc(function, layout, cache=kept, targetoptions={"nopython": True})
         made.add(f"void({', '.join(types)})")
         made.disable_compile()
         return made.build_ufunc()

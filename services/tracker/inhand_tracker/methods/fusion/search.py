@@ -132,7 +132,7 @@ class ImageSearch:
         )
 
     def _learn_colours(self, pose: PoseGaussian, frame: SightFrame, *, of_object: float) -> None:
-        """Learn the surroundings' colours at a pose, and with a share ``of_object`` the object's."""
+        """Learn the surroundings' colours at a pose; a share ``of_object`` of the object's, too."""
         self._colours = self._sight.learn(
             self._colours,
             frame,
