@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Flags
-from inhand_tracker.geometry.kernels.pose_normals import deviations
+from inhand_tracker.geometry.kernels.pose_normals import inverses, squares_by_information
 from inhand_tracker.sight.depth_table import sensor_of
 from inhand_tracker.sight.kernels.gather import GatherSettings
 from inhand_tracker.sight.kernels.inputs import Outlines
@@ -17,8 +17,6 @@ from inhand_tracker.sight.kernels.refine import Priors, Steps, refine
 from inhand_tracker.sight.parameters import SightParameters
 from inhand_tracker.sight.view import SightView
 
-_SIX = np.empty(6)
-"""It tells the kernel how long a deviation is."""
 _REFINED_TERMS = [0, 1, 3]
 """Edges, region and depth; the interior's colours hardly change with a small step."""
 
@@ -35,13 +33,13 @@ class PosePrior:
 
     def reach(self) -> Array:
         """The root mean squares (..., 2) of translation and rotation, in metres and radians."""
-        variances = np.diagonal(np.linalg.inv(self.information), axis1=-2, axis2=-1)
+        variances = np.diagonal(inverses(self.information), axis1=-2, axis2=-1)
         return np.sqrt(variances.reshape(*variances.shape[:-1], 2, 3).sum(axis=-1))
 
     def log_density(self, translations: Array, orientations: Array) -> Array:
-        """The log-density (K,) of poses (K, 3) and (K, 4), up to a constant."""
-        off = deviations(self.translation, self.rotation, translations, orientations, _SIX)
-        return -0.5 * (off[:, None] @ self.information @ off[..., None])[:, 0, 0]
+        """The log-density (..., K) of poses (..., K, 3) and (..., K, 4), up to a constant."""
+        prior = self.translation, self.rotation, self.information
+        return -0.5 * squares_by_information(*prior, translations, orientations)
 
 
 @dataclass(frozen=True)
@@ -80,7 +78,7 @@ class PoseRefiner:
         self._outlines = outlines
         self._thin = thin
         self._wanted = wanted[_REFINED_TERMS]
-        self._returned = returned
+        self._usual = _usual_settings(self._wanted, returned, parameters)
         self._parameters = parameters
         self._damping = np.repeat([parameters.damping_per_m2, parameters.damping_per_rad2], 3)
         steps = parameters.refinement_steps
@@ -137,18 +135,27 @@ class PoseRefiner:
     def _settings(self, view: SightView, trust: float) -> GatherSettings:
         coloured, deep = view.frame.bins is not None, view.frame.depth is not None
         parameters = self._parameters
-        return GatherSettings(
+        return self._usual._replace(
             wanted=self._wanted & [coloured, coloured, deep],
-            returned=self._returned,
             outline_weight=trust * parameters.outline_point_weight,
             surface_weight=trust * parameters.surface_point_weight,
-            sensor=sensor_of(parameters),
-            samples=parameters.outline_samples,
-            least_step_pixels=parameters.least_step_pixels,
-            widest_edge_step=parameters.widest_edge_step,
-            contour_error_m=parameters.contour_error_m,
-            in_front_per_m=parameters.in_front_per_m,
-            behind_per_m=parameters.behind_per_m,
-            colour_weight=parameters.surface_colour_weight,
-            limb_factor=parameters.surface_limb_factor,
         )
+
+
+def _usual_settings(wanted: Flags, returned: float, parameters: SightParameters) -> GatherSettings:
+    """The settings of a frame that shows all and counts wholly."""
+    return GatherSettings(
+        wanted=wanted,
+        returned=returned,
+        outline_weight=parameters.outline_point_weight,
+        surface_weight=parameters.surface_point_weight,
+        sensor=sensor_of(parameters),
+        samples=parameters.outline_samples,
+        least_step_pixels=parameters.least_step_pixels,
+        widest_edge_step=parameters.widest_edge_step,
+        contour_error_m=parameters.contour_error_m,
+        in_front_per_m=parameters.in_front_per_m,
+        behind_per_m=parameters.behind_per_m,
+        colour_weight=parameters.surface_colour_weight,
+        limb_factor=parameters.surface_limb_factor,
+    )

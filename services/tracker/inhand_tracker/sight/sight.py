@@ -169,26 +169,22 @@ class Sight:
         The frame counts by ``trust``: less than 1 where earlier frames showed the same.
         """
         moved = self._refiner.refine((translations, orientations), view, prior, trust)
+        count = len(translations)
         both = (
             np.concatenate((translations, moved.translations)),
             np.concatenate((orientations, moved.rotations)),
         )
-        seen = self.log_likelihood(*both, view)
-        posterior = trust * seen
+        before, after = self.log_likelihood(*both, view).reshape(2, count)
+        gain = trust * (after - before)
         if prior is not None:
-            posterior = posterior + np.concatenate(
-                [
-                    prior.log_density(translations, orientations),
-                    prior.log_density(moved.translations, moved.rotations),
-                ]
-            )
-        count = len(translations)
-        worse = posterior[count:] < posterior[:count]
+            expected = prior.log_density(both[0].reshape(2, -1, 3), both[1].reshape(2, -1, 4))
+            gain = gain + expected[1] - expected[0]
+        worse = gain < 0.0
         return Refined(
             np.where(worse[:, None], translations, moved.translations),
             np.where(worse[:, None], orientations, moved.rotations),
             np.where(worse[:, None, None], 0.0, moved.information),
-            np.where(worse, seen[:count], seen[count:]),
+            np.where(worse, before, after),
         )
 
 

@@ -29,7 +29,7 @@ class PoseWeigher:
     ) -> None:
         self._outlines = outlines
         self._wanted = wanted
-        self._depth_scores = depth_table(*measured, parameters)
+        self._usual = _usual_settings(wanted, measured, parameters)
         self._parameters = parameters
         self._threads = threads
         self._pool = ThreadPoolExecutor(threads)
@@ -59,15 +59,21 @@ class PoseWeigher:
 
     def _settings(self, view: SightView) -> WeighSettings:
         coloured, deep = view.frame.bins is not None, view.frame.depth is not None
-        parameters = self._parameters
-        return WeighSettings(
-            self._wanted & [coloured, coloured, coloured, deep],
-            self._depth_scores,
-            sensor_of(parameters),
-            np.float32(parameters.limb_weight),
-            np.float32(1.0) / np.float32(parameters.usual_pixels),
-            np.float32(parameters.least_outline_scale),
-            np.float32(parameters.most_outline_scale),
-            np.float32(parameters.least_interior_scale),
-            np.float32(parameters.most_interior_scale),
-        )
+        return self._usual._replace(wanted=self._wanted & [coloured, coloured, coloured, deep])
+
+
+def _usual_settings(
+    wanted: Flags, measured: tuple[float, float], parameters: SightParameters
+) -> WeighSettings:
+    """The settings of a frame that shows all."""
+    return WeighSettings(
+        wanted,
+        depth_table(*measured, parameters),
+        sensor_of(parameters),
+        np.float32(parameters.limb_weight),
+        np.float32(1.0) / np.float32(parameters.usual_pixels),
+        np.float32(parameters.least_outline_scale),
+        np.float32(parameters.most_outline_scale),
+        np.float32(parameters.least_interior_scale),
+        np.float32(parameters.most_interior_scale),
+    )

@@ -7,7 +7,7 @@ import numpy as np
 from inhand_runtime.compiled import njit, vectorised
 
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.geometry.kernels.matrices import find_root, solve_lower
+from inhand_tracker.geometry.kernels.matrices import find_root, invert, solve_lower
 from inhand_tracker.geometry.kernels.quaternions import (
     inverse,
     product,
@@ -90,6 +90,35 @@ def roots(matrix: Array, root: Array) -> None:
     root[:] = 0.0
     if not find_root(matrix, root):
         root[:] = np.nan
+
+
+@vectorised("(s,s)->(s,s)")
+def inverses(matrix: Array, inverse: Array) -> None:
+    """Find the inverses of matrices; NaN of one that is not positive definite."""
+    root = np.empty_like(matrix)
+    if find_root(matrix, root):
+        invert(root, inverse)
+    else:
+        inverse[:] = np.nan
+
+
+@vectorised("(v),(q),(s,s),(v),(q)->()")
+def squares_by_information(
+    centre: Array,
+    rotation: Array,
+    information: Array,
+    pose_centre: Array,
+    pose_rotation: Array,
+    square: Array,
+) -> None:
+    """Find the squared Mahalanobis distances of poses by ``information`` (6, 6)."""
+    deviation = np.empty(6)
+    set_deviation(centre, rotation, pose_centre, pose_rotation, deviation)
+    total = 0.0
+    for row in range(6):
+        for column in range(6):
+            total += deviation[row] * information[row, column] * deviation[column]
+    square[0] = total
 
 
 @vectorised("(v),(q),(s,s),(v),(q)->()")

@@ -4,7 +4,7 @@ The same numbers serve every object and every interaction. They were chosen on s
 what one of them is worth on a dataset shows `inhand bench ablation DATASET --vary FIELD=VALUE`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
@@ -42,8 +42,10 @@ class FusionParameters:
     """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
 
     # How an image is searched (search, posterior).
-    hypotheses: int = 250
+    hypotheses: int = 100
     """Number of hypotheses in each round; cost grows with it (`inhand bench tracker`)."""
+    fewest_hypotheses: int = 25
+    """Number of hypotheses in a round that is tried with however little effort."""
     rounds: int = 2
     """Number of rounds of hypotheses; each after the first is nearer to the best so far."""
     best_hypotheses: int = 20
@@ -52,7 +54,7 @@ class FusionParameters:
     """Factor, each round, on the spread of what is believed that new hypotheses are drawn with."""
     refines: bool = True
     """Whether the best hypotheses are refined. False only to show what that is worth."""
-    refined_hypotheses: int = 3
+    refined_hypotheses: int = 1
     """Number of hypotheses, best first, that are refined, beside the mean of each part believed."""
     image_temper: float = 0.4
     """Share of an image's log-likelihood that counts: one frame's errors are the next one's too."""
@@ -85,6 +87,17 @@ class FusionParameters:
     wide. The share of truths within the 90 % region shows it (`inhand evaluate`)."""
     confidence_samples: int = 256
     """Number of poses drawn from an estimate to find its confidence."""
+
+    def with_effort(self, effort: float) -> "FusionParameters":
+        """Return the parameters of a search of which only a share of the work may be done."""
+        if effort >= 1.0:
+            return self
+        fewest = min(self.fewest_hypotheses, self.hypotheses)
+        return replace(
+            self,
+            hypotheses=max(fewest, round(effort * self.hypotheses)),
+            refined_hypotheses=max(1, round(effort * self.refined_hypotheses)),
+        )
 
 
 DEFAULT_FUSION = FusionParameters()

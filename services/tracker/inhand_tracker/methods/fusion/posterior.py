@@ -7,6 +7,7 @@ import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
+from inhand_tracker.geometry.kernels.pose_normals import inverses
 from inhand_tracker.geometry.pose_gaussian import (
     PoseGaussian,
     PoseMixture,
@@ -77,7 +78,7 @@ class ImagePosterior:
         parts = self.belief.parts
         means, turns = means_of(parts)
         arms = self.sphere.arm(turns)
-        information = np.linalg.inv(np.array([part.covariance for part in parts]))
+        information = inverses(np.array([part.covariance for part in parts]))
         of_origins = moved_information(information, arms)
         refined = self.sight.refine(
             self.sphere.origins(centres, orientations),
@@ -88,7 +89,7 @@ class ImagePosterior:
         )
         arms = self.sphere.arm(refined.rotations)
         seen = moved_information(refined.information, -arms)
-        covariances = np.asarray(np.linalg.inv(information[nearest] + seen), np.float64)
+        covariances = inverses(information[nearest] + seen)
         modes = list(map(PoseGaussian, refined.translations + arms, refined.rotations, covariances))
         chosen: list[int] = []
         for index, mode in enumerate(modes):

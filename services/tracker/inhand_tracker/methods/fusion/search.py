@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.geometry.kernels.pose_normals import deviated
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, means_of
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.methods.fusion.posterior import ImagePosterior
@@ -39,20 +39,28 @@ class ImageSearch:
         self._support: Support | None = None
 
     def look(
-        self, belief: PoseMixture, image: Image, joints: Array, sharpness: float
+        self,
+        belief: PoseMixture,
+        image: Image,
+        joints: Array,
+        sharpness: float,
+        effort: float = 1.0,
     ) -> PoseGaussian | None:
         """Return what is believed after a look at the image; None where the object is out of it.
 
-        ``joints`` (20, 3) in the camera frame; an image counts by ``sharpness``, from 0 to 1.
+        ``joints`` (20, 3) in the camera frame; an image counts by ``sharpness``, from 0 to 1; fewer
+        hypotheses are tried with less ``effort`` than 1.
         """
         self._support = None
-        hypotheses = belief.sample(self._parameters.hypotheses, self._random)
+        parameters = self._parameters.with_effort(effort)
+        hypotheses = belief.sample(parameters.hypotheses, self._random)
         region = self._region(hypotheses[0], image.camera)
         if region is None:
             self._found = None
             return None
         view = self._open(belief.parts[0], image, region, joints)
-        posterior, scores = self._posterior(belief, view, hypotheses, sharpness)
+        posterior = ImagePosterior(self._sight, self._sphere, view, belief, sharpness, parameters)
+        posterior, scores = self._compare_unseen(posterior, *hypotheses)
         modes, seen = posterior.modes(*self._starts(posterior, *hypotheses, scores))
         weighed = posterior.weigh(modes, seen)
         best = int(np.argmax(weighed.weights))
@@ -88,31 +96,25 @@ class ImageSearch:
             self._learn_colours(guess, frame, of_object=0.0)
         return self._sight.view(frame, self._colours, joints)
 
-    def _posterior(
-        self,
-        belief: PoseMixture,
-        view: SightView,
-        hypotheses: tuple[Array, Array],
-        sharpness: float,
+    def _compare_unseen(
+        self, posterior: ImagePosterior, centres: Array, orientations: Array
     ) -> tuple[ImagePosterior, Array]:
-        """The posterior in which not to be seen is as likely as to be, of these hypotheses, and
-        their log-posterior (P,)."""
-        parameters = self._parameters
-        weighed = self._sight.weigh(
-            self._sphere.origins(*hypotheses), hypotheses[1], view, quickly=True
-        )
-        trust = parameters.image_temper * max(sharpness, parameters.least_sharpness)
-        view = self._sight.compare_unseen(weighed, view, trust)
-        posterior = ImagePosterior(self._sight, self._sphere, view, belief, sharpness, parameters)
-        scores, _ = posterior.scores_by(weighed, *hypotheses)
-        return posterior, scores
+        """The posterior in which not to be seen is as likely as to be, by poses (P, 3), (P, 4) of
+        what is believed, and their log-posterior (P,)."""
+        origins = self._sphere.origins(centres, orientations)
+        weighed = self._sight.weigh(origins, orientations, posterior.view, quickly=True)
+        sharp = max(posterior.sharpness, self._parameters.least_sharpness)
+        trust = self._parameters.image_temper * sharp
+        view = self._sight.compare_unseen(weighed, posterior.view, trust)
+        posterior = replace(posterior, view=view)
+        return posterior, posterior.scores_by(weighed, centres, orientations)[0]
 
     def _starts(
         self, posterior: ImagePosterior, centres: Array, orientations: Array, scores: Array
     ) -> tuple[Array, Array]:
         """Poses (S, 3), (S, 4) to refine: the mean of each part believed, and the likeliest of all
         rounds of hypotheses, of which the first are given, (P, 3), (P, 4), and their scores."""
-        parameters = self._parameters
+        parameters = posterior.parameters
         means, turns = means_of(posterior.belief.parts)
         root = posterior.belief.moments().root
         for round_ in range(1, parameters.rounds):
@@ -120,8 +122,7 @@ class ImageSearch:
             best = np.resize(np.argsort(scores)[::-1][: parameters.best_hypotheses], count)
             spread = parameters.round_shrinkage**round_
             shifts = spread * self._random.normal(size=(count, 6)) @ root.T
-            nearer = centres[best] + shifts[:, :3]
-            turned = rotations.multiply(rotations.from_vector(shifts[:, 3:]), orientations[best])
+            nearer, turned = deviated(centres[best], orientations[best], shifts)
             centres = np.concatenate((centres, nearer))
             orientations = np.concatenate((orientations, turned))
             scores = np.concatenate((scores, posterior.scores(nearer, turned, quickly=True)[0]))

@@ -127,7 +127,8 @@ class FusionFollower(Follower):
         if self._search is None or image is None:
             return None
         joints = mirror_joints(body.joints) if self._expectation.left_handed else body.joints
-        seen = self._search.look(belief, image, joints, self._sharpness(expected, image))
+        sharpness = self._sharpness(expected, image)
+        seen = self._search.look(belief, image, joints, sharpness, self.effort)
         self._looked = True
         return seen
 
