@@ -21,14 +21,20 @@ def doubled(value):
     return 2.0 * value
 """
 KERNEL = """
-from inhand_runtime.compiled import njit
+import numpy as np
+from inhand_runtime.compiled import njit, vectorised
 from inhand_small.parts import FACTOR, doubled
 @njit(cache=True)
-def kernel(value):
+def scaled(value):
     return FACTOR * doubled(value) + below(value)
 @njit(cache=True)
 def below(value):
     return 0.0 * value
+@vectorised("(n)->()")
+def sums(values, total):
+    total[0] = values.sum()
+def kernel(value):
+    return float(sums(np.array([scaled(value), 0.0])))
 """
 CALL = """
 import json, sys
@@ -111,13 +117,14 @@ def test_a_folder_that_cannot_be_written_is_one_warning(small: Path) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("kernel", ["kernel.scaled", "kernel.sums", "guf-kernel.sums"])
 @pytest.mark.parametrize("suffix", ["nbi", "nbc"])
 @pytest.mark.parametrize("left", [0, 20])
 def test_a_damaged_file_is_compiled_again_with_a_warning(
-    small: Path, tmp_path: Path, suffix: str, left: int
+    small: Path, tmp_path: Path, kernel: str, suffix: str, left: int
 ) -> None:
     _start(small.parent, tmp_path / "cache")
-    for file in (tmp_path / "cache").rglob(f"kernel.kernel*.{suffix}"):
+    for file in (tmp_path / "cache").rglob(f"{kernel}*.{suffix}"):
         file.write_bytes(file.read_bytes()[:left])
     answer, said = _start(small.parent, tmp_path / "cache")
     assert answer["result"] == 6.0
@@ -125,6 +132,20 @@ def test_a_damaged_file_is_compiled_again_with_a_warning(
     assert "Traceback" not in said
     after, said = _start(small.parent, tmp_path / "cache")
     assert (after["cache_hits"], after["cache_misses"], said) == (1, 0, "")
+
+
+@pytest.mark.long
+def test_a_loop_that_belongs_to_another_compilation_is_compiled_again(
+    small: Path, tmp_path: Path
+) -> None:
+    """As after two processes that started at once, of which each kept one half."""
+    _start(small.parent, tmp_path / "cache")
+    for file in (tmp_path / "cache").rglob("kernel.sums*"):
+        file.unlink()
+    other = "import numba; numba.njit(lambda: 1)(); " + SMALL.lstrip()
+    for _ in range(2):
+        answer, said = _start(small.parent, tmp_path / "cache", other)
+        assert (answer["result"], said) == (6.0, "")
 
 
 @pytest.mark.long

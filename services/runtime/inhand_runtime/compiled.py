@@ -10,7 +10,6 @@ import hashlib
 import inspect
 import logging
 import numbers
-import pickle
 import re
 import sys
 import tempfile
@@ -25,6 +24,7 @@ import numpy as np
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.np.ufunc.gufunc import GUFunc
+from numba.np.ufunc.wrappers import GufWrapperCache
 
 from inhand_runtime.cache_folder import cache_folder
 
@@ -128,23 +128,41 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
         types.append("float64" if scalar else f"float64[{axes}]")
 
     def compiled(function: Callable[..., None]) -> Any:
-        try:
-            return _vectorised(function, layout, types, kept=KEPT)
-        except (OSError, pickle.UnpicklingError, EOFError, AttributeError, ValueError) as error:
-            if not KEPT:
-                raise
-            log.warning("a file in %s is damaged (%s): not used", FOLDER, error)
-            return _vectorised(function, layout, types, kept=False)
+        with _kept_here():
+            try:
+                return _vectorised(function, layout, types)
+            except Exception as error:
+                if not KEPT:
+                    raise
+                log.warning("a file in %s is damaged (%s): compiled again", FOLDER, error)
+                for cache in (FunctionCache(function), GufWrapperCache(function)):  # type: ignore[no-untyped-call]
+                    cache.flush()
+                return _vectorised(function, layout, types)
 
     return compiled
 
 
-def _vectorised(function: Callable[..., None], layout: str, types: list[str], *, kept: bool) -> Any:
-    with _kept_here():
-        made: Any = GUFunc(function, layout, cache=kept, targetoptions={"nopython": True})
-        made.add(f"void({', '.join(types)})")
-        made.disable_compile()
-        return made.build_ufunc()
+def _vectorised(function: Callable[..., None], layout: str, types: list[str]) -> Any:
+    made: Any = GUFunc(function, layout, cache=KEPT, targetoptions={"nopython": True})
+    builder = made.gufunc_builder
+    build = builder.build
+
+    def build_pair(compiled: Any) -> Any:
+        """Build the loop over arrays, which Numba keeps apart from the function.
+
+        The one that was kept may be of another process's compilation than the function is. Numba
+        would then call a function at address 0: it is compiled again instead.
+        """
+        built = build(compiled)
+        if built[1]:
+            return built
+        GufWrapperCache(function).flush()
+        return build(compiled)
+
+    builder.build = build_pair
+    made.add(f"void({', '.join(types)})")
+    made.disable_compile()
+    return made.build_ufunc()
 
 
 @contextmanager

@@ -72,8 +72,22 @@ def test_each_round_weighs_as_many_hypotheses_and_gets_nearer() -> None:
         parameters = replace(DEFAULT_FUSION, rounds=rounds)
         errors.append(away(looked(sight, parameters)))
         counts.append(sight.weighed)
-    assert np.diff(counts).tolist() == [250, 250]
+    assert np.diff(counts).tolist() == 2 * [DEFAULT_FUSION.hypotheses]
     assert errors[2] < errors[0]
+
+
+def weighed_with(effort: float, parameters: FusionParameters = DEFAULT_FUSION) -> int:
+    sight = GaussianSight()
+    search(sight, parameters).look(belief(TRUE.centre), BLANK, STANDING, 1.0, effort)
+    return sight.weighed
+
+
+def test_less_effort_tries_fewer_hypotheses_but_never_too_few() -> None:
+    whole, half, least = (weighed_with(effort) for effort in (1.0, 0.5, 1e-3))
+    assert half == pytest.approx(0.5 * whole, abs=2)
+    assert least == 2 * DEFAULT_FUSION.fewest_hypotheses
+    few = replace(DEFAULT_FUSION, hypotheses=10)
+    assert weighed_with(1e-3, few) == weighed_with(1.0, few) == 20
 
 
 def test_without_refinement_poses_stay_hypotheses() -> None:
