@@ -100,7 +100,6 @@ VARIANTS: tuple[FusionVariant, ...] = (
     FusionVariant(
         "search", "an object that was left", parameters=replace(DEFAULT_FUSION, leaves=False)
     ),
-    FusionVariant("search", "a second, nearer round", parameters=replace(DEFAULT_FUSION, rounds=1)),
     FusionVariant("search", "refinement", parameters=replace(DEFAULT_FUSION, refines=False)),
 )
 

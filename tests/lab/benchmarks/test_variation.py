@@ -48,7 +48,7 @@ def test_every_parameter_can_be_varied(name: str) -> None:
         ("image_temper=-1", "'-1' is no positive number"),
         ("image_temper=nan", "'nan' is no positive number"),
         ("image_temper=", "'' is no positive number"),
-        ("rounds=1.5", "'1.5' is no positive whole number"),
+        ("looks_to_learn=1.5", "'1.5' is no positive whole number"),
         ("hypotheses=0", "'0' is no positive whole number"),
         ("carries=maybe", "'maybe' is neither true nor false"),
     ],

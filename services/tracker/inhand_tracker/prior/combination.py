@@ -37,8 +37,8 @@ def products_at(local: Array, products: Singles) -> Array:
 def combination_weights(products: Array, distrust: float = DEFAULT_PRIOR.distrust) -> Array:
     """The weights (..., E) of E predictions that keep the fused error least, none below 0.
 
-    Their errors have the inner products (..., E, E); to each its own is added once more, times
-    ``distrust``.
+    Their errors have the inner products (..., E, E), of which the lower triangles are read; to each
+    its own is added once more, times ``distrust``.
     """
     return kernels.best_weights(products, distrust)
 

@@ -7,11 +7,11 @@ the landmarks.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
+from inhand_tracker.prior.kernels.distances import distances_of
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR_LEARNING, PriorLearningParameters
 
 CHUNK = 8192
@@ -28,15 +28,13 @@ class KernelRidge:
     coefficients: Array
     offset: Array
 
-    @cached_property
-    def _landmarks(self) -> tuple[Array, Array]:
-        """The landmarks (L, D) in double precision, and their squares (L,)."""
-        landmarks = self.landmarks.astype(np.float64)
-        return landmarks, np.square(landmarks).sum(axis=1)
-
     def kernel(self, inputs: Singles) -> Array:
-        """The kernel (..., L) of inputs (..., D): 1 at a landmark, 0 far from it."""
-        return np.exp(_squared_distances(inputs, *self._landmarks) / (-2.0 * self.width))
+        """The kernel (T, L) of inputs (T, D): 1 at a landmark, 0 far from it."""
+        return gaussian(inputs, self.landmarks, self.width)
+
+    def kernel_of(self, one: Singles) -> Array:
+        """The kernel (L,) of one input (D,), many times faster than that of many."""
+        return np.exp(distances_of(one, self.landmarks) / (-2.0 * self.width))
 
     def predict(self, inputs: Singles) -> Array:
         """(..., M) for inputs (..., D)."""
@@ -53,17 +51,12 @@ def gaussian(inputs: Singles, landmarks: Singles, width: float) -> Array:
 
 
 def squared_distances(inputs: Singles, others: Singles) -> Array:
-    """Squared distances (..., L) of inputs (..., D) from others (L, D)."""
-    landmarks = others.astype(np.float64)
-    return _squared_distances(inputs, landmarks, np.square(landmarks).sum(axis=1))
-
-
-def _squared_distances(inputs: Singles, landmarks: Array, squares: Array) -> Array:
-    """Squared distances (..., L), in double precision, so that those of nearly equal poses are not
+    """Squared distances (T, L), in double precision, so that those of nearly equal poses are not
     below 0."""
-    one = inputs.astype(np.float64)
-    sums = np.square(one).sum(axis=-1)[..., None] + squares
-    return np.maximum(sums - 2.0 * (one @ landmarks.T), 0.0)
+    one, other = inputs.astype(np.float64), others.astype(np.float64)
+    products = one @ other.T
+    sums = np.square(one).sum(axis=1)[:, None] + np.square(other).sum(axis=1)
+    return np.maximum(sums - 2.0 * products, 0.0)
 
 
 def fit(

@@ -22,7 +22,6 @@ from inhand_tracker.prior.combination import (
     covariance_at,
     fuse,
     locality,
-    products_at,
     rotation_error,
 )
 from inhand_tracker.prior.kernel_ridge import KernelRidge
@@ -56,6 +55,23 @@ class Prior:
     persistence_s: float
 
     @cached_property
+    def _triangles(self) -> Singles:
+        """The lower triangles (L, 2 T) of both products side by side: they are symmetric, and what
+        is read for each body is half as much."""
+        rows, columns = np.tril_indices(self.translation_products.shape[-1])
+        both = self.translation_products, self.rotation_products
+        return np.concatenate([products[:, rows, columns] for products in both], axis=1)
+
+    def products_at(self, local: Array) -> Array:
+        """The lower triangles (2, E, E) of both products that are expected, by landmarks' shares
+        (L,)."""
+        count = self.translation_products.shape[-1]
+        expected = np.zeros((2, count, count))
+        rows, columns = np.tril_indices(count)
+        expected[:, rows, columns] = (local.astype(np.float32) @ self._triangles).reshape(2, -1)
+        return expected
+
+    @cached_property
     def landmark_targets(self) -> Array:
         """(L, V A, 12): the object in each anchor at each landmark, as each regression has it."""
         fitted = [one.predict(one.landmarks) for one in self.regressions]
@@ -85,7 +101,7 @@ def predict(
     """Predict the object's pose for one body: descriptions (1, D) of each view, its anchors and
     height."""
     kernels = [
-        regression.kernel(description[0])
+        regression.kernel_of(description[0])
         for regression, description in zip(prior.regressions, descriptions, strict=True)
     ]
     nearest = [float(kernel.max()) for kernel in kernels]
@@ -95,8 +111,7 @@ def predict(
         _predicted(prior, kernels, stretches),
         anchors,
         height,
-        products_at(local, prior.translation_products),
-        products_at(local, prior.rotation_products),
+        prior.products_at(local),
     )
     centre, rotation = here.fused(prior.spread, parameters.distrust)
     doubt = min(max(stretches[0], 1.0), parameters.most_stretched) ** 2
@@ -116,23 +131,19 @@ def predict(
 class _Predictions:
     """All predictions for one body, E of them.
 
-    ``predicted`` (E, 12) in ``anchors`` (A,), and the expected inner products (E, E) of the
-    errors of translations and rotations.
+    ``predicted`` (E, 12) in ``anchors`` (A,), and the lower triangles (2, E, E) of the expected
+    inner ``products`` of the errors of translations and rotations.
     """
 
     predicted: Array
     anchors: Anchors
     height: float
-    translation_products: Array
-    rotation_products: Array
+    products: Array
 
     def fused(self, spread: Array, distrust: float) -> tuple[Array, Array]:
         """The centre (3,) and rotation (3, 3) of their best combination."""
-        weights = (
-            combination_weights(self.translation_products, distrust),
-            combination_weights(self.rotation_products, distrust),
-        )
-        return fuse(self.predicted, self.anchors, self.height, weights, spread)
+        weights = combination_weights(self.products, distrust)
+        return fuse(self.predicted, self.anchors, self.height, (weights[0], weights[1]), spread)
 
     def taken_along(self, novelty: float, nearest: Array) -> "_Predictions":
         """The same for a new body, the more different the newer it is, ``novelty`` from 0 to 1.
@@ -147,7 +158,7 @@ class _Predictions:
         return replace(
             self,
             predicted=self.predicted + novelty * (nearest - self.predicted),
-            translation_products=worse[:, None] * self.translation_products * worse,
+            products=np.stack((worse[:, None] * self.products[0] * worse, self.products[1])),
         )
 
 

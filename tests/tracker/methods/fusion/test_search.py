@@ -17,7 +17,6 @@ CAMERA = Intrinsics(260.0, 260.0, 159.5, 119.5, 320, 240)
 BLANK = Image(None, CAMERA, None, np.zeros((240, 320, 3), np.uint8))
 AWAY = np.array([0.10, 0.05, -0.08])
 SPHERE = BoundingSphere(np.zeros(3), 0.1)
-ONE_ROUND = replace(DEFAULT_FUSION, rounds=1)
 
 
 def belief(centre: np.ndarray) -> PoseMixture:
@@ -65,17 +64,6 @@ def test_an_image_counts_by_its_temper_and_never_for_nothing() -> None:
     assert sight.trusts == pytest.approx([0.4, 0.2, 0.4e-3])
 
 
-def test_each_round_weighs_as_many_hypotheses_and_gets_nearer() -> None:
-    counts, errors = [], []
-    for rounds in (1, 2, 3):
-        sight = GaussianSight(refines=False)
-        parameters = replace(DEFAULT_FUSION, rounds=rounds)
-        errors.append(away(looked(sight, parameters)))
-        counts.append(sight.weighed)
-    assert np.diff(counts).tolist() == 2 * [DEFAULT_FUSION.hypotheses]
-    assert errors[2] < errors[0]
-
-
 def weighed_with(effort: float, parameters: FusionParameters = DEFAULT_FUSION) -> int:
     sight = GaussianSight()
     search(sight, parameters).look(belief(TRUE.centre), BLANK, STANDING, 1.0, effort)
@@ -85,13 +73,13 @@ def weighed_with(effort: float, parameters: FusionParameters = DEFAULT_FUSION) -
 def test_less_effort_tries_fewer_hypotheses_but_never_too_few() -> None:
     whole, half, least = (weighed_with(effort) for effort in (1.0, 0.5, 1e-3))
     assert half == pytest.approx(0.5 * whole, abs=2)
-    assert least == 2 * DEFAULT_FUSION.fewest_hypotheses
+    assert least == DEFAULT_FUSION.fewest_hypotheses
     few = replace(DEFAULT_FUSION, hypotheses=10)
-    assert weighed_with(1e-3, few) == weighed_with(1.0, few) == 20
+    assert weighed_with(1e-3, few) == weighed_with(1.0, few) == 10
 
 
 def test_without_refinement_poses_stay_hypotheses() -> None:
-    parameters = replace(ONE_ROUND, refines=False)
+    parameters = replace(DEFAULT_FUSION, refines=False)
     assert 0.0 < away(looked(GaussianSight(), parameters)) < np.linalg.norm(AWAY)
 
 

@@ -42,16 +42,10 @@ class FusionParameters:
     """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
 
     # How an image is searched (search, posterior).
-    hypotheses: int = 100
-    """Number of hypotheses in each round; cost grows with it (`inhand bench tracker`)."""
+    hypotheses: int = 150
+    """Number of hypotheses; cost grows with it (`inhand bench tracker`)."""
     fewest_hypotheses: int = 25
-    """Number of hypotheses in a round that is tried with however little effort."""
-    rounds: int = 2
-    """Number of rounds of hypotheses; each after the first is nearer to the best so far."""
-    best_hypotheses: int = 20
-    """Number of hypotheses, best first, around which the next round is drawn."""
-    round_shrinkage: float = 0.35
-    """Factor, each round, on the spread of what is believed that new hypotheses are drawn with."""
+    """Number of hypotheses that are tried with however little effort."""
     refines: bool = True
     """Whether the best hypotheses are refined. False only to show what that is worth."""
     refined_hypotheses: int = 1
@@ -74,10 +68,12 @@ class FusionParameters:
     """Radians within which two refined poses are the same one, if they agree in translation."""
 
     # What an image teaches (search).
-    around_rate: float = 0.3
-    """Share of the newest frame in the learned colours of the surroundings."""
-    learning_rate: float = 0.05
-    """Share of the newest frame in the learned colours of the object."""
+    looks_to_learn: int = 2
+    """Number of images of which one teaches colours."""
+    around_rate: float = 0.5
+    """Share of that image in the learned colours of the surroundings."""
+    learning_rate: float = 0.1
+    """Share of that image in the learned colours of the object."""
     learning_log_likelihood: float = 3.0
     """Log-likelihood ratio by which an image must support an estimate to teach its colours."""
 

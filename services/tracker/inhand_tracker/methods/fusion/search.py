@@ -1,7 +1,7 @@
 """Looking for an object in an image: hypotheses from what is believed, weighed by what is seen.
 
-The image weighs hypotheses (``posterior``), more are tried near the likeliest, and the best of all
-are refined.
+The image weighs hypotheses (``posterior``), and the likeliest of them are refined, beside what was
+believed.
 """
 
 from dataclasses import dataclass, replace
@@ -12,7 +12,6 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.geometry.kernels.pose_normals import deviated
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, means_of
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.methods.fusion.posterior import ImagePosterior
@@ -35,6 +34,7 @@ class ImageSearch:
         self._parameters = parameters
         self._random = np.random.default_rng(seed)
         self._colours = sight.start()
+        self._looks = 0
         self._found: _Found | None = None
         self._support: Support | None = None
 
@@ -63,10 +63,12 @@ class ImageSearch:
         posterior, scores = self._compare_unseen(posterior, *hypotheses)
         modes, seen = posterior.modes(*self._starts(posterior, *hypotheses, scores))
         weighed = posterior.weigh(modes, seen)
-        best = int(np.argmax(weighed.weights))
-        shown = seen[best] > self._parameters.learning_log_likelihood
-        rate = self._parameters.learning_rate if shown else 0.0
-        self._learn_colours(modes[best], view.frame, of_object=rate)
+        if self._looks % parameters.looks_to_learn == 0:
+            best = int(np.argmax(weighed.weights))
+            shown = seen[best] > parameters.learning_log_likelihood
+            rate = parameters.learning_rate if shown else 0.0
+            self._learn_colours(modes[best], view.frame, of_object=rate)
+        self._looks += 1
         self._found = _Found(modes, posterior.view, self._colours, joints)
         return weighed.moments()
 
@@ -112,21 +114,10 @@ class ImageSearch:
     def _starts(
         self, posterior: ImagePosterior, centres: Array, orientations: Array, scores: Array
     ) -> tuple[Array, Array]:
-        """Poses (S, 3), (S, 4) to refine: the mean of each part believed, and the likeliest of all
-        rounds of hypotheses, of which the first are given, (P, 3), (P, 4), and their scores."""
-        parameters = posterior.parameters
+        """Poses (S, 3), (S, 4) to refine: the mean of each part believed, and the likeliest of
+        hypotheses (P, 3), (P, 4) by their scores (P,)."""
         means, turns = means_of(posterior.belief.parts)
-        root = posterior.belief.moments().root
-        for round_ in range(1, parameters.rounds):
-            count = parameters.hypotheses
-            best = np.resize(np.argsort(scores)[::-1][: parameters.best_hypotheses], count)
-            spread = parameters.round_shrinkage**round_
-            shifts = spread * self._random.normal(size=(count, 6)) @ root.T
-            nearer, turned = deviated(centres[best], orientations[best], shifts)
-            centres = np.concatenate((centres, nearer))
-            orientations = np.concatenate((orientations, turned))
-            scores = np.concatenate((scores, posterior.scores(nearer, turned, quickly=True)[0]))
-        likeliest = np.argsort(scores)[::-1][: parameters.refined_hypotheses]
+        likeliest = np.argsort(scores)[::-1][: posterior.parameters.refined_hypotheses]
         return (
             np.concatenate((means, centres[likeliest])),
             np.concatenate((turns, orientations[likeliest])),

@@ -3,6 +3,7 @@
 What is believed before an image is seen is ``belief``'s, the search in it ``search``'s.
 """
 
+import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cache
@@ -139,7 +140,7 @@ class FusionFollower(Follower):
         poses = means_of((self._before.expected, expected))
         earlier, now = image.camera.project(self._sphere.ends(*poses))
         squares = np.square(now - earlier).sum(axis=1)
-        way = float(np.sqrt(squares, where=squares >= 0.0, out=np.zeros(len(squares))).max())
+        way = math.sqrt(squares.max(initial=0.0, where=squares >= 0.0))
         return 1.0 / (1.0 + (way / self._parameters.blurred_pixels) ** 2)
 
     def _state(self, believed: PoseGaussian, *, seen: bool) -> Estimate:

@@ -1,0 +1,23 @@
+"""Squared distances of one body from landmarks."""
+
+import numpy as np
+from inhand_runtime.compiled import njit
+
+from inhand_tracker.geometry.arrays import Array, Singles
+
+
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})
+def distances_of(one: Singles, landmarks: Singles) -> Array:
+    """Return the squared distances (L,) of (D,) from landmarks (L, D).
+
+    Differences are squared, not squares subtracted: so single precision does, which reads half as
+    much.
+    """
+    distances = np.empty(len(landmarks))
+    for landmark in range(len(landmarks)):
+        square = np.float32(0.0)
+        for index in range(len(one)):
+            off = one[index] - landmarks[landmark, index]
+            square += off * off
+        distances[landmark] = square
+    return distances
