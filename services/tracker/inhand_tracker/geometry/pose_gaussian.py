@@ -15,7 +15,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels import pose_normals as kernels
 from inhand_tracker.geometry.weights import normalised_weights
 
-_SIX = np.empty(6)
+SIX = np.empty(6)
 """It tells kernels how long a deviation is."""
 
 
@@ -34,7 +34,7 @@ class PoseGaussian:
 
     def deviations(self, centres: Array, orientations: Array) -> Array:
         """Deviations (..., 6) of poses (..., 3) and (..., 4) from the mean."""
-        return kernels.deviations(self.centre, self.rotation, centres, orientations, _SIX)
+        return kernels.deviations(self.centre, self.rotation, centres, orientations, SIX)
 
     def deviated(self, deviations: Array) -> tuple[Array, Array]:
         """Give the poses (..., 3) and (..., 4) with deviations (..., 6) from the mean."""

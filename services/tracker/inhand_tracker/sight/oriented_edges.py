@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Bytes, Singles
-from inhand_tracker.sight.kernels.mark_edges import count_distances, mark_edges
+from inhand_tracker.sight.kernels.mark_edges import count_distances, find_distances, mark_edges
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
 CHANNELS = 4
@@ -22,9 +22,6 @@ COUNTED_LINES = 9
 FARTHEST_PIXELS = 7
 """The greatest distance from an edge that is distinguished, in pixels: the scores' columns."""
 
-_CROSS = np.asarray(cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3)), np.uint8)
-_SQUARE = np.ones((3, 3), np.uint8)
-
 
 def edge_distances(grey: Bytes, parameters: SightParameters = DEFAULT_SIGHT) -> Bytes:
     """Find how many pixels away the next edge of each channel is, (4, H, W); 7 for far.
@@ -34,22 +31,17 @@ def edge_distances(grey: Bytes, parameters: SightParameters = DEFAULT_SIGHT) -> 
     across = cv2.Sobel(grey, cv2.CV_16S, 1, 0)
     down = cv2.Sobel(grey, cv2.CV_16S, 0, 1)
     height, width = grey.shape
-    # The channels lie above one another, so far apart that no edge grows into the next one.
-    distances = np.ones((CHANNELS, height + FARTHEST_PIXELS, width), np.uint8)
+    edges = np.zeros((height + 2, width + 2), np.uint8)
     mark_edges(
         np.asarray(across, np.int16),
         np.asarray(down, np.int16),
         parameters.edge_gradient,
         math.cos(math.radians(parameters.edge_agreement_deg)),
-        distances,
+        edges,
     )
-    stacked = distances.reshape(-1, width)
-    left = stacked.copy()
-    for step in range(1, FARTHEST_PIXELS):
-        # A cross and a square in turns grow octagons. Many times faster than a transform.
-        cv2.erode(left, _CROSS if step % 2 else _SQUARE, left)
-        cv2.add(stacked, left, stacked)
-    return np.ascontiguousarray(distances[:, :height])
+    distances = np.empty((CHANNELS, height, width), np.uint8)
+    find_distances(edges, FARTHEST_PIXELS, distances)
+    return distances
 
 
 def edge_scores(distances: Bytes, parameters: SightParameters = DEFAULT_SIGHT) -> Singles:

@@ -78,7 +78,7 @@ class FusionParameters:
     """Log-likelihood ratio by which an image must support an estimate to teach its colours."""
 
     # What is stated (tracker).
-    seen_covariance_scale: float = 0.7
+    seen_covariance_scale: float = 0.8
     """Factor on the covariance of an estimate that used an image: Laplace's approximation is too
     wide. The share of truths within the 90 % region shows it (`inhand evaluate`)."""
     confidence_samples: int = 256

@@ -7,8 +7,9 @@ import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
-from inhand_tracker.geometry.kernels.pose_normals import inverses
+from inhand_tracker.geometry.kernels.pose_normals import deviations, inverses
 from inhand_tracker.geometry.pose_gaussian import (
+    SIX,
     PoseGaussian,
     PoseMixture,
     log_sum,
@@ -76,7 +77,7 @@ class ImagePosterior:
     ) -> tuple[list[PoseGaussian], Array]:
         """Move poses to where the image and each's ``nearest`` (S,) part of the belief agree."""
         parts = self.belief.parts
-        means, turns = means_of(parts)
+        places, turns = means_of(parts)
         arms = self.sphere.arm(turns)
         information = inverses(np.array([part.covariance for part in parts]))
         of_origins = moved_information(information, arms)
@@ -84,25 +85,30 @@ class ImagePosterior:
             self.sphere.origins(centres, orientations),
             orientations,
             self.view,
-            PosePrior((means - arms)[nearest], turns[nearest], of_origins[nearest]),
+            PosePrior((places - arms)[nearest], turns[nearest], of_origins[nearest]),
             self.parameters.refinement_temper * self.sharpness,
         )
         arms = self.sphere.arm(refined.rotations)
         seen = moved_information(refined.information, -arms)
         covariances = inverses(information[nearest] + seen)
-        modes = list(map(PoseGaussian, refined.translations + arms, refined.rotations, covariances))
+        means = refined.translations + arms, refined.rotations
+        chosen = self._each_once(*means)
+        modes = list(map(PoseGaussian, means[0][chosen], means[1][chosen], covariances[chosen]))
+        return modes, refined.log_likelihoods[chosen]
+
+    def _each_once(self, centres: Array, orientations: Array) -> list[int]:
+        """Choose poses (S, 3), (S, 4) of which none is the same as one before."""
+        squares = np.square(
+            deviations(centres[:, None], orientations[:, None], centres, orientations, SIX)
+        )
+        same = (squares[..., :3].sum(axis=-1) < self.parameters.same_mode_m**2) & (
+            squares[..., 3:].sum(axis=-1) < self.parameters.same_mode_rad**2
+        )
         chosen: list[int] = []
-        for index, mode in enumerate(modes):
-            if not any(self._same(mode, modes[other]) for other in chosen):
+        for index, others in enumerate(same):
+            if not others[chosen].any():
                 chosen.append(index)
-        return [modes[index] for index in chosen], refined.log_likelihoods[chosen]
+        return chosen
 
     def _tempered(self, seen: Array) -> Array:
         return self.parameters.image_temper * self.sharpness * seen
-
-    def _same(self, one: PoseGaussian, other: PoseGaussian) -> bool:
-        apart = one.deviations(other.centre, other.rotation)
-        return bool(
-            apart[:3] @ apart[:3] < self.parameters.same_mode_m**2
-            and apart[3:] @ apart[3:] < self.parameters.same_mode_rad**2
-        )

@@ -13,10 +13,11 @@ def mark_edges(
     down: NDArray[np.int16],
     least_gradient: float,
     agreement: float,
-    no_edge: Bytes,
+    edges: Bytes,
 ) -> None:
-    """Set ``no_edge`` (4, H, W) to 0 at edges: where the gradient (``across``, ``down``), (H, W)
-    each, is ``least_gradient`` or more, and greatest along its direction.
+    """Set a bit of ``edges`` (H + 2, W + 2), which has a rim of a pixel, for each of four channels
+    at edges: where the gradient (``across``, ``down``), (H, W) each, is ``least_gradient`` or more,
+    and greatest along its direction.
 
     An edge counts for every channel that its normal agrees with (``agreement``, a cosine).
     """
@@ -48,7 +49,43 @@ def mark_edges(
             least = np.float32(agreement) * np.sqrt(square)
             for channel in range(4):
                 if strengths[channel] >= least:
-                    no_edge[channel, row, column] = 0
+                    edges[row + 1, column + 1] |= np.uint8(1 << channel)
+
+
+@njit(cache=True, nogil=True)
+def find_distances(edges: Bytes, farthest: int, distances: Bytes) -> None:
+    """Fill ``distances`` (4, H, W) with the steps to the next edge of each channel, ``farthest`` at
+    the most, by the bits of ``edges`` (H + 2, W + 2), which are used up.
+
+    Edges of all channels grow at once: to the four neighbours and to all eight in turns, so that
+    they grow as octagons.
+    """
+    height, width = distances.shape[1:]
+    grown = np.zeros_like(edges)
+    distances[:] = 0
+    for step in range(farthest):
+        for row in range(height):
+            here = edges[row + 1]
+            for channel in range(4):
+                line = distances[channel, row]
+                for column in range(width):
+                    line[column] += np.uint8(1) - ((here[column + 1] >> channel) & np.uint8(1))
+        for row in range(height):
+            above, here, below, out = edges[row], edges[row + 1], edges[row + 2], grown[row + 1]
+            for column in range(width):
+                out[column + 1] = (
+                    here[column]
+                    | here[column + 1]
+                    | here[column + 2]
+                    | above[column + 1]
+                    | below[column + 1]
+                )
+            if step % 2 == 1:
+                for column in range(width):
+                    out[column + 1] |= (
+                        above[column] | above[column + 2] | below[column] | below[column + 2]
+                    )
+        edges, grown = grown, edges
 
 
 @njit(cache=True, nogil=True)
