@@ -72,18 +72,27 @@ def find_distances(edges: Bytes, farthest: int, distances: Bytes) -> None:
                     line[column] += np.uint8(1) - ((here[column + 1] >> channel) & np.uint8(1))
         for row in range(height):
             above, here, below, out = edges[row], edges[row + 1], edges[row + 2], grown[row + 1]
-            for column in range(width):
-                out[column + 1] = (
-                    here[column]
-                    | here[column + 1]
-                    | here[column + 2]
-                    | above[column + 1]
-                    | below[column + 1]
-                )
-            if step % 2 == 1:
+            if step % 2 == 0:
                 for column in range(width):
-                    out[column + 1] |= (
-                        above[column] | above[column + 2] | below[column] | below[column + 2]
+                    out[column + 1] = (
+                        here[column]
+                        | here[column + 1]
+                        | here[column + 2]
+                        | above[column + 1]
+                        | below[column + 1]
+                    )
+            else:
+                for column in range(width):
+                    out[column + 1] = (
+                        here[column]
+                        | here[column + 1]
+                        | here[column + 2]
+                        | above[column]
+                        | above[column + 1]
+                        | above[column + 2]
+                        | below[column]
+                        | below[column + 1]
+                        | below[column + 2]
                     )
         edges, grown = grown, edges
 
