@@ -36,11 +36,6 @@ class PoseGaussian:
         """Deviations (..., 6) of poses (..., 3) and (..., 4) from the mean."""
         return kernels.deviations(self.centre, self.rotation, centres, orientations, SIX)
 
-    def deviated(self, deviations: Array) -> tuple[Array, Array]:
-        """Give the poses (..., 3) and (..., 4) with deviations (..., 6) from the mean."""
-        poses: tuple[Array, Array] = kernels.deviated(self.centre, self.rotation, deviations)
-        return poses
-
     def square_distance(self, other: "PoseGaussian") -> float:
         """Squared Mahalanobis distance of another one's mean, by this covariance."""
         mean = self.centre, self.rotation, self.root

@@ -1,7 +1,8 @@
 import kernel_arrays as arrays
 import numpy as np
 import pytest
-from inhand_tracker.sight.kernels.gather import Equations, GatherSettings, gather
+from inhand_tracker.sight.kernels.equations import Equations
+from inhand_tracker.sight.kernels.gather import GatherSettings, gather
 
 REACH = 0.02, 0.1
 SETTINGS = GatherSettings(

@@ -76,14 +76,6 @@ def deviations(
     set_deviation(centre, rotation, pose_centre, pose_rotation, deviation)
 
 
-@vectorised("(v),(q),(s)->(v),(q)")
-def deviated(
-    centre: Array, rotation: Array, deviation: Array, pose_centre: Array, pose_rotation: Array
-) -> None:
-    """Find poses (3,) and (4,) by their deviations (6,) from means."""
-    set_deviated(centre, rotation, deviation, pose_centre, pose_rotation)
-
-
 @vectorised("(s,s)->(s,s)")
 def roots(matrix: Array, root: Array) -> None:
     """Find the triangular roots of matrices; NaN of one that is not positive definite."""

@@ -12,11 +12,9 @@ from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array, Flags, Singles
 from inhand_tracker.sight.kernels import projection
+from inhand_tracker.sight.kernels.equations import FAST, Equations, add, exponential
 from inhand_tracker.sight.kernels.inputs import Outlines, ScoredPixels, Sensor
 from inhand_tracker.sight.kernels.projection import Matrix
-
-FAST = {"nsz", "arcp", "contract", "afn", "reassoc"}
-"""What compiled code may make of sums and products to be fast; not a number stays one."""
 
 
 class GatherSettings(NamedTuple):
@@ -37,14 +35,6 @@ class GatherSettings(NamedTuple):
     behind_per_m: float
     colour_weight: float
     limb_factor: float
-
-
-class Equations(NamedTuple):
-    """The Gauss-Newton equations of K poses: ``information`` (K, 6, 6) and ``gradients`` (K, 6),
-    for a translation and then a rotation vector on the left, both in the camera frame."""
-
-    information: Array
-    gradients: Array
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
@@ -132,7 +122,7 @@ def _gather_outline(
             continue
         # The pixel's displacement along (nx, ny) by a displacement of the point.
         across = nx * fx / pz, ny * fy / pz, -(nx * fx * px + ny * fy * py) / (pz * pz)
-        _add(equation, across, arm, mean, settings.outline_weight * certainty)
+        add(equation, across, arm, mean, settings.outline_weight * certainty)
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
@@ -191,7 +181,7 @@ def _outline_offset(
         before += 2.0 * middle
         most = max(most, log_posterior[sample])
     for sample in range(2 * samples + 1):
-        within[sample] = _exponential(log_posterior[sample] - most)
+        within[sample] = exponential(log_posterior[sample] - most)
     mass = mean = square = 0.0
     for sample in range(2 * samples + 1):
         away = (sample - samples) * step
@@ -229,7 +219,7 @@ def _gather_surface(
         error = measured - pz
         noise = _noise(pz, settings.sensor)
         deviation = np.sqrt(noise * noise + reach * reach / 3.0)
-        near = _exponential(-0.5 * error * error / (deviation * deviation)) / (2.5066 * deviation)
+        near = exponential(-0.5 * error * error / (deviation * deviation)) / (2.5066 * deviation)
         density = settings.in_front_per_m if error < 0.0 else settings.behind_per_m
         other = density / max(settings.returned, 0.01)
         if settings.wanted[1]:
@@ -245,20 +235,7 @@ def _gather_surface(
         residual = share * (across[0] * px + across[1] * py + across[2] * pz)
         spread = deviation * max(abs(across[2]), 0.2)
         certainty = near / (near + other) / (spread * spread)
-        _add(equation, across, arm, residual, settings.surface_weight * certainty)
-
-
-@njit(cache=True, nogil=True, inline="always", fastmath=FAST)
-def _exponential(x: float) -> float:
-    """Return eˣ of a number up to 0, to 4e-4 of it (1e-6 above -5); below -20 that of -20.
-
-    Several at once are many times faster than the exact function's.
-    """
-    y = max(x, -20.0) / 256.0
-    power = 1.0 + y * (1.0 + y * (0.5 + y / 6.0))
-    for _ in range(8):
-        power *= power
-    return power
+        add(equation, across, arm, residual, settings.surface_weight * certainty)
 
 
 @njit(cache=True, nogil=True, inline="always", fastmath=FAST)
@@ -294,28 +271,3 @@ def _reach(arm: tuple[float, float, float], most: tuple[float, float]) -> float:
 @njit(cache=True, nogil=True, inline="always", fastmath=FAST)
 def _noise(depth: float, sensor: Sensor) -> float:
     return projection.depth_noise(sensor.noise_m, sensor.noise_per_m, depth)
-
-
-@njit(cache=True, nogil=True, inline="always", fastmath=FAST)
-def _add(
-    equation: tuple[Array, Array],
-    across: tuple[float, float, float],
-    arm: tuple[float, float, float],
-    residual: float,
-    weight: float,
-) -> None:
-    """Add one measurement: the point at ``arm`` from the origin is off by ``residual`` along
-    ``across``."""
-    information, gradient = equation
-    row = (
-        across[0],
-        across[1],
-        across[2],
-        arm[1] * across[2] - arm[2] * across[1],
-        arm[2] * across[0] - arm[0] * across[2],
-        arm[0] * across[1] - arm[1] * across[0],
-    )
-    for i in range(6):
-        gradient[i] += weight * residual * row[i]
-        for j in range(6):
-            information[i, j] += weight * row[i] * row[j]

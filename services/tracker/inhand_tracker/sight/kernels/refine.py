@@ -8,7 +8,8 @@ from inhand_runtime.compiled import njit
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels.matrices import find_root, solve
 from inhand_tracker.geometry.kernels.pose_normals import set_deviated, set_deviation
-from inhand_tracker.sight.kernels.gather import Equations, GatherSettings, gather
+from inhand_tracker.sight.kernels.equations import Equations
+from inhand_tracker.sight.kernels.gather import GatherSettings, gather
 from inhand_tracker.sight.kernels.inputs import Outlines, ScoredPixels
 
 
