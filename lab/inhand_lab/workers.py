@@ -25,6 +25,17 @@ def usable_cores() -> int:
     return len(os.sched_getaffinity(0))
 
 
+@contextmanager
+def on_one_core() -> Iterator[None]:
+    """Run a block on one of the cores that this process may use."""
+    usable = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {min(usable)})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, usable)
+
+
 def in_processes(
     function: Callable[[Task], Result],
     tasks: Sequence[Task],

@@ -10,6 +10,53 @@ import numpy as np
 
 
 @dataclass(frozen=True)
+class FramePeopleParameters:
+    """The simulated people on whom whole frames are timed; the first is tracked, the others are
+    learned from."""
+
+    seed: int = 0
+    """Seed of the simulated people."""
+    people: int = 4
+    """Number of simulated people."""
+    frames: int = 120
+    """Number of frames of each recording."""
+
+
+@dataclass(frozen=True)
+class ComparisonParameters:
+    """How this code is compared with another checkout's."""
+
+    people: FramePeopleParameters = FramePeopleParameters()
+    """Who is tracked and learned from."""
+    interactions: tuple[str, ...] = ("drinkFromMug", "hammerNail")
+    """What is learned; the first is what the tracked person does."""
+    turns: int = 5
+    """Number of times that each code is measured."""
+    first_frames: int = 15
+    """Number of frames at the beginning that do not count: what is compiled is loaded then."""
+
+
+@dataclass(frozen=True)
+class FrameCostParameters:
+    """Which frames are timed by their stages, and by the objects and people that are watched."""
+
+    people: FramePeopleParameters = FramePeopleParameters()
+    """Who is tracked and learned from."""
+    interactions: tuple[str, ...] = ("drinkFromMug", "hammerNail", "answerPhone", "paintWall")
+    """What is learned; the first is what the tracked person does."""
+    object_counts: tuple[int, ...] = (1, 2, 4)
+    """Numbers of objects that are watched of each person."""
+    people_counts: tuple[int, ...] = (1, 2)
+    """Numbers of people that are watched."""
+    aside_m: float = 0.7
+    """Distance in metres of the second person from the first one, to the right."""
+    first_frames: int = 15
+    """Number of frames at the beginning that do not count: what is compiled is loaded then."""
+    frame_rate: float = 30.0
+    """Frames a second for which the cores in use are given."""
+
+
+@dataclass(frozen=True)
 class FusionCostParameters:
     """From whom fusion's prior is learned, and on what its frames are timed."""
 
@@ -76,13 +123,11 @@ class TrackerSpeedParameters:
     naive_hypotheses: int = 100
     """Number of poses that NumPy weighs one by one for the reference."""
     seconds: float = 6.0
-    """Seconds for which rates are measured, and again for the costs of frames."""
-    frame_cores: int = 2
-    """Number of cores, at the most, on which whole frames are timed."""
+    """Seconds for which rates are measured, and again for frames in which poses are weighed."""
+    thread_counts: tuple[int, ...] = (1, 2)
+    """Numbers of threads in which hypotheses are weighed, as far as there are cores."""
     hypothesis_counts: tuple[int, ...] = (100, 1_000, 10_000)
-    """Numbers of hypotheses of an object in the frames that are timed."""
-    object_counts: tuple[int, ...] = (1, 2, 4)
-    """Numbers of objects in the frames that are timed."""
+    """Numbers of hypotheses that are weighed in a frame."""
     region_margin_pixels: float = 60.0
     """Margin in pixels around the poses of the part of a frame that is prepared."""
 
@@ -107,6 +152,8 @@ class TrainingCostParameters:
     """Relative difference up to which the search found the same distance as the reference."""
 
 
+DEFAULT_COMPARISON = ComparisonParameters()
+DEFAULT_FRAME_COST = FrameCostParameters()
 DEFAULT_FUSION_COST = FusionCostParameters()
 DEFAULT_LIKELIHOOD_CHECK = LikelihoodCheckParameters()
 DEFAULT_TRACKER_SPEED = TrackerSpeedParameters()

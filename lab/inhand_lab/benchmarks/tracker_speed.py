@@ -1,12 +1,9 @@
 """Measures the hypotheses that the tracker weighs in a second, beside NumPy one by one."""
 
-import os
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
-from itertools import product
 
 import numpy as np
 from inhand_tracker.body.skeleton import PARTS, part_bases, pelvis_basis
@@ -27,7 +24,7 @@ from inhand_lab.benchmarks.fusion_cost import FusionCost, measure_fusion, true_s
 from inhand_lab.benchmarks.parameters import DEFAULT_FUSION_COST
 from inhand_lab.benchmarks.parameters import DEFAULT_TRACKER_SPEED as DEFAULT
 from inhand_lab.benchmarks.rendered_images import rendered_image
-from inhand_lab.workers import usable_cores
+from inhand_lab.workers import on_one_core, usable_cores
 from inhand_lab.world.messages import shape_of
 from inhand_lab.world.simulation import Simulation, simulate
 
@@ -35,16 +32,16 @@ INTERACTION = "drinkFromMug"
 
 
 @dataclass(frozen=True)
-class FrameCost:
-    """Cost of a frame in which hypotheses of each of several objects are weighed by every term.
+class WeighingCost:
+    """Cost of a frame in which hypotheses of one object are weighed by every term.
 
-    ``ms`` are the milliseconds on ``cores`` cores to prepare the frame and weigh them; ``naive_ms``
-    those that NumPy takes for their published edges alone, one hypothesis after the other.
+    ``ms`` are the milliseconds to prepare the frame and weigh them in so many threads, each with a
+    core; ``naive_ms`` those that NumPy takes for their published edges alone, one hypothesis after
+    the other.
     """
 
-    objects: int
     hypotheses: int
-    cores: int
+    threads: int
     ms: float
     naive_ms: float
 
@@ -55,8 +52,8 @@ class TrackerSpeed:
 
     ``edge_hypotheses_per_second`` weighs poses by the published edges;
     ``full_hypotheses_per_second`` by every term of ``sight``. ``naive_ratio`` is the first over the
-    rate of NumPy called for one hypothesis after the other. ``frames`` is what whole frames cost,
-    ``fusion`` what its frames cost by the size of training.
+    rate of NumPy called for one hypothesis after the other. ``weighing`` is what frames cost in
+    which many poses are weighed, ``fusion`` what its frames cost by the size of training.
     """
 
     edge_hypotheses_per_second: float
@@ -64,7 +61,7 @@ class TrackerSpeed:
     cores: int
     full_hypotheses_per_second: float
     naive_ratio: float
-    frames: tuple[FrameCost, ...] = ()
+    weighing: tuple[WeighingCost, ...] = ()
     fusion: tuple[FusionCost, ...] = ()
 
 
@@ -88,7 +85,7 @@ def measure_tracker(
         few = translations[: DEFAULT.naive_hypotheses], orientations[: DEFAULT.naive_hypotheses]
         return naive_edge_log_weights(*few, model.viewpoints, image)
 
-    with _one_core():
+    with on_one_core():
         edges_s, full_s, naive_s = _fastest((weigh_by_edges, weigh_fully, weigh_naively), seconds)
     edge_rate, naive_rate = DEFAULT.hypotheses / edges_s, DEFAULT.naive_hypotheses / naive_s
     return TrackerSpeed(
@@ -97,44 +94,45 @@ def measure_tracker(
         1,
         DEFAULT.hypotheses / full_s,
         edge_rate / naive_rate,
-        tuple(_frame_costs(model, shown, image, 1e3 / naive_rate, seconds)),
+        tuple(_weighing_costs(model, shown, image, 1e3 / naive_rate, seconds)),
         measure_fusion(training_sizes),
     )
 
 
-def _frame_costs(
+def _weighing_costs(
     model: Model, shown: Simulation, image: Image, naive_ms: float, seconds: float
-) -> Iterator[FrameCost]:
-    """Time every count of hypotheses with every count of objects, which are all the same one.
+) -> Iterator[WeighingCost]:
+    """Time every count of hypotheses with every number of threads that there are cores for.
 
     ``naive_ms`` are the milliseconds that NumPy takes for one hypothesis.
     """
-    cores = min(DEFAULT.frame_cores, usable_cores())
-    objects = [_sight(model, cores) for _ in range(max(DEFAULT.object_counts))]
+    threads = [count for count in DEFAULT.thread_counts if count <= usable_cores()]
     joints = shown.true_joints_in_camera[DEFAULT.shown_frame]
-    for hypotheses, count in product(DEFAULT.hypothesis_counts, DEFAULT.object_counts):
+    for hypotheses in DEFAULT.hypothesis_counts:
         poses = _poses(model, shown, hypotheses)
         around = image.camera.project(poses[0])
         low = around.min(axis=0) - DEFAULT.region_margin_pixels
         high = around.max(axis=0) + DEFAULT.region_margin_pixels
         region = (*low.tolist(), *high.tolist())
-        weigh_frame = partial(_weigh_frame, objects[:count], poses, image, region, joints)
-        share = seconds / (len(DEFAULT.hypothesis_counts) * len(DEFAULT.object_counts))
-        (took_s,) = _fastest((weigh_frame,), share)
-        yield FrameCost(count, hypotheses, cores, 1e3 * took_s, naive_ms * hypotheses * count)
+        works = [
+            partial(_weigh_frame, _sight(model, count), poses, image, region, joints)
+            for count in threads
+        ]
+        took_s = _fastest(works, seconds / len(DEFAULT.hypothesis_counts))
+        for count, fastest_s in zip(threads, took_s, strict=True):
+            yield WeighingCost(hypotheses, count, 1e3 * fastest_s, naive_ms * hypotheses)
 
 
 def _weigh_frame(
-    objects: Sequence[Sight],
+    sight: Sight,
     poses: tuple[Array, Array],
     image: Image,
     region: Region,
     joints: Array,
 ) -> None:
     frame = prepare(image, region)
-    for sight in objects:
-        colours = sight.learn(sight.start(), frame, poses[0][0], poses[1][0], around=0.5)
-        sight.log_likelihood(*poses, sight.view(frame, colours, joints))
+    colours = sight.learn(sight.start(), frame, poses[0][0], poses[1][0], around=0.5)
+    sight.log_likelihood(*poses, sight.view(frame, colours, joints))
 
 
 def naive_edge_log_weights(
@@ -194,13 +192,3 @@ def _fastest(works: Sequence[Callable[[], object]], seconds: float) -> list[floa
             work()
             least[index] = min(least[index], time.perf_counter() - began)
     return least
-
-
-@contextmanager
-def _one_core() -> Iterator[None]:
-    usable = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {min(usable)})
-    try:
-        yield
-    finally:
-        os.sched_setaffinity(0, usable)

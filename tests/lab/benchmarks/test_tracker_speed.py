@@ -1,17 +1,10 @@
-import json
-from dataclasses import asdict
-from pathlib import Path
+import os
 
 import numpy as np
 import pytest
-from inhand_lab.benchmarks import tracker_speed as benchmark_tracker
-from inhand_lab.benchmarks.fusion_cost import FusionCost, measure_fusion
-from inhand_lab.benchmarks.tracker_speed import (
-    FrameCost,
-    TrackerSpeed,
-    measure_tracker,
-    naive_edge_log_weights,
-)
+from inhand_lab.benchmarks.fusion_cost import measure_fusion
+from inhand_lab.benchmarks.tracker_speed import measure_tracker, naive_edge_log_weights
+from inhand_lab.workers import usable_cores
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.darby2014.likelihood import Likelihood
@@ -19,7 +12,6 @@ from inhand_tracker.model.model import Model
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.shape.viewpoints import find_viewpoints
 
-from inhand import bench
 from inhand.__main__ import main
 
 
@@ -47,12 +39,12 @@ def test_the_measurement_says_what_was_measured() -> None:
     assert speed.naive_ratio > 1.0
 
 
-def test_frames_are_measured_for_every_count_of_hypotheses_and_objects() -> None:
-    costs = {(c.objects, c.hypotheses): c for c in measure_tracker(0.05, []).frames}
-    assert set(costs) == {(o, h) for o in (1, 2, 4) for h in (100, 1_000, 10_000)}
-    assert costs[4, 10_000].ms > costs[1, 100].ms
-    assert costs[2, 1_000].naive_ms == pytest.approx(2.0 * costs[1, 1_000].naive_ms)
-    assert costs[1, 10_000].naive_ms > costs[1, 10_000].ms
+def test_weighing_is_measured_for_every_count_of_hypotheses_and_threads() -> None:
+    costs = {(c.threads, c.hypotheses): c for c in measure_tracker(0.05, []).weighing}
+    threads = (1, 2)[: usable_cores()]
+    assert set(costs) == {(t, h) for t in threads for h in (100, 1_000, 10_000)}
+    assert costs[1, 10_000].ms > costs[1, 100].ms
+    assert costs[1, 10_000].naive_ms == pytest.approx(10.0 * costs[1, 1_000].naive_ms)
 
 
 @pytest.mark.long
@@ -63,29 +55,9 @@ def test_the_cost_of_fusion_is_told_for_each_size_of_training() -> None:
 
 
 def test_the_measurement_gives_all_cores_back() -> None:
-    before = benchmark_tracker.os.sched_getaffinity(0)
+    before = os.sched_getaffinity(0)
     measure_tracker(0.01, [])
-    assert benchmark_tracker.os.sched_getaffinity(0) == before
-
-
-def test_the_verb_shows_the_figures_and_writes_them(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    frames = (FrameCost(1, 100, 2, 3.25, 11.0), FrameCost(4, 100, 2, 9.75, 44.0))
-    fusion = (FusionCost(1_000, 0.5, 2.25, 14.0), FusionCost(100_000, 31.0, 2.5, 14.5))
-    speed = TrackerSpeed(1234567.0, 50, 1, 7654.0, 12.34, frames, fusion)
-    monkeypatch.setattr(bench, "measure_tracker", lambda: speed)
-    assert main(["bench", "tracker", "--json", str(tmp_path / "speed.json")]) == 0
-    assert json.loads((tmp_path / "speed.json").read_text()) == json.loads(
-        json.dumps(asdict(speed))
-    )
-    shown = capsys.readouterr().out
-    assert "1,234,567" in shown
-    assert "7,654" in shown
-    assert "3.2 (11)" in shown
-    assert "4 objects" in shown
-    assert "100,000" in shown
-    assert "31.0" in shown
+    assert os.sched_getaffinity(0) == before
 
 
 def test_a_subject_that_there_is_not_is_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:

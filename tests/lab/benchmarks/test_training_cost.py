@@ -5,7 +5,7 @@ from collections import Counter
 import pytest
 from inhand_lab.benchmarks.training_cost import benchmark_training, training_steps
 
-from inhand.bench import training_table
+from inhand.bench_tables import training_table
 
 
 @pytest.mark.long
