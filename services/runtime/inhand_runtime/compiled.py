@@ -15,6 +15,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
@@ -117,8 +118,9 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
     """Compile a function of double arrays so that it takes any number of them, as NumPy's own do.
 
     The ``layout`` is NumPy's signature of generalised functions: the function fills its last
-    arguments, which stand behind the arrow, and its callers get them as results. It is compiled
-    when it is defined: what it calls stands above it.
+    arguments, which stand behind the arrow, and its callers get them as results. What is not a
+    number stays so without a warning. It is compiled when it is defined: what it calls stands above
+    it.
     """
     inputs, outputs = layout.split("->")
     types = []
@@ -127,17 +129,24 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
         axes = ",".join(":" * max(1, len(dimensions.split(","))))
         types.append("float64" if scalar else f"float64[{axes}]")
 
-    def compiled(function: Callable[..., None]) -> Any:
+    def compiled(function: Callable[..., None]) -> Callable[..., Any]:
         with _kept_here():
             try:
-                return _vectorised(function, layout, types)
+                made = _vectorised(function, layout, types)
             except Exception as error:
                 if not KEPT:
                     raise
                 log.warning("a file in %s is damaged (%s): compiled again", FOLDER, error)
                 for cache in (FunctionCache(function), GufWrapperCache(function)):  # type: ignore[no-untyped-call]
                     cache.flush()
-                return _vectorised(function, layout, types)
+                made = _vectorised(function, layout, types)
+
+        @wraps(function)
+        def called(*arrays: Any) -> Any:
+            with np.errstate(invalid="ignore", divide="ignore"):
+                return made(*arrays)
+
+        return called
 
     return compiled
 

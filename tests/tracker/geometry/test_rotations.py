@@ -173,3 +173,18 @@ def test_no_rotation_is_nearer_than_the_nearest(seed: int) -> None:
     others = Rotation.random(200, random_state=seed).as_matrix()
     distances = np.linalg.norm(others - matrix, axis=(1, 2))
     assert np.linalg.norm(found - matrix) <= distances.min() + 1e-9
+
+
+def test_what_is_missing_stays_missing_without_a_word() -> None:
+    """Warnings are errors here. Many at once, as a compiler looks at several together."""
+    rotation, vector = np.full((64, 4), np.nan), np.full((64, 3), np.nan)
+    rotation[::3], vector[::3] = [1.0, 0.0, 0.0, 0.0], 0.0
+    for found in (
+        rotations.to_vector(rotation),
+        rotations.from_vector(vector),
+        rotations.rotate(rotation, vector),
+        rotations.multiply(rotation, rotation),
+        rotations.from_matrix(rotations.to_matrix(rotation)),
+        rotations.nearest(rotations.to_matrix(rotation)).reshape(64, 9),
+    ):
+        np.testing.assert_array_equal(np.isfinite(found).all(axis=1), np.arange(64) % 3 == 0)
