@@ -21,9 +21,11 @@ from inhand_lab.benchmarks.parameters import (
     DEFAULT_COMPARISON,
     DEFAULT_FRAME_COST,
     DEFAULT_TRAINING_COST,
+    DEFAULT_TRANSPORT,
 )
 from inhand_lab.benchmarks.tracker_speed import measure_tracker
 from inhand_lab.benchmarks.training_cost import benchmark_training, training_steps
+from inhand_lab.benchmarks.transport_delay import measure_transport
 from inhand_lab.datasets.dataset import load_dataset
 from inhand_lab.evaluation.folds import leave_one_out
 from inhand_lab.workers import usable_cores
@@ -39,6 +41,7 @@ from inhand.bench_tables import (
     stages_table,
     tracker_table,
     training_table,
+    transport_table,
     watching_table,
     weighing_table,
 )
@@ -161,12 +164,18 @@ def _training(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     return training_table(costs), {"sizes": sizes}
 
 
+def _transport(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    delays = measure_transport(DEFAULT_TRANSPORT)
+    return transport_table(delays), asdict(delays)
+
+
 SUBJECTS_HELP = {
     "ablation": "the error of fusion without each of its parts",
     "constants": "its error with each number halved and doubled",
     "likelihood": "how true poses score, and refine, on real frames of YCB-Video",
     "tracker": "poses weighed in a second, and what a frame costs, by itself or against other code",
     "training": "time and memory of training by its size",
+    "transport": "the delay of a frame to another process, beside Zenoh's own and dora-rs's",
 }
 
 MEASURED_ON = ("likelihood", "ablation", "constants")
@@ -177,4 +186,5 @@ SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "likelihood": _likelihood,
     "tracker": _tracker,
     "training": _training,
+    "transport": _transport,
 }

@@ -10,6 +10,7 @@ from inhand_lab.benchmarks.frame_cost import FrameCosts
 from inhand_lab.benchmarks.likelihood_check import ObjectCheck
 from inhand_lab.benchmarks.tracker_speed import TrackerSpeed
 from inhand_lab.benchmarks.training_cost import TrainingCost
+from inhand_lab.benchmarks.transport_delay import TransportDelays
 from rich.table import Table
 
 _TRAINING_ROWS: dict[str, Callable[[TrainingCost], float]] = {
@@ -108,6 +109,26 @@ def comparison_table(cases: Sequence[CaseComparison], checkout: str) -> Table:
             f"{median(one.ratios):.2f}",
             f"{min(one.ratios):.2f} to {max(one.ratios):.2f}",
         )
+    return table
+
+
+def transport_table(delays: TransportDelays) -> Table:
+    """A row a way, beside Zenoh by itself."""
+    notes = ["ours leaves shared memory off: without enough locked memory Zenoh loses frames in it"]
+    if delays.without_dora is not None:
+        notes.append(f"dora-rs was left out: {delays.without_dora}")
+    table = Table(
+        title=f"a frame of {delays.frame_bytes / 1e3:,.0f} kB to another process, "
+        "from put to callback",
+        caption="; ".join(notes),
+    )
+    table.add_column("way")
+    for name in ("frames", "lost", "p50, ms", "p99, ms", "times Zenoh's p50"):
+        table.add_column(name, justify="right")
+    for one in delays.ways:
+        figures = (one.p50_ms, one.p99_ms, one.ratio)
+        cells = ["–" if figure is None else f"{figure:.2f}" for figure in figures]
+        table.add_row(one.way, f"{one.sent:,}", f"{one.lost:,}", *cells)
     return table
 
 

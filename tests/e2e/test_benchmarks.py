@@ -7,13 +7,16 @@ from pathlib import Path
 
 import pytest
 from inhand_lab.benchmarks import frame_times
+from inhand_lab.benchmarks.dora_delay import DORA, why_not_measured
 from inhand_lab.benchmarks.frame_stages import STAGES
 from inhand_lab.benchmarks.parameters import (
     ComparisonParameters,
     FrameCostParameters,
     FramePeopleParameters,
+    TransportParameters,
 )
 from inhand_lab.benchmarks.tracker_speed import measure_tracker
+from inhand_lab.benchmarks.transport_ends import RAW_SHARED, WAYS
 
 from inhand import bench
 from inhand.__main__ import main
@@ -86,6 +89,27 @@ def test_the_trackers_frames_are_measured_by_stages_and_by_objects_and_people(
     shown = capsys.readouterr().out
     assert all(stage in shown for stage in STAGES)
     assert "2 objects each" in shown
+
+
+@pytest.mark.long
+def test_delays_are_measured_by_every_way_and_of_dora_or_it_is_said_to_be_absent(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    few = TransportParameters(shown_frame=1, frames=30, first_frames=10)
+    monkeypatch.setattr(bench, "DEFAULT_TRANSPORT", few)
+    result = tmp_path / "result.json"
+    assert main(["bench", "transport", "--json", str(result)]) == 0
+    told = json.loads(result.read_text())
+    absent = why_not_measured()
+    assert [way["way"] for way in told["ways"]] == [*WAYS, *([] if absent else [DORA])]
+    assert told["without_dora"] == absent
+    for way in told["ways"]:
+        assert way["sent"] == 20
+        # Shared memory may lose all of them where little memory may be locked.
+        if way["way"] != RAW_SHARED:
+            assert 0.0 < way["p50_ms"] <= way["p99_ms"]
+    shown = " ".join(capsys.readouterr().out.split())
+    assert ("dora-rs was left out: dora" in shown) == (absent is not None)
 
 
 @pytest.mark.parametrize(

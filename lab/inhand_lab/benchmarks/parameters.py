@@ -152,9 +152,26 @@ class TrainingCostParameters:
     """Relative difference up to which the search found the same distance as the reference."""
 
 
+@dataclass(frozen=True)
+class TransportParameters:
+    """The frames that go from one process to another."""
+
+    seed: int = 0
+    """Seed of the simulated person in the frame."""
+    shown_frame: int = 60
+    """Which frame of the simulation is sent, again and again."""
+    frames: int = 600
+    """Number of frames by each way."""
+    first_frames: int = 30
+    """Number of frames at the beginning that do not count: links are opened then."""
+    frame_rate: float = 30.0
+    """Frames a second by each way."""
+
+
 DEFAULT_COMPARISON = ComparisonParameters()
 DEFAULT_FRAME_COST = FrameCostParameters()
 DEFAULT_FUSION_COST = FusionCostParameters()
 DEFAULT_LIKELIHOOD_CHECK = LikelihoodCheckParameters()
 DEFAULT_TRACKER_SPEED = TrackerSpeedParameters()
 DEFAULT_TRAINING_COST = TrainingCostParameters()
+DEFAULT_TRANSPORT = TransportParameters()

@@ -1,0 +1,113 @@
+"""Measures the delay of a frame from one process to another, beside Zenoh by itself and dora-rs.
+
+A delay is from the call that puts a frame to its bytes being there in the reader's callback. All
+ways carry the same bytes: a simulated Kinect's frame, coded as on the wire.
+"""
+
+import socket
+from collections.abc import Mapping
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
+from dataclasses import dataclass
+from multiprocessing import get_context
+
+import numpy as np
+from inhand_runtime.errors import InhandError
+from inhand_schemas.messages import RgbdFrame
+from inhand_schemas.topics import RGBD
+
+from inhand_lab.benchmarks import transport_ends
+from inhand_lab.benchmarks.dora_delay import DORA, measure_dora, why_not_measured
+from inhand_lab.benchmarks.parameters import DEFAULT_TRANSPORT, TransportParameters
+from inhand_lab.benchmarks.transport_ends import RAW, WAYS, Exchange, Times
+from inhand_lab.world.messages import pixels_message
+from inhand_lab.world.simulation import simulate
+
+INTERACTION = "drinkFromMug"
+
+
+@dataclass(frozen=True)
+class WayDelay:
+    """Milliseconds that frames were under way, and how many of those that were sent were lost.
+
+    ``ratio`` is how many times longer the median is than that of Zenoh by itself. Where no frame
+    came there are none.
+    """
+
+    way: str
+    sent: int
+    lost: int
+    p50_ms: float | None = None
+    p99_ms: float | None = None
+    ratio: float | None = None
+
+
+@dataclass(frozen=True)
+class TransportDelays:
+    """Delays of frames of so many bytes; ``without_dora`` says why dora-rs was not measured."""
+
+    frame_bytes: int
+    ways: tuple[WayDelay, ...]
+    without_dora: str | None
+
+
+def measure_transport(parameters: TransportParameters = DEFAULT_TRANSPORT) -> TransportDelays:
+    """Measure Zenoh's ways in turns, frame by frame, and then dora-rs where it is installed.
+
+    Raises InhandError.
+    """
+    frame = _frame(parameters)
+    payload = RGBD.encode(frame)
+    sent, came = _exchanged(frame, parameters)
+    without_dora = why_not_measured()
+    if without_dora is None:
+        sent[DORA], came[DORA] = measure_dora(payload, parameters)
+    delays = {way: _delays_ms(sent[way], came[way], parameters) for way in sent}
+    if not len(delays[RAW]):
+        raise InhandError("Zenoh by itself delivered no frame: there is nothing to compare with")
+    usual_ms = float(np.median(delays[RAW]))
+    counted = parameters.frames - parameters.first_frames
+    rows = tuple(_row(way, delays[way], counted, usual_ms) for way in sent)
+    return TransportDelays(len(payload), rows, without_dora)
+
+
+def _frame(parameters: TransportParameters) -> RgbdFrame:
+    shown = simulate(INTERACTION, 0, parameters.seed, parameters.shown_frame + 1)
+    return pixels_message(shown.render(parameters.shown_frame), sequence=0, time_ns=0)
+
+
+def _exchanged(frame: RgbdFrame, parameters: TransportParameters) -> tuple[Times, Times]:
+    """Send frames from one new process to another, and return when each was put and there."""
+    context = get_context("spawn")
+    exchange = Exchange(_free_addresses(), frame, parameters.frames, parameters.frame_rate)
+    with ProcessPoolExecutor(2, context, transport_ends.begin, (context.Event(),)) as pool:
+        came = pool.submit(transport_ends.receive, exchange)
+        sent = pool.submit(transport_ends.send, exchange)
+        return sent.result(), came.result()
+
+
+def _free_addresses() -> Mapping[str, str]:
+    """Addresses of this machine that nobody uses, one for each way."""
+    with ExitStack() as stack:
+        addresses = {}
+        for way in WAYS:
+            taken = stack.enter_context(socket.socket())
+            taken.bind(("127.0.0.1", 0))
+            addresses[way] = f"tcp/127.0.0.1:{taken.getsockname()[1]}"
+        return addresses
+
+
+def _delays_ms(
+    sent: Mapping[int, int], came: Mapping[int, int], parameters: TransportParameters
+) -> np.ndarray:
+    """Milliseconds that those frames were under way that count and came."""
+    counted = range(parameters.first_frames, parameters.frames)
+    return np.array([(came[n] - sent[n]) / 1e6 for n in counted if n in came])
+
+
+def _row(way: str, delays_ms: np.ndarray, counted: int, usual_ms: float) -> WayDelay:
+    lost = counted - len(delays_ms)
+    if lost == counted:
+        return WayDelay(way, counted, lost)
+    p50_ms, p99_ms = np.percentile(delays_ms, [50, 99]).tolist()
+    return WayDelay(way, counted, lost, p50_ms, p99_ms, p50_ms / usual_ms)
