@@ -7,6 +7,7 @@ from pathlib import Path
 
 from inhand_lab.datasets.dataset import Dataset, load_dataset
 from inhand_lab.datasets.stretches import stretches_note
+from inhand_lab.training.absent_joints import named_joints
 from inhand_lab.training.model_summary import summarise_model
 from inhand_lab.training.model_training import entries_for, model_stages, train
 from inhand_lab.training.presence_training import learn_presence
@@ -62,6 +63,8 @@ def run(arguments: argparse.Namespace) -> int:
         advance("saving")
     console = Console()
     console.print(_summary(model))
+    if absent := model.mapping.absent_joints:
+        console.print(f"left out, as no recording shows them: {named_joints(absent)}")
     if note := stretches_note(entries):
         console.print(note)
     console.print(f"saved {arguments.output}: {arguments.output.stat().st_size / 1e6:.1f} MB")

@@ -1,6 +1,6 @@
 """A small dataset of people who wave a box about, written as recordings are."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -86,15 +86,20 @@ def info() -> CameraInfo:
 
 
 def messages(
-    frames: int, seed: int, *, images: bool = False, camera: str = CAMERA
+    frames: int,
+    seed: int,
+    *,
+    images: bool = False,
+    camera: str = CAMERA,
+    missing: Collection[int] = (),
 ) -> Iterator[Message]:
-    """A recording's messages."""
+    """A recording's messages; the joints that are missing are so throughout."""
     yield info()
     random = np.random.default_rng(seed)
     joints, places, turns = waving(frames, seed)
     for frame in range(frames):
         times = {"sequence": frame, "time_ns": START_NS + frame * FRAME_NS}
-        yield Skeletons(**times, people=(person(joints[frame]),))
+        yield Skeletons(**times, people=(person(joints[frame], missing),))
         yield ObjectPose(
             **times,
             object="box",
@@ -108,12 +113,13 @@ def messages(
             yield RgbdFrame(**times, colour=encode_colour(colour))
 
 
-def person(joints: np.ndarray) -> Person:
-    """Somebody whose joints are all tracked."""
+def person(joints: np.ndarray, missing: Collection[int] = ()) -> Person:
+    """Somebody whose joints are all tracked, but for those that are missing."""
+    shown = [0.0 if index in missing else 1.0 for index in range(20)]
     return Person(
         id=1,
-        joints=tuple(tuple(joint) for joint in joints.tolist()),
-        states=("tracked",) * 20,
+        joints=tuple(tuple(joint) for joint in (joints * np.array(shown)[:, None]).tolist()),
+        states=tuple("tracked" if share else "missing" for share in shown),
         confidences=(1.0,) * 20,
     )
 
@@ -129,11 +135,18 @@ def entry_of(participant: str, interaction: str = "wave") -> DatasetEntry:
 
 
 def write_dataset(
-    folder: Path, participants: int = 3, *, frames: int = 30, images: bool = False, first: int = 0
+    folder: Path,
+    participants: int = 3,
+    *,
+    frames: int = 30,
+    images: bool = False,
+    first: int = 0,
+    missing: Collection[int] = (),
 ) -> Dataset:
     """One recording a participant."""
     writer = DatasetWriter(folder)
     writer.add_shape(box())
     for seed in range(first, first + participants):
-        writer.add_recording(entry_of(f"p{seed}"), messages(frames, seed, images=images))
+        recorded = messages(frames, seed, images=images, missing=missing)
+        writer.add_recording(entry_of(f"p{seed}"), recorded)
     return writer.finish({"name": "waving"})

@@ -1,6 +1,7 @@
 """What can be known of a tracker before a start is checked before a start."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,10 +10,11 @@ from inhand_runtime.settings import load_settings
 from inhand_tracker import load_model
 from inhand_tracker.loading import check
 from inhand_tracker.model.model_file import save_model
-from inhand_tracker.people.watching import Watcher
+from inhand_tracker.people.following import PeopleWatched
+from inhand_tracker.people.watching import CameraFrame, Watcher
 from inhand_tracker.recognition.recogniser_file import load_recogniser
 from inhand_tracker.settings import TrackerSettings
-from people import wave_model
+from people import person, wave_model
 
 CAMERA = '[capture.front]\nsource = "simulator"\n'
 
@@ -29,6 +31,21 @@ def checked(folder: Path, tracker: str, more: str = CAMERA) -> Watcher:
     config = folder / "rig.toml"
     config.write_text(f"[tracker.mug]\n{tracker}\n{more}")
     return check(load_settings(config, "tracker", TrackerSettings))
+
+
+@pytest.mark.parametrize("absent", [(), (0, 1, 12, 16)])
+def test_people_without_hips_are_watched_where_the_model_was_learned_from_such(
+    folder: Path, absent: tuple[int, ...]
+) -> None:
+    model = wave_model()
+    upper = replace(model, mapping=replace(model.mapping, absent_joints=absent))
+    save_model(upper, folder / "upper.model")
+    watcher = checked(folder, 'camera = "front"\nmodel = "upper.model"')
+    assert watcher.needs_hips == (not absent)
+    people = PeopleWatched(lambda: watcher, 1)
+    seated = person(1, missing=(0, 1, 12, 16))
+    numbers = people.see([seated], CameraFrame(0), lambda *_: None)
+    assert (None in numbers) == (not absent)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from inhand_schemas.joints import Joint
 from inhand_schemas.messages import Person
 from inhand_tracker.people.following import PersonFollower
 
@@ -40,8 +41,15 @@ def follow_people(frames: Sequence[RecordedFrame]) -> Iterator[FollowedPerson]:
         before = current
 
 
+def _show_hips(frames: Sequence[RecordedFrame]) -> bool:
+    """Whether the hips of anybody are seen in any frame."""
+    return any(
+        person.states[Joint.HIP_CENTER] != "missing" for frame in frames for person in frame.people
+    )
+
+
 def _as_trackers_follow(frames: Sequence[RecordedFrame]) -> Iterator[FollowedPerson]:
-    follower = PersonFollower()
+    follower = PersonFollower(needs_hips=_show_hips(frames))
     for frame in frames:
         before = follower.person_id
         person = follower.choose(frame.people, frame.time_ns)

@@ -9,6 +9,7 @@ import numpy as np
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import ObjectPose, Person, Skeletons
 from inhand_tracker.body.skeleton import part_lengths, stature
+from inhand_tracker.body.stand_ins import TRUNK, seen_stature
 from inhand_tracker.geometry.arrays import Array, Indices
 
 from inhand_lab.datasets.dataset import DatasetError
@@ -41,7 +42,7 @@ def check_units(
     people = _BodiesWithLabels(owners, joints, _places(labels))
     with np.errstate(invalid="ignore", over="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of medians of nothing
-        height, far = stature(part_lengths(joints)), people.distance_m()
+        height, far = _stature(part_lengths(joints)), people.distance_m()
         trunks = np.linalg.norm(np.diff(joints[:, _TRUNK], axis=1), axis=2).sum(axis=1)
     _check_stature(path, height, far)
     _check_frames(path, owners, trunks)
@@ -75,6 +76,12 @@ class _BodiesWithLabels:
         unit = min(distances, key=distances.__getitem__)
         near = distances[unit] < DEFAULT_DATASET.held_label_m
         return f", and at somebody if they are in {unit}" if near else ""
+
+
+def _stature(lengths: Array) -> float:
+    """The stature by part lengths (N, 19), of trunk and legs, or of arms and neck without them."""
+    whole = stature(lengths)
+    return whole if np.isfinite(whole) else seen_stature(lengths, TRUNK)
 
 
 def _check_stature(path: Path, height: float, far: float) -> None:

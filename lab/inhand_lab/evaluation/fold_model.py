@@ -12,6 +12,7 @@ from inhand_tracker.sight.appearance import learn_appearance
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.evaluation.folds import Fold
+from inhand_lab.training.absent_joints import absent_joints
 from inhand_lab.training.appearance_samples import appearance_samples
 from inhand_lab.training.model_training import checked_sequence, checked_shape
 from inhand_lab.training.recording_checks import check_hands
@@ -27,9 +28,11 @@ def learn_fold_model(trained: Dataset, fold: Fold, *, images: bool, fused: bool)
     shape = _shape(trained, fold)
     sequences = [_sequence(trained, entry) for entry in fold.trained]
     check_hands(fold.trained, sequences)
+    absent = absent_joints(fold.trained, sequences)
+    sequences = [sequence.with_stand_ins(absent) for sequence in sequences]
     check_rotations(fold.trained, sequences, shape.mirror_normal)
     try:
-        mapping = learn(sequences, shape.mirror_normal)
+        mapping = learn(sequences, shape.mirror_normal, absent_joints=absent)
     except UnusableSequenceError as error:
         raise DatasetError(f"{trained.folder}, {fold.interaction}: {error}") from None
     viewpoints = Viewpoints(np.eye(3), np.zeros((3, 1, 3)))

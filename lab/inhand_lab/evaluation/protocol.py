@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Literal
 
+from inhand_tracker.body.skeleton import has_pelvis
+from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import METHODS, AnyTerm, MethodName, new_tracker
 from inhand_tracker.model.model import Model
@@ -141,11 +143,21 @@ def _evaluate_recording(
     for candidate, track in zip(candidates, tracks, strict=True):
         score = judge.score(track)
         if score is None:
-            raise DatasetError(
-                f"{entry.file}: no frame has both a pose and a label of {entry.object!r}: label "
-                "it, or take it out of dataset.toml"
-            )
+            raise _unscored(entry, model, joints)
         yield candidate, score
+
+
+def _unscored(entry: DatasetEntry, model: Model, joints: Array) -> DatasetError:
+    """Say why nothing could be scored in a recording whose joints (T, 20, 3) were seen."""
+    if not model.mapping.absent_joints and not any(map(has_pelvis, joints)):
+        return DatasetError(
+            f"{entry.file} never shows a pelvis, and what was learned from does: learn from "
+            "recordings that lack the same joints"
+        )
+    return DatasetError(
+        f"{entry.file}: no frame has both a pose and a label of {entry.object!r}: label it, or "
+        "take it out of dataset.toml"
+    )
 
 
 def _parts(folds: Sequence[Fold], processes: int) -> list[Fold]:

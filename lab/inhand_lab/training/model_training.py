@@ -15,6 +15,7 @@ from inhand_tracker.sight.appearance import learn_appearance
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.stretches import RecordingStretch, stretches_of
+from inhand_lab.training.absent_joints import absent_joints
 from inhand_lab.training.appearance_samples import appearance_samples
 from inhand_lab.training.recording_checks import check_hands, check_sequence
 from inhand_lab.training.rotation_checks import check_rotations
@@ -91,9 +92,11 @@ def train(
     first = _first_of(dataset, entries)
     shape = checked_shape(dataset, str(first.object))
     sequences = _read(dataset, entries, on_step)
+    absent = absent_joints(entries, sequences)
+    sequences = [sequence.with_stand_ins(absent) for sequence in sequences]
     check_rotations(entries, sequences, shape.mirror_normal)
     try:
-        mapping = learn(sequences, shape.mirror_normal, on_step)
+        mapping = learn(sequences, shape.mirror_normal, on_step, absent_joints=absent)
     except UnusableSequenceError as error:
         raise DatasetError(f"{dataset.folder}: {error}") from None
     viewpoints = find_viewpoints(shape, on_view=lambda: on_step(VIEWPOINTS))

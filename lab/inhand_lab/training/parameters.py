@@ -23,6 +23,9 @@ class TrainingParameters:
     turns; a label that is upside down for one frame at 30 Hz turns faster."""
     most_missing_share: float = 0.5
     """Share of a recording's frames that may lack a label, or a whole body, at the most."""
+    absent_share: float = 0.95
+    """Share of the frames that show somebody from which a joint that they lack is never seen, and
+    has a stand-in: no body tracker loses a joint that is in view for as long."""
     clear_hand_share: float = 0.9
     """Share of frames in which an object is nearer to one hand from which it is that hand's."""
     backward_feet: float = -0.3

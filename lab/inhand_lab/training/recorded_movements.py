@@ -59,7 +59,10 @@ def usual_poses(people: Sequence[JointSequence]) -> UsualPoses:
     poses = [_whole_poses(one)[:: DEFAULT_TRAINING.usual_pose_step] for one in people]
     finite = [some[np.isfinite(some).all(axis=1)] for some in poses]
     if not sum(map(len, finite)):
-        raise DatasetError("no recording shows a whole body: nothing can be learned from them")
+        raise DatasetError(
+            "no recording shows a whole body, and a recogniser is learned from whole ones: record "
+            "so that all joints are seen"
+        )
     return UsualPoses(np.concatenate(finite))
 
 

@@ -10,6 +10,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.mapping.learning import LabelledSequence
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
+from inhand_lab.training.absent_joints import absent_of
 from inhand_lab.training.parameters import DEFAULT_TRAINING
 
 
@@ -110,6 +111,8 @@ def _check_bodies(entry: DatasetEntry, sequence: LabelledSequence) -> None:
             f"{entry.file} does not show the person in {_share(nobody, frames)}: record it again, "
             "or take it out of dataset.toml"
         )
+    # Joints that are never seen have stand-ins.
+    seen[:, list(absent_of(sequence.joints))] = True
     without_pelvis = int((~seen[:, PELVIS_JOINTS].all(axis=1)).sum())
     if without_pelvis > most_missing:
         needed = ", ".join(JOINT_NAMES[joint] for joint in sorted(PELVIS_JOINTS))
@@ -123,7 +126,7 @@ def _check_bodies(entry: DatasetEntry, sequence: LabelledSequence) -> None:
         raise DatasetError(
             f"{entry.file} lacks joints in {_share(incomplete, frames)}, {worst} most often, and "
             f"{DEFAULT_TRAINING.most_missing_share:.0%} may: record so that the whole body is "
-            "seen"
+            "seen, or legs, hips, spine or hands never, in any recording"
         )
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import Settings
 from inhand_runtime.settings_errors import suggestion
+from inhand_schemas.joints import Joint
 
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import new_tracker
@@ -55,7 +56,9 @@ def load_watcher(instance: str, settings: TrackerSettings) -> Watcher:
     models = load_models(instance, settings)
     trackers = new_trackers(models, settings)
     if settings.recogniser is None:
-        return GivenObjects(trackers)
+        learned = [model.mapping.absent_joints for model in models.values()]
+        needs_hips = any(Joint.HIP_CENTER not in absent for absent in learned)
+        return GivenObjects(trackers, needs_hips=needs_hips)
     recogniser = load_recogniser(settings.recogniser)
     by_action = {model.interaction: name for name, model in models.items()}
     if missing := [action for action in recogniser.actions if action not in by_action]:

@@ -313,7 +313,7 @@ def test_a_description_that_is_none_is_refused(path: Path, text: str) -> None:
 
 @pytest.mark.parametrize(
     "name",
-    ["shape.faces", "viewpoints.boundaries", *(f"mapping.{f.name}" for f in fields(Mapping)[1:])],
+    ["shape.faces", "viewpoints.boundaries", *(f"mapping.{f.name}" for f in fields(Mapping)[1:-1])],
 )
 def test_a_model_that_lacks_an_array_is_refused(path: Path, name: str) -> None:
     arrays = arrays_of(path)

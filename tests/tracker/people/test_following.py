@@ -50,6 +50,12 @@ def test_nobody_is_chosen_from_nobody() -> None:
     assert follower.choose([person(2, missing=(0,))], 1) is None
 
 
+def test_where_hips_are_not_needed_the_nearest_chest_is_chosen() -> None:
+    people = [person(1, 3.0), person(2, 1.0, missing=(0,)), person(3, 0.5, missing=(0, 2))]
+    assert PersonFollower(needs_hips=False).choose(people, 0) is people[1]
+    assert PersonFollower().choose(people, 0) is people[0]
+
+
 def test_a_skeleton_that_is_all_zero_is_nobody_to_follow() -> None:
     zeros = replace(person(1), joints=((0.0, 0.0, 0.0),) * 20)
     follower = PersonFollower()

@@ -56,3 +56,4 @@ def test_a_person_without_a_trunk_is_nobody_yet() -> None:
     states = ("missing", *hidden.states[1:])
     person = Person(id=1, joints=hidden.joints, states=states, confidences=hidden.confidences)
     assert Identities().assign([person], 0) == {}
+    assert list(Identities(needs_hips=False).assign([person], 0)) == [0]

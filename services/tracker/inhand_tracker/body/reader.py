@@ -1,5 +1,6 @@
 """Reads bodies: from joints, some missing or wild, to a whole body that trackers predict from."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -18,6 +19,7 @@ from inhand_tracker.body.skeleton import (
     pelvis_basis,
     without_impossible,
 )
+from inhand_tracker.body.stand_ins import RunningStandIns
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 
@@ -53,7 +55,8 @@ class BodyReader:
     """Reads the bodies of one person, frame by frame.
 
     A missing joint keeps its last place in the pelvis basis; before it was ever seen it has that
-    of the people who were learned from. Left-handed people are mirrored.
+    of the people who were learned from. Joints that were ``absent`` in training have stand-ins.
+    Left-handed people are mirrored.
     """
 
     def __init__(
@@ -61,12 +64,14 @@ class BodyReader:
         learned: HasBodyPoses,
         *,
         left_handed: bool,
+        absent: Collection[int] = (),
         parameters: BodyParameters = DEFAULT_BODY,
     ) -> None:
         step = max(1, len(learned.body_poses) // parameters.learned_poses)
         poses = np.asarray(learned.body_poses[::step], float).reshape(-1, 20, 3)
         self._last_pose = poses.mean(axis=0)
         self._height = RunningHeight(np.median(part_lengths(poses), axis=0), parameters)
+        self._stand_ins = RunningStandIns(absent) if absent else None
         self._left_handed = left_handed
         self._farthest_joint_m = parameters.farthest_joint_m
 
@@ -76,6 +81,8 @@ class BodyReader:
         None while the pelvis is not seen or the person's height is unknown.
         """
         joints = without_impossible(joints, self._farthest_joint_m)
+        if self._stand_ins is not None:
+            joints = self._stand_ins.put(joints)
         if not has_pelvis(joints):
             return None
         if self._left_handed:

@@ -5,7 +5,7 @@ Each training frame is measured: how much the object's pose varies among frames 
 relative to each of the 19 parts.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
@@ -21,6 +21,7 @@ from inhand_tracker.body.skeleton import (
     pelvis_basis,
     stature,
 )
+from inhand_tracker.body.stand_ins import put_stand_ins, seen_stature
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.mapping.mapping import Mapping
@@ -71,6 +72,13 @@ class LabelledSequence:
             self.frame_rate,
         )
 
+    def with_stand_ins(self, absent: Collection[int]) -> "LabelledSequence":
+        """Return the sequence with stand-ins for absent joints."""
+        if not absent:
+            return self
+        height = seen_stature(part_lengths(self.joints), absent)
+        return replace(self, joints=put_stand_ins(self.joints, absent, height))
+
     def cut(self, first: int, end: int) -> "LabelledSequence":
         """Return the frames from ``first`` up to, and without, ``end``."""
         return replace(
@@ -90,11 +98,13 @@ def learn(
     mirror_normal: Array,
     on_sequence: Callable[[Stage], None] = lambda stage: None,
     parameters: MappingParameters = DEFAULT_MAPPING,
+    absent_joints: tuple[int, ...] = (),
 ) -> Mapping:
     """Learn a mapping; left-handed people are mirrored, so that every mapping is right-handed.
 
     ``mirror_normal`` (3,) is the object's (``ObjectShape``); ``on_sequence`` is called when a
-    stage is done with a sequence. Raises UnusableSequenceError.
+    stage is done with a sequence. ``absent_joints`` are those that have stand-ins in all sequences.
+    Raises UnusableSequenceError.
 
     Time and memory grow with the number of frames. Exact up to 20,000 frames in sequences of up
     to 2,048 (``parameters``); beyond, radii and clusters come from a part of the frames
@@ -118,6 +128,7 @@ def learn(
         body_poses=poses.body_poses,
         translations=poses.translations,
         rotations=poses.rotations,
+        absent_joints=absent_joints,
         **vars(measures),
     )
 

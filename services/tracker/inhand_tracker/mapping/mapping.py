@@ -16,6 +16,7 @@ class Mapping:
     object relative to each part, in body heights, ``translations`` (N, 19, 3) and ``rotations``
     (N, 19, 4); ``translation_variation`` φᵉ and ``rotation_variation`` φᶿ (N,); and the parts
     that minimise ψᵉ, ψᶿ and ψ'ᵉ, each (N,). Everything is as of right-handed people.
+    ``absent_joints`` were in no recording, and have stand-ins (``body.stand_ins``).
     """
 
     participants: tuple[str, ...]
@@ -29,6 +30,7 @@ class Mapping:
     stable_translation_part: Indices
     stable_rotation_part: Indices
     proximate_part: Indices
+    absent_joints: tuple[int, ...] = ()
 
     def sequence_of(self, frames: Indices) -> Indices:
         """The sequences that training frames belong to."""

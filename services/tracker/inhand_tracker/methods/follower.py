@@ -127,4 +127,6 @@ class FollowingTracker(ABC):
 
     def new_reader(self) -> BodyReader:
         """A reader of bodies for trackers of this model and handedness."""
-        return BodyReader(self._mapping, left_handed=self._left_handed)
+        return BodyReader(
+            self._mapping, left_handed=self._left_handed, absent=self._mapping.absent_joints
+        )

@@ -4,6 +4,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
+from inhand_schemas.joints import JOINT_NAMES
+
 from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.model.archive import ArchiveKind, Arrays, read_archive, write_archive
 from inhand_tracker.model.model import Model
@@ -25,7 +27,9 @@ MODEL_FILE = ArchiveKind(
     make_again="make it anew with `inhand train`",
 )
 _SHAPE_ARRAYS = ("vertices", "faces", "marked_vertices", "mirror_normal")
-_MAPPING_ARRAYS = tuple(field.name for field in fields(Mapping) if field.name != "participants")
+_MAPPING_ARRAYS = tuple(
+    field.name for field in fields(Mapping) if field.name not in ("participants", "absent_joints")
+)
 
 
 def save_model(model: Model, path: Path | str) -> None:
@@ -34,6 +38,7 @@ def save_model(model: Model, path: Path | str) -> None:
         "interaction": model.interaction,
         "object": model.shape.name,
         "participants": model.mapping.participants,
+        "absent_joints": [JOINT_NAMES[joint] for joint in model.mapping.absent_joints],
         "symmetries": [[s.axis, s.centre, s.order] for s in model.shape.symmetries],
     }
     viewpoints = model.viewpoints
@@ -67,6 +72,9 @@ def _assemble(description: dict[str, Any], arrays: Arrays) -> Model:
     )
     mapping = Mapping(
         participants=tuple(description["participants"]),
+        absent_joints=tuple(
+            JOINT_NAMES.index(name) for name in description.get("absent_joints", ())
+        ),
         **{name: arrays[f"mapping.{name}"] for name in _MAPPING_ARRAYS},
     )
     viewpoints = Viewpoints(

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+import numpy as np
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import Person
 
@@ -10,11 +11,21 @@ from inhand_tracker.people.parameters import DEFAULT_PEOPLE, PeopleParameters
 from inhand_tracker.people.watching import CameraFrame, OnFailure, WatchedObject, Watcher
 from inhand_tracker.wire.conversion import joints_of
 
+WHOLE_PLACE = (Joint.HIP_CENTER,)
+UPPER_PLACE = (Joint.HIP_CENTER, Joint.SHOULDER_CENTER)
+"""Joints whose depth is a person's, the first that is seen."""
+
 
 class PersonFollower:
-    """Follows one person by the camera's id; when that one is gone for two seconds, the nearest."""
+    """Follows one person by the camera's id; when that one is gone for two seconds, the nearest.
 
-    def __init__(self, parameters: PeopleParameters = DEFAULT_PEOPLE) -> None:
+    Nobody is chosen whose hips are hidden, but where trackers do not need them (``needs_hips``).
+    """
+
+    def __init__(
+        self, parameters: PeopleParameters = DEFAULT_PEOPLE, *, needs_hips: bool = True
+    ) -> None:
+        self._place_joints = WHOLE_PLACE if needs_hips else UPPER_PLACE
         self.person_id: int | None = None
         self._patience_ns = parameters.patience_ns
         self._seen_ns = 0
@@ -24,7 +35,7 @@ class PersonFollower:
         chosen = next((person for person in people if person.id == self.person_id), None)
         away = _is_gone(self._seen_ns, time_ns, self._patience_ns)
         if chosen is None and (self.person_id is None or away):
-            chosen = _nearest(people)
+            chosen = _nearest(people, self._place_joints)
         if chosen is not None:
             self.person_id, self._seen_ns = chosen.id, time_ns
         return chosen
@@ -49,8 +60,10 @@ class PeopleWatched:
         self._idle = [new_watcher()]
         self.names = self._idle[0].names
         self._patience_ns = parameters.patience_ns
-        self._follower = PersonFollower(parameters)
-        self._identities = Identities(parameters)
+        needs_hips = self._idle[0].needs_hips
+        self._place_joints = WHOLE_PLACE if needs_hips else UPPER_PLACE
+        self._follower = PersonFollower(parameters, needs_hips=needs_hips)
+        self._identities = Identities(parameters, needs_hips=needs_hips)
         self._watchers: dict[int | None, Watcher] = {}
         self._seen_ns: dict[int | None, int] = {}
 
@@ -98,7 +111,7 @@ class PeopleWatched:
     ) -> dict[int | None, Person | None]:
         in_view = self._identities.assign(people, time_ns)
         self._release_watchers(time_ns)
-        for number in sorted(in_view, key=lambda one: _depth(in_view[one])):
+        for number in sorted(in_view, key=lambda one: _depth(in_view[one], self._place_joints)):
             if number not in self._watchers and len(self._watchers) < self._most:
                 self._watchers[number] = self._idle.pop() if self._idle else self._new_watcher()
             if number in self._watchers:
@@ -138,13 +151,15 @@ def _is_gone(seen_ns: int, time_ns: int, patience_ns: int) -> bool:
     return not 0 <= time_ns - seen_ns < patience_ns
 
 
-def _nearest(people: Sequence[Person]) -> Person | None:
-    hips = Joint.HIP_CENTER
-    visible = [
-        person for person in people if person.states[hips] != "missing" and any(person.joints[hips])
-    ]
-    return min(visible, key=_depth, default=None)
+def _nearest(people: Sequence[Person], place_joints: Sequence[int]) -> Person | None:
+    """The person with the least depth, by the first of some joints that is seen of each."""
+    visible = [person for person in people if np.isfinite(_depth(person, place_joints))]
+    return min(visible, key=lambda person: _depth(person, place_joints), default=None)
 
 
-def _depth(person: Person) -> float:
-    return person.joints[Joint.HIP_CENTER][2]
+def _depth(person: Person, place_joints: Sequence[int]) -> float:
+    """The depth of the first of some joints that is seen; infinite where none is."""
+    for joint in place_joints:
+        if person.states[joint] != "missing" and any(person.joints[joint]):
+            return person.joints[joint][2]
+    return np.inf

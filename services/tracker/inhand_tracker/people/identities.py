@@ -12,7 +12,7 @@ from inhand_schemas.joints import Joint
 from inhand_schemas.messages import Person
 
 from inhand_tracker.body.skeleton import part_lengths
-from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.people.cheapest_pairs import cheapest_pairs
 from inhand_tracker.people.parameters import DEFAULT_PEOPLE, PeopleParameters
 from inhand_tracker.wire.conversion import joints_of
@@ -21,6 +21,7 @@ IMPOSSIBLE = 1e6
 """Cost of taking somebody for a person who cannot be there."""
 
 _TRUNK = np.array([Joint.HIP_CENTER, Joint.SPINE, Joint.SHOULDER_CENTER])
+_CHEST = np.array([Joint.SHOULDER_CENTER])
 # Numbers of the parts whose lengths count: hands and feet are the least sure.
 _BONES = np.array([0, 1, 2, 3, 4, 5, 7, 8, 9, 11, 12, 13, 15, 16, 17])
 
@@ -51,9 +52,15 @@ class _Track:
 
 
 class Identities:
-    """Gives each person a number that stays, whatever the camera calls them."""
+    """Gives each person a number that stays, whatever the camera calls them.
 
-    def __init__(self, parameters: PeopleParameters = DEFAULT_PEOPLE) -> None:
+    A person is where the trunk is, or, where hips are not needed (``needs_hips``), the chest.
+    """
+
+    def __init__(
+        self, parameters: PeopleParameters = DEFAULT_PEOPLE, *, needs_hips: bool = True
+    ) -> None:
+        self._place_joints = _TRUNK if needs_hips else _CHEST
         self._parameters = parameters
         self._tracks: list[_Track] = []
         self._next = 0
@@ -64,7 +71,7 @@ class Identities:
         Those whose trunk is not seen are left out. A clock that went back starts anew.
         """
         self._forget(time_ns)
-        sightings = _sightings(people)
+        sightings = _sightings(people, self._place_joints)
         matches = self._match(sightings, time_ns)
         numbered: dict[int, Person] = {}
         for index, sighting in enumerate(sightings):
@@ -127,12 +134,12 @@ class Identities:
         track.log_lengths = mean + weight * change
 
 
-def _sightings(people: Sequence[Person]) -> list[_Sighting]:
-    """The people whose trunk is seen."""
+def _sightings(people: Sequence[Person], place_joints: Indices) -> list[_Sighting]:
+    """The people of whom all joints are seen that say where they are."""
     sightings = []
     for person in people:
         joints = joints_of(person)
-        if np.isfinite(joints[_TRUNK]).all():
+        if np.isfinite(joints[place_joints]).all():
             lengths = np.log(np.maximum(part_lengths(joints)[_BONES], 1e-3))
-            sightings.append(_Sighting(person, joints[_TRUNK].mean(axis=0), lengths))
+            sightings.append(_Sighting(person, joints[place_joints].mean(axis=0), lengths))
     return sightings

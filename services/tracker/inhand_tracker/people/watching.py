@@ -40,10 +40,14 @@ class WatchedObject:
 
 
 class Watcher(ABC):
-    """Watches which objects one person uses, of those that ``names`` lists."""
+    """Watches which objects one person uses, of those that ``names`` lists.
 
-    def __init__(self, names: Sequence[str]) -> None:
+    ``needs_hips`` is false where all was learned from people whose hips are never seen.
+    """
+
+    def __init__(self, names: Sequence[str], *, needs_hips: bool = True) -> None:
         self.names = tuple(names)
+        self.needs_hips = needs_hips
 
     @abstractmethod
     def restart(self) -> None:
@@ -67,8 +71,8 @@ class Watcher(ABC):
 class GivenObjects(Watcher):
     """Watches objects that are all in use; each has its own tracker, by its name."""
 
-    def __init__(self, trackers: Mapping[str, ObjectTracker]) -> None:
-        super().__init__(tuple(trackers))
+    def __init__(self, trackers: Mapping[str, ObjectTracker], *, needs_hips: bool = True) -> None:
+        super().__init__(tuple(trackers), needs_hips=needs_hips)
         self._trackers = trackers
 
     def restart(self) -> None:
