@@ -41,6 +41,7 @@ def test_the_command_writes_what_the_contract_says(
     assert "…" not in told
 
 
+@pytest.mark.long
 def test_one_long_take_is_evaluated_by_its_stretches_and_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -31,6 +31,7 @@ def vertex_error_cm(trained: Dataset, tested: Dataset | None = None) -> float:
     return 100.0 * sum(trial.score.vertex_error_m for trial in trials) / len(trials)
 
 
+@pytest.mark.long
 def test_a_model_of_upper_bodies_is_saved_with_the_joints_that_it_does_not_know(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -41,6 +42,7 @@ def test_a_model_of_upper_bodies_is_saved_with_the_joints_that_it_does_not_know(
     assert load_model(tmp_path / "m").mapping.absent_joints == tuple(sorted(TABLE))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("missing", [LEGS, TABLE, (*TABLE, *HANDS)])
 def test_upper_bodies_are_tracked_nearly_as_well_as_whole_ones(
     tmp_path: Path, missing: tuple[int, ...]
@@ -67,6 +69,7 @@ def test_simulated_people_are_followed_nearly_as_well_by_their_upper_bodies(
     assert max(errors.values()) < 1.35 * errors["whole"]
 
 
+@pytest.mark.long
 def test_a_model_of_upper_bodies_tracks_whole_ones(tmp_path: Path) -> None:
     upper = write_dataset(tmp_path / "upper", frames=60, missing=TABLE)
     whole = write_dataset(tmp_path / "whole", 1, frames=60, first=9)
@@ -74,6 +77,7 @@ def test_a_model_of_upper_bodies_tracks_whole_ones(tmp_path: Path) -> None:
     assert vertex_error_cm(upper, whole) == pytest.approx(vertex_error_cm(upper, lacking))
 
 
+@pytest.mark.long
 def test_people_without_a_pelvis_are_not_tested_by_what_whole_ones_taught(tmp_path: Path) -> None:
     whole = write_dataset(tmp_path / "whole")
     lacking = write_dataset(tmp_path / "lacking", 1, first=9, missing=TABLE)

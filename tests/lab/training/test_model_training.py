@@ -127,6 +127,7 @@ def test_the_command_saves_a_model_and_says_what_was_learned(
     assert f"{learned.translation_part[0]}, in" in shown
 
 
+@pytest.mark.long
 def test_one_long_take_of_one_person_gives_a_model_and_says_what_it_is_of(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
