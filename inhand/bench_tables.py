@@ -55,8 +55,8 @@ def weighing_table(speed: TrackerSpeed) -> Table:
 
 def fusion_table(speed: TrackerSpeed) -> Table:
     """What a frame of fusion costs by the size of its training."""
-    table = Table(title="a frame of fusion, by what its prior was learned from")
-    for name in ("labelled frames", "learning, s", "without image, ms", "with image, ms"):
+    table = Table(title="processor time of fusion by what its prior was learned from")
+    for name in ("labelled frames", "learning, s", "frame without image, ms", "with image, ms"):
         table.add_column(name, justify="right")
     for cost in speed.fusion:
         table.add_row(

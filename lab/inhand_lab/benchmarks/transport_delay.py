@@ -83,7 +83,8 @@ def _exchanged(frame: RgbdFrame, parameters: TransportParameters) -> tuple[Times
     with ProcessPoolExecutor(2, context, transport_ends.begin, (context.Event(),)) as pool:
         came = pool.submit(transport_ends.receive, exchange)
         sent = pool.submit(transport_ends.send, exchange)
-        return sent.result(), came.result()
+        arrived = came.result()  # first: why it failed, where it did, is what the sender waits for
+        return sent.result(), arrived
 
 
 def _free_addresses() -> Mapping[str, str]:
