@@ -28,6 +28,8 @@ from inhand.looking import (
 from inhand.results import listing, write_json
 
 SECONDS = 5.0
+MOST_KEYS = 10
+"""Number of keys of an instance, at the most, whose unused messages have a line each."""
 LATE_MS = 100.0
 """Milliseconds after its capture from which on a message is said to come late."""
 
@@ -51,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise nothing_heard(look.site, arguments.seconds)
     if living:
         output().print(_table(living))
-    for line in (*_left_unused(living), *late_lines(living)):
+    for line in (*left_unused(living), *late_lines(living)):
         print(line)
     for line in problems:
         print(f"WRONG: {line}")
@@ -131,13 +133,16 @@ def late_lines(living: dict[Instance, Heard | None]) -> list[str]:
     return lines
 
 
-def _left_unused(living: dict[Instance, Heard | None]) -> list[str]:
-    """One line for each key that an instance did not use every message of, and why."""
+def left_unused(living: dict[Instance, Heard | None]) -> list[str]:
+    """One line for each key that an instance did not use every message of, and why; of many keys
+    those with the most."""
     lines = []
     for instance, heard in living.items():
         if heard is None:
             continue
-        for key in _unused(heard.health):
+        who, unused = " ".join(instance), _unused(heard.health)
+        most = sorted(unused, key=unused.__getitem__, reverse=True)[:MOST_KEYS]
+        for key in most:
             topic = heard.health.topics[key]
             reasons = [
                 f"{count} {reason}"
@@ -148,5 +153,10 @@ def _left_unused(living: dict[Instance, Heard | None]) -> list[str]:
                 )
                 if count
             ]
-            lines.append(f"{' '.join(instance)}, {short_key(key)}: {', '.join(reasons)}")
+            lines.append(f"{who}, {short_key(key)}: {', '.join(reasons)}")
+        if len(most) < len(unused):
+            left = sum(unused.values()) - sum(unused[key] for key in most)
+            lines.append(
+                f"{who}, {len(unused) - len(most)} more keys: {left} messages were not used"
+            )
     return lines

@@ -3,12 +3,15 @@
 from inhand_schemas.messages import Health, TopicHealth
 
 from inhand.instances import Heard
-from inhand.status import LATE_MS, late_lines
+from inhand.status import LATE_MS, MOST_KEYS, late_lines, left_unused
 
 KEY = "inhand/@v1/rig/rgbd/front"
 
 
-def said(late_ms: float | None, effort: float | None) -> list[str]:
+Living = dict[tuple[str, str], Heard | None]
+
+
+def living(topics: dict[str, TopicHealth], effort: float | None = None) -> Living:
     health = Health(
         sequence=0,
         time_ns=1,
@@ -17,10 +20,14 @@ def said(late_ms: float | None, effort: float | None) -> list[str]:
         state="running",
         uptime_s=1.0,
         resident_bytes=1,
-        topics={KEY: TopicHealth(received=1, late_ms=late_ms)},
+        topics=topics,
         effort=effort,
     )
-    return late_lines({("tracker", "mug"): Heard(health, 0.0, 1), ("recorder", "disk"): None})
+    return {("tracker", "mug"): Heard(health, 0.0, 1), ("recorder", "disk"): None}
+
+
+def said(late_ms: float | None, effort: float | None) -> list[str]:
+    return late_lines(living({KEY: TopicHealth(received=1, late_ms=late_ms)}, effort))
 
 
 def test_who_is_on_time_with_the_whole_effort_is_not_named() -> None:
@@ -32,3 +39,21 @@ def test_keys_that_come_late_and_trackers_that_do_less_are_named() -> None:
         "tracker mug, rgbd/front: up to 250 ms after capture",
         "tracker mug: does 40 % of its usual work in a frame, to keep up with its camera",
     ]
+
+
+def test_what_was_not_used_has_a_line_a_key_that_says_why() -> None:
+    topics = {KEY: TopicHealth(received=9, dropped=2, malformed=1, lost=4)}
+    assert left_unused(living(topics)) == [
+        "tracker mug, rgbd/front: 2 came too late or too fast, 1 could not be read, 4 never came"
+    ]
+
+
+def test_of_a_flood_of_keys_those_with_the_most_are_named_and_the_others_counted() -> None:
+    topics = {
+        f"inhand/@v1/rig/event/k{number}": TopicHealth(received=1, malformed=number)
+        for number in range(1, 1001)
+    }
+    lines = left_unused(living(topics))
+    assert lines[0] == "tracker mug, event/k1000: 1000 could not be read"
+    assert len(lines) == MOST_KEYS + 1
+    assert lines[-1] == f"tracker mug, 990 more keys: {sum(range(1, 991))} messages were not used"
