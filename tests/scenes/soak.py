@@ -53,11 +53,12 @@ def soak(folder: Path, minutes: float) -> dict[str, Any]:
 def _prepare(rig: RunningRig, folder: Path) -> None:
     people, model = folder / "people", folder / "mug.model"
     arguments = ["--interactions", "drinkFromMug", "--participants", "3", "--frames", "300"]
-    for made in (
-        rig.done("simulate", people, *arguments),
-        rig.done("train", people, "-o", model, "--without", "p00"),
+    for verb in (
+        ("simulate", people, *arguments),
+        ("train", people, "-o", model, "--without", "p00"),
     ):
-        assert made.popen.returncode == 0, made.stderr
+        made = rig.inhand(*verb)  # may compile first
+        assert made.popen.wait(600.0) == 0, made.stderr
     recording = sorted((people / "recordings").glob("*.mcap"))[0]
     rig.configure(
         f'[capture.capture]\nsource = "replay"\noptions = {{ file = "{recording}", loop = true }}\n'
