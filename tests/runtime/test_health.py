@@ -181,3 +181,14 @@ def test_troubles_that_a_sender_invents_are_bounded() -> None:
     report = board.report()
     assert len(report.troubles) == MOST_TROUBLES
     assert HEALTH.decode(HEALTH.encode(report)) == report
+
+
+def test_what_the_inbox_had_no_room_for_is_dropped_and_not_lost_as_well() -> None:
+    board = HealthBoard("tracker", "mug")
+    board.received("a", 1)
+    board.overflowed("a")
+    board.overflowed("a")
+    board.received("a", 6)
+    board.received("a", 7)
+    topic = board.report().topics["a"]
+    assert (topic.dropped, topic.lost) == (2, 2)

@@ -92,7 +92,7 @@ class Daemon:
         """
         if samples is None:
             samples = NEWEST_SAMPLES if topic.delivery.readers == "newest" else EVERY_SAMPLES
-        lane = self.inbox.lane(samples=samples, size=size, on_drop=self.health.dropped)
+        lane = self.inbox.lane(samples=samples, size=size, on_drop=self.health.overflowed)
         pattern = topic.pattern(self.site) if name is None else topic.key(self.site, name)
         self._subscriptions.append(subscribe(self._session, pattern, topic.delivery, lane.put))
 

@@ -53,6 +53,7 @@ class HealthBoard:
         self._dropped: Counter[str] = Counter()
         self._malformed: Counter[str] = Counter()
         self._lost: Counter[str] = Counter()
+        self._overflowed: Counter[str] = Counter()
         self._latest_ms: dict[str, float] = {}
         self._sequences: dict[str, int] = {}
         self._keys: set[str] = set()
@@ -72,19 +73,27 @@ class HealthBoard:
     def received(self, key: str, sequence: int | None = None) -> None:
         """Count a message taken out of the inbox, and those that its number shows as missing.
 
-        A number that goes back, or far ahead, means a publisher that began anew, and no loss.
+        What the inbox had no room for came, and is not missing. A number that goes back, or far
+        ahead, means a publisher that began anew, and no loss.
         """
         key = self._count(self._received, key)
         if sequence is None or key == OTHER_KEYS:
             return
         with self._lock:
             missing = sequence - self._sequences.get(key, sequence) - 1
+            missing -= self._overflowed.pop(key, 0)
             self._sequences[key] = sequence
             if 0 < missing < FARTHEST_GAP:
                 self._lost[key] += missing
 
+    def overflowed(self, key: str) -> None:
+        """Count a message that the inbox had no room for."""
+        key = self._count(self._dropped, key)
+        with self._lock:
+            self._overflowed[key] += 1
+
     def dropped(self, key: str, count: int = 1) -> None:
-        """Count messages that the inbox had no room for, or that were skipped as too old."""
+        """Count messages that were skipped as too old, or for another reason than a full inbox."""
         self._count(self._dropped, key, count)
 
     def drops(self) -> dict[str, int]:
