@@ -49,5 +49,5 @@ def find_anchors(joints: Array, parameters: BodyParameters = DEFAULT_BODY) -> An
     return Anchors(*kernels.anchors(joints, parameters.straight_arm, _NINE))
 
 
-_NINE = np.empty(len(ANCHORS))
+_NINE = np.zeros(len(ANCHORS))
 """It tells the kernel how many anchors there are."""

@@ -28,7 +28,7 @@ PELVIS_JOINTS = np.array([Joint.HIP_CENTER, Joint.SPINE, Joint.HIP_LEFT, Joint.H
 LEG_SHARE = 0.491
 TRUNK_SHARE = 0.405
 
-_FOUR = np.empty(4)
+_FOUR = np.zeros(4)
 """It tells the kernel how long a quaternion is."""
 _MIRRORED = np.array(MIRRORED_JOINTS)
 _TRUNK_PARTS = [PARTS.index(name) for name in ("Spine", "ShoulderCenter", "Head")]

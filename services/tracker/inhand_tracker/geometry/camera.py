@@ -51,7 +51,7 @@ class Intrinsics:
         return np.column_stack((across * depths[:, None], depths))
 
 
-_PIXEL = np.empty(2)
+_PIXEL = np.zeros(2)
 """It tells the compiled function how long a pixel is."""
 
 

@@ -15,7 +15,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels import pose_normals as kernels
 from inhand_tracker.geometry.weights import normalised_weights
 
-SIX = np.empty(6)
+SIX = np.zeros(6)
 """It tells kernels how long a deviation is."""
 
 

@@ -22,7 +22,7 @@ from inhand_tracker.geometry.kernels.quaternions import (
 )
 
 _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
-_THREE, _FOUR = np.empty(3), np.empty(4)
+_THREE, _FOUR = np.zeros(3), np.zeros(4)
 """They tell compiled functions how long their results are."""
 
 
