@@ -165,6 +165,19 @@ def test_an_installation_starts_from_the_cache_and_is_not_written(tmp_path: Path
     assert not list(site.rglob("*.nb?"))
 
 
+@pytest.mark.long
+def test_a_tracker_that_starts_again_keeps_all_that_was_compiled(tmp_path: Path) -> None:
+    """What its kernels are compiled from is the same at each start."""
+    call = CALL.format(call="import inhand_tracker.service; result = 0")
+    kept = []
+    for _ in range(2):
+        env = os.environ | {"INHAND_CACHE": str(tmp_path)}
+        subprocess.run([sys.executable, "-c", call], env=env, check=True, capture_output=True)
+        kept.append({file: file.stat().st_mtime_ns for file in tmp_path.rglob("*.nb?")})
+    assert kept[0]
+    assert kept[0] == kept[1]
+
+
 @pytest.mark.parametrize(
     ("given", "folder"),
     [
