@@ -12,7 +12,8 @@ from people import STANDING
 
 MODEL = Path(__file__).parents[1] / "tracker/golden/drinkFromMug.model"
 
-NEEDED_BY_NOBODY = ("faiss", "matplotlib", "sklearn", "trimesh", "scipy.linalg", "scipy.spatial")
+NEEDED_BY_NOBODY = ("faiss", "matplotlib", "sklearn", "trimesh", "scipy.spatial")
+"""(Numba itself loads ``scipy.linalg`` with the first compiled function, where SciPy is.)"""
 NEEDED_BY_THE_TRACKER = ("cv2", "numba")
 LOADED = """
 import json, sys

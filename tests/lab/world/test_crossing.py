@@ -13,6 +13,7 @@ class Notes:
     """A watcher that notes where the person is whom it watches."""
 
     names = ("thing",)
+    needs_hips = True
 
     def __init__(self) -> None:
         self.hips: list[np.ndarray | None] = []
