@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis.extra.numpy import arrays
 from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.kernels.nearest_rotation import nearest_rotation
 from people import quaternion_of, same_rotation, scipy_rotation
 from scipy.spatial.transform import Rotation
 
@@ -168,7 +169,8 @@ def test_opposite_rotations_still_have_a_finite_mean() -> None:
 def test_no_rotation_is_nearer_than_the_nearest(seed: int) -> None:
     random = np.random.default_rng(seed)
     matrix = random.normal(size=(3, 3))
-    found = rotations.nearest(matrix)
+    found = np.empty((3, 3))
+    nearest_rotation(matrix, found)
     assert np.linalg.det(found) == pytest.approx(1.0)
     others = Rotation.random(200, random_state=seed).as_matrix()
     distances = np.linalg.norm(others - matrix, axis=(1, 2))
@@ -185,6 +187,9 @@ def test_what_is_missing_stays_missing_without_a_word() -> None:
         rotations.rotate(rotation, vector),
         rotations.multiply(rotation, rotation),
         rotations.from_matrix(rotations.to_matrix(rotation)),
-        rotations.nearest(rotations.to_matrix(rotation)).reshape(64, 9),
+        rotations.principal(rotation[:, :, None] * rotation[:, None]),
     ):
         np.testing.assert_array_equal(np.isfinite(found).all(axis=1), np.arange(64) % 3 == 0)
+    nearest = np.empty((3, 3))
+    nearest_rotation(np.full((3, 3), np.nan), nearest)
+    assert np.isnan(nearest).all()

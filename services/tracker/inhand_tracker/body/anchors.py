@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inhand_tracker.body.kernels import axes as kernels
-from inhand_tracker.body.parameters import DEFAULT_BODY, BodyParameters
+from inhand_tracker.body.parameters import DEFAULT_BODY
 from inhand_tracker.geometry.arrays import Array
 
 ANCHORS = (
@@ -44,9 +44,9 @@ def trunk_axes(joints: Array) -> Array:
     return kernels.trunk(joints)
 
 
-def find_anchors(joints: Array, parameters: BodyParameters = DEFAULT_BODY) -> Anchors:
+def find_anchors(joints: Array) -> Anchors:
     """Find the anchors of joints (..., 20, 3)."""
-    return Anchors(*kernels.anchors(joints, parameters.straight_arm, _NINE))
+    return Anchors(*kernels.anchors(joints, DEFAULT_BODY.straight_arm, _NINE))
 
 
 _NINE = np.zeros(len(ANCHORS))

@@ -77,6 +77,10 @@ class PoseMixture:
             scales = np.log(self.weights) - np.log(diagonals).sum(axis=1) - kernels.LOG_TURNS
         return scales[:, None] - 0.5 * squares
 
+    def log_density(self, centres: Array, orientations: Array) -> Array:
+        """Log density (P,) of poses (P, 3) and (P, 4)."""
+        return np.logaddexp.reduce(self.log_densities(centres, orientations), axis=0)
+
     def moments(self) -> PoseGaussian:
         """Give the normal distribution of the same mean and covariance."""
         centres, turns = self._means
@@ -113,12 +117,6 @@ def means_of(parts: Sequence[PoseGaussian]) -> tuple[Array, Array]:
     """Return the centres (K, 3) and rotations (K, 4) of distributions."""
     centres = np.array([part.centre for part in parts])
     return centres, np.array([part.rotation for part in parts])
-
-
-def log_sum(logs: Array) -> Array:
-    """Return the logarithms (P,) of the sums of K numbers by their logarithms (K, P)."""
-    most = logs.max(axis=0)
-    return most + np.log(np.exp(logs - most).sum(axis=0))
 
 
 def moved_information(information: Array, arms: Array) -> Array:

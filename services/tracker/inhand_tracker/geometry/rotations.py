@@ -7,19 +7,19 @@ import numpy as np
 from inhand_runtime.compiled import vectorised
 
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.kernels.nearest_rotation import (
-    nearest_rotation,
-    principal_vector,
-)
+from inhand_tracker.geometry.kernels.nearest_rotation import principal_vector
 from inhand_tracker.geometry.kernels.quaternions import (
     product,
     quaternion_in,
     quaternion_of,
     quaternion_of_matrix,
+    set_matrix,
+    set_quaternion,
     turned,
     vector_in,
     vector_of,
 )
+from inhand_tracker.geometry.kernels.vectors import set_vector
 
 _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 _THREE, _FOUR = np.zeros(3), np.zeros(4)
@@ -98,52 +98,34 @@ def principal(scatter: Array) -> Array:
     return _principal(scatter)
 
 
-def nearest(matrix: Array) -> Array:
-    """The rotation (..., 3, 3) nearest to each matrix: the orthogonal Procrustes problem."""
-    return _nearest(matrix)
-
-
 @vectorised("(q),(q)->(q)")
 def _multiply(first: Array, second: Array, chained: Array) -> None:
-    w, x, y, z = product(quaternion_in(first), quaternion_in(second))
-    chained[0], chained[1], chained[2], chained[3] = w, x, y, z
+    set_quaternion(chained, product(quaternion_in(first), quaternion_in(second)))
 
 
 @vectorised("(q),(v)->(v)")
 def _rotate(quaternion: Array, vector: Array, rotated: Array) -> None:
-    rotated[0], rotated[1], rotated[2] = turned(quaternion_in(quaternion), vector_in(vector))
+    set_vector(rotated, turned(quaternion_in(quaternion), vector_in(vector)))
 
 
 @vectorised("(v),(q)->(q)")
 def _from_vector(vector: Array, four: Array, quaternion: Array) -> None:
-    w, x, y, z = quaternion_of(vector_in(vector))
-    quaternion[0], quaternion[1], quaternion[2], quaternion[3] = w, x, y, z
+    set_quaternion(quaternion, quaternion_of(vector_in(vector)))
 
 
 @vectorised("(q),(v)->(v)")
 def _to_vector(quaternion: Array, three: Array, vector: Array) -> None:
-    vector[0], vector[1], vector[2] = vector_of(quaternion_in(quaternion))
+    set_vector(vector, vector_of(quaternion_in(quaternion)))
 
 
 @vectorised("(q),(v)->(v,v)")
 def _to_matrix(quaternion: Array, three: Array, matrix: Array) -> None:
-    w, x, y, z = quaternion_in(quaternion)
-    matrix[0, 0], matrix[1, 1] = 1 - 2 * (y * y + z * z), 1 - 2 * (x * x + z * z)
-    matrix[2, 2] = 1 - 2 * (x * x + y * y)
-    matrix[0, 1], matrix[1, 0] = 2 * (x * y - w * z), 2 * (x * y + w * z)
-    matrix[0, 2], matrix[2, 0] = 2 * (x * z + w * y), 2 * (x * z - w * y)
-    matrix[1, 2], matrix[2, 1] = 2 * (y * z - w * x), 2 * (y * z + w * x)
+    set_matrix(matrix, quaternion_in(quaternion))
 
 
 @vectorised("(v,v),(q)->(q)")
 def _from_matrix(matrix: Array, four: Array, quaternion: Array) -> None:
-    w, x, y, z = quaternion_of_matrix(matrix)
-    quaternion[0], quaternion[1], quaternion[2], quaternion[3] = w, x, y, z
-
-
-@vectorised("(v,v)->(v,v)")
-def _nearest(matrix: Array, rotation: Array) -> None:
-    nearest_rotation(matrix, rotation)
+    set_quaternion(quaternion, quaternion_of_matrix(matrix))
 
 
 @vectorised("(q,q)->(q)")

@@ -25,19 +25,14 @@ Pose = tuple[np.ndarray, np.ndarray]
 Measurement = tuple[np.ndarray, np.ndarray, float, float]
 
 
-def gathered(settings: GatherSettings = SETTINGS) -> Equations:
-    translations, orientations = arrays.poses()
-    count = len(translations)
-    equations = Equations(np.zeros((count, 6, 6)), np.zeros((count, 6)))
-    gather(
-        translations,
-        orientations,
-        np.tile(REACH, (len(translations), 1)),
-        OUTLINES,
-        PIXELS,
-        settings,
-        equations,
-    )
+def gathered(
+    settings: GatherSettings = SETTINGS, *, count: int = 24, start: float = 0.0
+) -> Equations:
+    """The equations of poses, of which every element was ``start`` before."""
+    translations, orientations = arrays.poses(count)
+    equations = Equations(np.full((count, 6, 6), start), np.full((count, 6), start))
+    reaches = np.tile(REACH, (count, 1))
+    gather(translations, orientations, reaches, OUTLINES, PIXELS, settings, equations)
     return equations
 
 
@@ -147,26 +142,6 @@ def test_what_is_not_wanted_adds_nothing() -> None:
 
 
 def test_equations_are_added_to_what_was_there() -> None:
-    translations, orientations = arrays.poses(3)
-    equations = Equations(np.ones((3, 6, 6)), np.ones((3, 6)))
-    gather(
-        translations,
-        orientations,
-        np.tile(REACH, (len(translations), 1)),
-        OUTLINES,
-        PIXELS,
-        SETTINGS,
-        equations,
-    )
-    alone = Equations(np.zeros((3, 6, 6)), np.zeros((3, 6)))
-    gather(
-        translations,
-        orientations,
-        np.tile(REACH, (len(translations), 1)),
-        OUTLINES,
-        PIXELS,
-        SETTINGS,
-        alone,
-    )
+    equations, alone = gathered(count=3, start=1.0), gathered(count=3)
     np.testing.assert_allclose(equations.information, 1.0 + alone.information)
     np.testing.assert_allclose(equations.gradients, 1.0 + alone.gradients)

@@ -5,7 +5,12 @@ from inhand_runtime.compiled import njit, vectorised
 from inhand_schemas.joints import JOINT_NAMES
 
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.geometry.kernels.quaternions import Vector, quaternion_of_matrix, vector_in
+from inhand_tracker.geometry.kernels.quaternions import (
+    Vector,
+    quaternion_of_matrix,
+    set_quaternion,
+    vector_in,
+)
 from inhand_tracker.geometry.kernels.vectors import (
     blended,
     cross,
@@ -84,8 +89,7 @@ def pelvis_rotation(joints: Array, four: Array, quaternion: Array) -> None:
     z = cross(x, minus(vector_in(joints[SPINE]), vector_in(joints[HIPS])))
     matrix = np.empty((3, 3))
     set_columns(matrix, _direction(x), _direction(cross(z, x)), _direction(z))
-    w, i, j, k = quaternion_of_matrix(matrix)
-    quaternion[0], quaternion[1], quaternion[2], quaternion[3] = w, i, j, k
+    set_quaternion(quaternion, quaternion_of_matrix(matrix))
 
 
 @vectorised("(j,v)->()")

@@ -4,6 +4,7 @@ import numpy as np
 from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.kernels.quaternions import quaternion_in, set_matrix
 
 SWEEPS = 30
 """Number of sweeps of Jacobi's method, at the most; it takes half a dozen."""
@@ -73,9 +74,4 @@ def nearest_rotation(matrix: Array, rotation: Array) -> None:
     for row in range(4):
         for column in range(row):
             symmetric[row, column] = symmetric[column, row]
-    w, x, y, z = principal_vector(symmetric)
-    rotation[0, 0], rotation[1, 1] = 1.0 - 2.0 * (y * y + z * z), 1.0 - 2.0 * (x * x + z * z)
-    rotation[2, 2] = 1.0 - 2.0 * (x * x + y * y)
-    rotation[0, 1], rotation[1, 0] = 2.0 * (x * y - w * z), 2.0 * (x * y + w * z)
-    rotation[0, 2], rotation[2, 0] = 2.0 * (x * z + w * y), 2.0 * (x * z - w * y)
-    rotation[1, 2], rotation[2, 1] = 2.0 * (y * z - w * x), 2.0 * (y * z + w * x)
+    set_matrix(rotation, quaternion_in(principal_vector(symmetric)))

@@ -13,9 +13,11 @@ from inhand_tracker.geometry.kernels.quaternions import (
     product,
     quaternion_in,
     quaternion_of,
+    set_quaternion,
     vector_in,
     vector_of,
 )
+from inhand_tracker.geometry.kernels.vectors import set_vector
 
 LOG_TURNS = 3.0 * np.log(2.0 * np.pi)
 """Logarithm of a standard normal distribution's scale in six dimensions."""
@@ -29,7 +31,7 @@ def set_deviation(
     turn = product(quaternion_in(pose_rotation), inverse(quaternion_in(rotation)))
     for axis in range(3):
         deviation[axis] = pose_centre[axis] - centre[axis]
-    deviation[3], deviation[4], deviation[5] = vector_of(turn)
+    set_vector(deviation[3:], vector_of(turn))
 
 
 @njit(cache=True, nogil=True, inline="always")
@@ -39,8 +41,8 @@ def set_deviated(
     """Fill a pose, (3,) and (4,), by its deviation (6,) from a mean."""
     for axis in range(3):
         pose_centre[axis] = centre[axis] + deviation[axis]
-    w, x, y, z = product(quaternion_of(vector_in(deviation[3:])), quaternion_in(rotation))
-    pose_rotation[0], pose_rotation[1], pose_rotation[2], pose_rotation[3] = w, x, y, z
+    turn = quaternion_of(vector_in(deviation[3:]))
+    set_quaternion(pose_rotation, product(turn, quaternion_in(rotation)))
 
 
 @njit(cache=True, nogil=True)

@@ -27,6 +27,23 @@ def quaternion_in(array: Array) -> Quaternion:
 
 
 @njit(cache=True, nogil=True, inline="always")
+def set_quaternion(array: Array, quaternion: Quaternion) -> None:
+    """Write a quaternion into an array (4,)."""
+    array[0], array[1], array[2], array[3] = quaternion
+
+
+@njit(cache=True, nogil=True, inline="always")
+def set_matrix(array: Array, quaternion: Quaternion) -> None:
+    """Write the rotation matrix of a quaternion into an array (3, 3)."""
+    w, x, y, z = quaternion
+    array[0, 0], array[1, 1] = 1.0 - 2.0 * (y * y + z * z), 1.0 - 2.0 * (x * x + z * z)
+    array[2, 2] = 1.0 - 2.0 * (x * x + y * y)
+    array[0, 1], array[1, 0] = 2.0 * (x * y - w * z), 2.0 * (x * y + w * z)
+    array[0, 2], array[2, 0] = 2.0 * (x * z + w * y), 2.0 * (x * z - w * y)
+    array[1, 2], array[2, 1] = 2.0 * (y * z - w * x), 2.0 * (y * z + w * x)
+
+
+@njit(cache=True, nogil=True, inline="always")
 def product(first: Quaternion, second: Quaternion) -> Quaternion:
     """Chain rotations: ``second`` followed by ``first``."""
     w, x, y, z = first

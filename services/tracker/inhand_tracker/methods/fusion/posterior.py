@@ -12,7 +12,6 @@ from inhand_tracker.geometry.pose_gaussian import (
     SIX,
     PoseGaussian,
     PoseMixture,
-    log_sum,
     means_of,
     mixture,
     moved_information,
@@ -49,14 +48,13 @@ class ImagePosterior:
     def scores_by(self, weighed: Array, centres: Array, orientations: Array) -> tuple[Array, Array]:
         """Return the ``scores`` of poses that ``Sight.weigh`` has weighed, (P, 5)."""
         seen = self.sight.log_likelihood_by(weighed, self.view)
-        expected = log_sum(self.belief.log_densities(centres, orientations))
+        expected = self.belief.log_density(centres, orientations)
         return self._tempered(seen) + expected, seen
 
     def weigh(self, modes: Sequence[PoseGaussian], seen: Array) -> PoseMixture:
         """Weigh modes by their probability (Laplace's approximation); ``seen`` (K,) is the image's
         log-likelihood of each."""
-        centres, orientations = means_of(modes)
-        expected = log_sum(self.belief.log_densities(centres, orientations))
+        expected = self.belief.log_density(*means_of(modes))
         volumes = [np.log(np.diag(mode.root)).sum() for mode in modes]
         return mixture(modes, self._tempered(seen) + expected + volumes)
 

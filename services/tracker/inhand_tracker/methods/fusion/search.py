@@ -105,8 +105,8 @@ class ImageSearch:
         what is believed, and their log-posterior (P,)."""
         origins = self._sphere.origins(centres, orientations)
         weighed = self._sight.weigh(origins, orientations, posterior.view, quickly=True)
-        sharp = max(posterior.sharpness, self._parameters.least_sharpness)
-        trust = self._parameters.image_temper * sharp
+        parameters = posterior.parameters
+        trust = parameters.image_temper * max(posterior.sharpness, parameters.least_sharpness)
         view = self._sight.compare_unseen(weighed, posterior.view, trust)
         posterior = replace(posterior, view=view)
         return posterior, posterior.scores_by(weighed, centres, orientations)[0]

@@ -7,6 +7,7 @@ from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array, Bytes, Indices, Singles
 from inhand_tracker.geometry.camera import NEAREST_M
+from inhand_tracker.sight.kernels.projection import projected
 
 FARTHEST_PIXEL = 1e4
 """Pixel beyond which a limb is nowhere near the image."""
@@ -74,8 +75,8 @@ def mark_limbs(
             if not nearest > NEAREST_M:
                 continue
             for end in range(2):
-                pixels[end, 0] = lens[0] * ends[end, 0] / ends[end, 2] + lens[2]
-                pixels[end, 1] = lens[1] * ends[end, 1] / ends[end, 2] + lens[3]
+                x, y, z = ends[end]
+                pixels[end, 0], pixels[end, 1] = projected(lens, x, y, z)
             if not np.abs(pixels).max() <= FARTHEST_PIXEL:
                 continue
             _mark_limb(

@@ -5,6 +5,7 @@ from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import NEAREST_M
+from inhand_tracker.sight.kernels.projection import projected
 
 
 @njit(cache=True, nogil=True)
@@ -19,7 +20,7 @@ def spheres_region(centres: Array, radius: float, lens: Array) -> tuple[float, f
         x, y, z = centres[index]
         if not z > NEAREST_M:
             continue
-        u, v = x / z * lens[0] + lens[2], y / z * lens[1] + lens[3]
+        u, v = projected(lens, x, y, z)
         around = radius * max(lens[0], lens[1]) / z
         if np.isfinite(u) and np.isfinite(v):
             left, right = min(left, u - around), max(right, u + around)
