@@ -4,7 +4,6 @@ import json
 import signal
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import psutil
 import pytest
@@ -338,18 +337,13 @@ def test_up_stops_what_publishes_before_what_records_so_that_nothing_is_lost(
     up = rig.inhand("up", "--config", rig.config)
     up.said("recorder disk is up")
     eventually("a file", lambda: list((rig.folder / "again").glob("*.part")))
-    eventually("60 frames", lambda: published(rig.health("front")) >= 60)
+    eventually("60 frames", lambda: rig.counted("front", RGBD_KEY, "published") >= 60)
     assert up.stop() == 0
     (path,) = (rig.folder / "again").glob("*.mcap")
     last_words = [m.message() for m in read_recording(path, streams=("health",))]
     (front,) = (h for h in last_words if h.instance == "front" and h.state == "stopping")
     frames = list(read_recording(path, streams=("rgbd",)))
     assert len(frames) == front.topics[RGBD_KEY].published
-
-
-def published(health: dict[str, Any]) -> int:
-    """How many frames an instance published."""
-    return int(health["topics"].get(RGBD_KEY, {"published": 0})["published"])
 
 
 @pytest.mark.long

@@ -61,7 +61,7 @@ def tracked_live(
     keys = [f"inhand/@v1/rig/pose/{load_model(model).shape.name}" for model in models]
     eventually(
         "a pose of every object for every skeleton",
-        lambda: all(rig.health("follower")["topics"][key]["published"] == frames for key in keys),
+        lambda: all(rig.counted("follower", key, "published") == frames for key in keys),
     )
     assert up.stop(signal.SIGTERM) == 0
     (recorded,) = out.glob("*.mcap")

@@ -135,7 +135,7 @@ def test_what_cannot_be_read_is_counted_told_once_a_kind_and_kept_apart(
         wire.session.put(RGBD_KEY, b"\x80", encoding=RGBD.encoding.replace("v1", "v2"))
     frames.put(RgbdFrame(sequence=0, time_ns=time.time_ns()))
     eventually("the frame on the disk", lambda: frames_in(rig) == 1)
-    assert rig.health("disk")["topics"][RGBD_KEY]["malformed"] == 6
+    assert rig.counted("disk", RGBD_KEY, "malformed") == 6
     assert recorder.stderr.count("no valid RgbdFrame") == 1
     assert recorder.stderr.count("RgbdFrame comes in version 2") == 1
     assert recorder.stop() == 0

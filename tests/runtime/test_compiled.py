@@ -135,6 +135,15 @@ def test_a_damaged_file_is_compiled_again_with_a_warning(
 
 
 @pytest.mark.long
+def test_a_disk_that_takes_nothing_costs_time_and_no_more(small: Path, tmp_path: Path) -> None:
+    full = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (500, 500)); "
+    answer, said = _start(small.parent, tmp_path / "cache", full + SMALL.lstrip())
+    assert answer["result"] == 6.0
+    assert "cannot keep compiled code in" in said
+    assert "Traceback" not in said
+
+
+@pytest.mark.long
 def test_a_loop_that_belongs_to_another_compilation_is_compiled_again(
     small: Path, tmp_path: Path
 ) -> None:

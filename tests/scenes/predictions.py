@@ -13,7 +13,7 @@ MIDDLE = wedge().marked_vertices.mean(axis=0)
 
 
 def height_of(joints: np.ndarray) -> float:
-    return body.stature(body.part_lengths(joints))
+    return body.stature_of(joints)
 
 
 def predictions(prior: Prior, joints: np.ndarray) -> list[Prediction]:

@@ -110,6 +110,11 @@ class RunningRig:
         """What ``inhand status`` tells of an instance that runs."""
         return self.healths()[instance]
 
+    def counted(self, instance: str, key: str, count: str) -> int:
+        """A count that an instance's health gives for a key; 0 before it tells of the key."""
+        topics = self.healths().get(instance, {"topics": {}})["topics"]
+        return int(topics.get(key, {count: 0})[count])
+
     def healths(self) -> dict[str, dict[str, Any]]:
         """What ``inhand status`` tells of all instances at one time."""
         path = self.folder / "status.json"

@@ -3,6 +3,7 @@
 Steps are as slow as they are said to be: what moves the clock is the tracker itself.
 """
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -162,6 +163,14 @@ def test_bodies_of_skipped_frames_are_remembered_in_their_order_before_the_next_
     track(camera, tracker)
     assert len(tracker.remembered) > 150
     assert happened == [round(camera.captured(number) * 1e9) for number in range(300)]
+
+
+def test_a_tracker_that_skips_much_is_degraded_and_says_how_much() -> None:
+    daemon = track(Camera(), Slow(0.2, 0.0))
+    report = daemon.health.report()
+    assert report.state == "degraded"
+    (trouble,) = report.troubles
+    assert re.match(r"7\d of 90 skeletons were skipped: this machine is too slow", trouble)
 
 
 def test_a_tracker_that_is_behind_has_the_picture_of_every_frame_that_it_tracks() -> None:

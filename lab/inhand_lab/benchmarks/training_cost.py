@@ -18,7 +18,11 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
-from inhand_tracker.body.skeleton import body_pose, part_lengths, pelvis_basis, stature
+from inhand_tracker.body.skeleton import (
+    body_pose,
+    pelvis_basis,
+    stature_of,
+)
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.mapping.body_pose_index import BodyPoseIndex
 from inhand_tracker.mapping.learning import LabelledSequence, learn
@@ -187,7 +191,7 @@ def _ask(folder: Path) -> Asking:
 def _body_poses(sequence: LabelledSequence) -> list[Array]:
     """Return the body poses (60,) of the frames in which the whole body was seen."""
     joints = sequence.joints[np.isfinite(sequence.joints).all(axis=(1, 2))]
-    return list(body_pose(joints, pelvis_basis(joints), stature(part_lengths(joints))))
+    return list(body_pose(joints, pelvis_basis(joints), stature_of(joints)))
 
 
 def _timed(

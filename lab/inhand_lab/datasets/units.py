@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import ObjectPose, Person, Skeletons
-from inhand_tracker.body.skeleton import part_lengths, stature
+from inhand_tracker.body.skeleton import part_lengths, stature, typical_lengths
 from inhand_tracker.body.stand_ins import TRUNK, seen_stature
 from inhand_tracker.geometry.arrays import Array, Indices
 
@@ -80,8 +80,9 @@ class _BodiesWithLabels:
 
 def _stature(lengths: Array) -> float:
     """The stature by part lengths (N, 19), of trunk and legs, or of arms and neck without them."""
-    whole = stature(lengths)
-    return whole if np.isfinite(whole) else seen_stature(lengths, TRUNK)
+    typical = typical_lengths(lengths)
+    whole = stature(typical)
+    return whole if np.isfinite(whole) else seen_stature(typical, TRUNK)
 
 
 def _check_stature(path: Path, height: float, far: float) -> None:

@@ -14,9 +14,8 @@ import numpy as np
 from inhand_tracker.body.skeleton import (
     body_pose,
     mirror_joints,
-    part_lengths,
     pelvis_basis,
-    stature,
+    stature_of,
 )
 from inhand_tracker.geometry.arrays import Array
 from rich.console import Console
@@ -48,7 +47,7 @@ def body_pose_sequence(
     seen = joints[whole]
     if handedness == "left":
         seen = mirror_joints(seen)
-    bodies = body_pose(seen, pelvis_basis(seen), stature(part_lengths(seen)))
+    bodies = body_pose(seen, pelvis_basis(seen), stature_of(seen))
     return BodyPoseSequence(participant, np.flatnonzero(whole) / frame_rate, bodies)
 
 

@@ -8,9 +8,8 @@ from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.body.skeleton import (
     body_pose,
     mirror_joints,
-    part_lengths,
     pelvis_basis,
-    stature,
+    stature_of,
 )
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.recognition.movement_window import MovementWindow
@@ -94,4 +93,4 @@ def _whole_poses(sequence: JointSequence) -> Array:
     if not len(whole):
         return np.empty((0, 60))
     with np.errstate(invalid="ignore", divide="ignore"):
-        return body_pose(whole, pelvis_basis(whole), stature(part_lengths(whole)))
+        return body_pose(whole, pelvis_basis(whole), stature_of(whole))

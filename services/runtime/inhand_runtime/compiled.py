@@ -15,17 +15,17 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
 
 import numba
 import numpy as np
-from numba.core.caching import FunctionCache
+from numba.core.caching import Cache, FunctionCache, NullCache
 from numba.core.dispatcher import Dispatcher
 from numba.np.ufunc.gufunc import GUFunc
-from numba.np.ufunc.wrappers import GufWrapperCache
+from numba.np.ufunc.wrappers import GufWrapperCache, _GufuncWrapper
 
 from inhand_runtime.cache_folder import cache_folder
 
@@ -75,8 +75,8 @@ class KernelLocator:
 LOCATOR = f"{__name__}.{KernelLocator.__name__}"
 
 
-class KernelCache(FunctionCache):
-    """Numba's cache of one kernel, which a damaged file or a full disk costs time and no more."""
+class _ForgivingCache(Cache):
+    """A cache of Numba's, which a damaged file or a full disk costs time and no more."""
 
     def load_overload(self, *wanted: Any) -> Any:
         """Load what was compiled; None where there is nothing that can be read."""
@@ -84,18 +84,30 @@ class KernelCache(FunctionCache):
             return super().load_overload(*wanted)  # type: ignore[no-untyped-call]
         except Exception as error:  # noqa: BLE001 - a damaged pickle may raise anything
             log.warning("a file in %s is damaged (%s): compiled again", self.cache_path, error)
-            self._keeping(self.flush)
+            self.flush()
             return None
 
     def save_overload(self, *compiled: Any) -> None:
         """Keep what was compiled, where that can be."""
         self._keeping(super().save_overload, *compiled)
 
+    def flush(self) -> None:
+        """Forget what was kept, where that can be."""
+        self._keeping(super().flush)
+
     def _keeping(self, keep: Callable[..., None], *compiled: Any) -> None:
         try:
             keep(*compiled)
         except OSError as error:
             log.warning("cannot keep compiled code in %s: %s", self.cache_path, error.strerror)
+
+
+class KernelCache(_ForgivingCache, FunctionCache):
+    """Keeps what is compiled of one function."""
+
+
+class LoopCache(_ForgivingCache, GufWrapperCache):  # type: ignore[misc]
+    """Keeps the loop over arrays of one function."""
 
 
 def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -131,15 +143,7 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
 
     def compiled(function: Callable[..., None]) -> Callable[..., Any]:
         with _kept_here():
-            try:
-                made = _vectorised(function, layout, types)
-            except Exception as error:
-                if not KEPT:
-                    raise
-                log.warning("a file in %s is damaged (%s): compiled again", FOLDER, error)
-                for cache in (FunctionCache(function), GufWrapperCache(function)):  # type: ignore[no-untyped-call]
-                    cache.flush()
-                made = _vectorised(function, layout, types)
+            made = _vectorised(function, layout, types)
 
         @wraps(function)
         def called(*arrays: Any) -> Any:
@@ -152,26 +156,35 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
 
 
 def _vectorised(function: Callable[..., None], layout: str, types: list[str]) -> Any:
-    made: Any = GUFunc(function, layout, cache=KEPT, targetoptions={"nopython": True})
+    made: Any = GUFunc(function, layout, targetoptions={"nopython": True})
     builder = made.gufunc_builder
-    build = builder.build
-
-    def build_pair(compiled: Any) -> Any:
-        """Build the loop over arrays, which Numba keeps apart from the function.
-
-        The one that was kept may be of another process's compilation than the function is. Numba
-        would then call a function at address 0: it is compiled again instead.
-        """
-        built = build(compiled)
-        if built[1]:
-            return built
-        GufWrapperCache(function).flush()
-        return build(compiled)
-
-    builder.build = build_pair
+    if KEPT:
+        builder.nb_func.cache = KernelCache(function)  # type: ignore[no-untyped-call]
+        builder.build = partial(_build_loop, function, builder)
     made.add(f"void({', '.join(types)})")
     made.disable_compile()
     return made.build_ufunc()
+
+
+def _build_loop(function: Callable[..., None], builder: Any, compiled: Any) -> Any:
+    """Build the loop over arrays, which Numba keeps apart from the function that it calls.
+
+    The one that was kept may be of another process's compilation than the function is: Numba would
+    then call a function at address 0. It is compiled again instead. Returns what ``build`` of
+    Numba's builders does: numbers of types, an address, and what must live as long.
+    """
+    caches: tuple[Any, ...] = LoopCache(function), LoopCache(function), NullCache()  # type: ignore[no-untyped-call]
+    for kept in caches:
+        wrapper: Any = _GufuncWrapper(  # type: ignore[no-untyped-call]
+            function, compiled, builder.sin, builder.sout, cache=None, is_parfors=False
+        )
+        wrapper.cache = kept
+        built = wrapper.build()
+        address = built.library.get_pointer_to_function(built.name)
+        if address:
+            break
+        kept.flush()
+    return [np.dtype(float).num] * len(compiled.signature.args), address, built.env
 
 
 @contextmanager

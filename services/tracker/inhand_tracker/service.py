@@ -17,7 +17,7 @@ from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.live.effort import Effort, after_step
 from inhand_tracker.live.moments import Moments
-from inhand_tracker.live.pictures import PictureWatch
+from inhand_tracker.live.shortfalls import Shortfall
 from inhand_tracker.loading import check, load_watcher
 from inhand_tracker.methods.registry import METHODS
 from inhand_tracker.people.following import PeopleWatched, worth_publishing
@@ -64,12 +64,21 @@ class TrackerService:
             name: daemon.publisher(POSE, name) for name in self._people.names
         }
         self._infos = InfoWatch(daemon.health)
-        self._pictures = PictureWatch(daemon.health)
+        self._pictures = Shortfall(
+            daemon.health,
+            "pictures",
+            "poses are without picture: pictures come late or not at all, or this machine is too "
+            "slow for them",
+        )
+        self._skeletons = Shortfall(
+            daemon.health,
+            "skeletons",
+            "skeletons were skipped: this machine is too slow for all that it tracks",
+        )
         self._every = settings.every_frame
         self._moments: Moments[Skeletons, RgbdFrame] = Moments(
             pixels=bool(self._needs), every=self._every
         )
-        self._unused_frames = 0
         self._effort = Effort()
         self._info: CameraInfo | None = None
         self._subscribe(settings.camera)
@@ -121,6 +130,7 @@ class TrackerService:
     def _skip(self, skipped: Sequence[Skeletons]) -> None:
         """Count moments that are skipped, and remember what bodies did in them."""
         for skeletons in skipped:
+            self._skeletons.note(True)
             self._people.remember(skeletons.people, skeletons.time_ns, self._note_failure)
         self._count_unused(len(skipped))
 
@@ -133,9 +143,7 @@ class TrackerService:
 
     def _count_unused(self, skeletons: int) -> None:
         """Count skeletons that are not tracked, and what frames went unused since the last time."""
-        frames = self._moments.unused_frames - self._unused_frames
-        self._unused_frames += frames
-        for topic, count in ((SKELETONS, skeletons), (RGBD, frames)):
+        for topic, count in ((SKELETONS, skeletons), (RGBD, self._moments.take_unused_frames())):
             if count:
                 self._daemon.health.dropped(self._keys[topic], count)
 
@@ -163,8 +171,9 @@ class TrackerService:
     def _track(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> None:
         """Track one frame: decode, watch each person, publish."""
         frame = self._decoded(skeletons, pixels)
+        self._skeletons.note(False)
         if self._needs:
-            self._pictures.note(frame.image is not None)
+            self._pictures.note(frame.image is None)
         objects = self._people.see(skeletons.people, frame, self._note_failure)
         source = self._source(skeletons)
         for person, thing in worth_publishing(objects):

@@ -179,8 +179,8 @@ def test_the_body_pose_does_not_change_when_the_scene_moves(
 @given(st.floats(0.3, 3.0))
 def test_the_body_pose_does_not_change_with_the_persons_size(scale: float) -> None:
     grown = scale * STANDING
-    height = body.stature(body.part_lengths(grown)[None])
-    own = body.stature(body.part_lengths(STANDING)[None])
+    height = body.stature(body.part_lengths(grown))
+    own = body.stature(body.part_lengths(STANDING))
     assert height == pytest.approx(scale * own)
     np.testing.assert_allclose(pose_of(grown, height), pose_of(STANDING, own), atol=1e-9)
 
@@ -200,7 +200,7 @@ def test_part_lengths_are_the_distances_of_their_ends() -> None:
 
 
 def test_standing_height_of_a_known_person() -> None:
-    height = body.stature(body.part_lengths(STANDING)[None])
+    height = body.stature(body.part_lengths(STANDING))
     assert height == pytest.approx(STANDING_HEIGHT)
 
 
@@ -219,7 +219,7 @@ def bent() -> np.ndarray:
 
 def test_a_person_who_bends_does_not_shrink() -> None:
     assert np.ptp(bent()[:, 1]) < 0.75 * np.ptp(STANDING[:, 1])
-    assert body.stature(body.part_lengths(bent())[None]) == pytest.approx(STANDING_HEIGHT)
+    assert body.stature(body.part_lengths(bent())) == pytest.approx(STANDING_HEIGHT)
     running = body.RunningHeight()
     for _ in range(5):
         running.update(STANDING)
@@ -259,19 +259,19 @@ RIGHT_LEG = ("HipRight", "KneeRight", "AnkleRight", "FootRight")
 
 @pytest.mark.parametrize("unseen", [LEFT_LEG, RIGHT_LEG, ("AnkleLeft",), ("FootLeft", "FootRight")])
 def test_one_leg_counts_for_both(unseen: tuple[str, ...]) -> None:
-    height = body.stature(body.part_lengths(without(*unseen))[None])
+    height = body.stature(body.part_lengths(without(*unseen)))
     assert height == pytest.approx(STANDING_HEIGHT)
 
 
 def test_both_legs_count_by_their_mean() -> None:
     joints = STANDING.copy()
     joints[14:16, 1] += 0.10  # the left shin is 10 cm longer
-    height = body.stature(body.part_lengths(joints)[None])
+    height = body.stature(body.part_lengths(joints))
     assert height == pytest.approx(STANDING_HEIGHT + 0.05 / 0.896)
 
 
 def test_the_trunk_does_where_no_leg_was_seen() -> None:
-    height = body.stature(body.part_lengths(without(*LEFT_LEG, *RIGHT_LEG))[None])
+    height = body.stature(body.part_lengths(without(*LEFT_LEG, *RIGHT_LEG)))
     assert height == pytest.approx(0.728 / 0.405)
 
 
@@ -282,8 +282,8 @@ def test_legs_that_were_seen_once_stay_known() -> None:
 
 
 def test_without_a_trunk_the_height_is_unknown() -> None:
-    assert np.isnan(body.stature(body.part_lengths(without("Head"))[None]))
-    assert np.isnan(body.stature(np.full((3, 19), np.nan)))
+    assert np.isnan(body.stature(body.part_lengths(without("Head"))))
+    assert np.isnan(body.stature(body.typical_lengths(np.full((3, 19), np.nan))))
     running = body.RunningHeight()
     assert np.isnan(running.update(without("Head")))
     assert running.update(STANDING) == pytest.approx(STANDING_HEIGHT)

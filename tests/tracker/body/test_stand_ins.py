@@ -12,6 +12,8 @@ from inhand_tracker.body.skeleton import (
     part_lengths,
     pelvis_basis,
     stature,
+    stature_of,
+    typical_lengths,
 )
 from inhand_tracker.body.stand_ins import REPLACEABLE, put_stand_ins, seen_stature
 from scipy.spatial.transform import Rotation
@@ -47,8 +49,8 @@ class TestStandIns:
         self, absent: tuple[int, ...]
     ) -> None:
         seen = without(STANDING, absent)
-        height = seen_stature(part_lengths(seen)[None], absent)
-        assert height == pytest.approx(stature(part_lengths(STANDING)[None]), rel=0.2)
+        height = seen_stature(part_lengths(seen), absent)
+        assert height == pytest.approx(stature(part_lengths(STANDING)), rel=0.2)
         placed = put_stand_ins(seen, absent, height)
         assert np.linalg.norm(placed - STANDING, axis=1).max() < 0.35
         kept = [joint for joint in range(20) if joint not in absent]
@@ -67,9 +69,9 @@ class TestStandIns:
 
     def test_what_is_read_live_is_what_is_learned_from(self, absent: tuple[int, ...]) -> None:
         joints, _, _ = waving(400, 3)
-        height = seen_stature(part_lengths(without(joints, absent)), absent)
+        height = seen_stature(typical_lengths(part_lengths(without(joints, absent))), absent)
         learned = put_stand_ins(joints, absent, height)
-        poses = body_pose(learned, pelvis_basis(learned), stature(part_lengths(learned)))
+        poses = body_pose(learned, pelvis_basis(learned), stature_of(learned))
         reader = BodyReader(Learned(poses), left_handed=False, absent=absent)
         for frame in range(350):
             body = reader.read(without(joints[frame], absent))
@@ -97,5 +99,5 @@ def test_nothing_is_read_while_nothing_shows_how_tall_somebody_is() -> None:
     unknown = np.full((20, 3), np.nan)
     reader = BodyReader(Learned(np.zeros((1, 60))), left_handed=False, absent=absent)
     assert reader.read(unknown) is None
-    assert np.isnan(seen_stature(part_lengths(unknown)[None], absent))
-    assert np.isnan(seen_stature(part_lengths(unknown)[None], LEGS))
+    assert np.isnan(seen_stature(part_lengths(unknown), absent))
+    assert np.isnan(seen_stature(part_lengths(unknown), LEGS))

@@ -138,7 +138,7 @@ def test_a_frame_that_comes_after_its_skeleton_went_is_unused() -> None:
     add(moments, 8)
     moments.add_frame(8, "frame 8", START + PERIOD_S)
     assert moments.next(START + PERIOD_S) == pair(8)
-    assert moments.unused_frames == 2
+    assert moments.take_unused_frames() == 2
 
 
 def test_only_the_newest_frames_are_kept() -> None:
@@ -189,7 +189,7 @@ def test_who_is_behind_goes_on_with_the_newest_moment_and_skips_the_others() -> 
     moments = behind(30)
     assert moments.next(START) == pair(29, *range(29))
     assert moments.next(START) is None
-    assert moments.unused_frames == 29
+    assert moments.take_unused_frames() == 29
 
 
 def test_a_newer_skeleton_whose_frame_is_not_there_yet_waits_for_it() -> None:
@@ -256,11 +256,11 @@ def test_every_skeleton_and_frame_is_used_or_counted(
     assert used == sorted(used)
     assert not (every and skipped)
     assert moments.leave() == 0
-    assert with_frame + moments.unused_frames == frames
+    assert with_frame + moments.take_unused_frames() == frames
 
 
 def test_what_waits_at_the_end_is_given_up_and_counted() -> None:
     moments = behind(3)
     assert moments.leave() == 3
-    assert moments.unused_frames == 3
+    assert moments.take_unused_frames() == 3
     assert moments.next(START) is None

@@ -75,7 +75,7 @@ def test_errors_are_those_of_people_who_were_held_out() -> None:
     """Two who hold it 20 cm apart: of each the other one only is known."""
     low, high = off_by(0.0, "p0", 0), off_by(0.2, "p1", 1)
     prior = learn_prior([low, high], wedge())
-    height = body.stature(body.part_lengths(low.joints))
+    height = body.stature_of(low.joints)
     upwards = prior.errors[:, 1] * height
     half = len(upwards) // 2
     assert upwards[:half].mean() == pytest.approx(0.2, abs=0.03)

@@ -21,6 +21,7 @@ CHILD_JOINTS = np.arange(1, len(JOINT_NAMES))
 PARENT_JOINTS = np.array(PARENTS[1:])
 RIGHT_HAND = PARTS.index("HandRight")
 LEFT_HAND = PARTS.index("HandLeft")
+TRUNK_PARTS = [PARTS.index(name) for name in ("Spine", "ShoulderCenter", "Head")]
 PELVIS_JOINTS = np.array([Joint.HIP_CENTER, Joint.SPINE, Joint.HIP_LEFT, Joint.HIP_RIGHT])
 
 # Shares of stature (Drillis and Contini 1966): from the ankle (3.9 %) to the hip (53 %), and from
@@ -31,7 +32,6 @@ TRUNK_SHARE = 0.405
 _FOUR = np.zeros(4)
 """It tells the kernel how long a quaternion is."""
 _MIRRORED = np.array(MIRRORED_JOINTS)
-_TRUNK_PARTS = [PARTS.index(name) for name in ("Spine", "ShoulderCenter", "Head")]
 _LEG_PARTS = [[PARTS.index(f"{name}{side}") for name in ("Knee", "Ankle")] for side in SIDES]
 
 
@@ -107,28 +107,52 @@ def part_lengths(joints: Array) -> Array:
     return np.linalg.norm(joints[..., CHILD_JOINTS, :] - joints[..., PARENT_JOINTS, :], axis=-1)
 
 
-def stature(lengths: Array) -> float:
-    """Estimate stature in metres from part lengths (T, 19) of one person, each part's median.
-
-    Lengths do not change when a person bends. A leg seen on one side only counts for both; where
-    no leg was seen the trunk alone decides. NaN when a part of the trunk was not seen.
-    """
+def typical_lengths(lengths: Array) -> Array:
+    """The median (19,) of each part's lengths (T, 19); NaN where a part was never seen."""
     typical = np.full(len(PARTS), np.nan)
     seen = np.isfinite(lengths).any(axis=0)
     measured = lengths[:, seen]
     # np.nanmedian gives the same where nothing is missing, and takes ten times as long.
     median = np.median if np.isfinite(measured).all() else np.nanmedian
     typical[seen] = median(measured, axis=0)
-    return _stature_of(typical)
+    return typical
 
 
-def _stature_of(typical: Array) -> float:
-    """Estimate stature in metres from the medians (19,) of part lengths."""
-    trunk = sum(typical[part] for part in _TRUNK_PARTS)
+def stature(typical: Array) -> float:
+    """Estimate stature in metres from typical part lengths (19,) of one person.
+
+    Lengths do not change when a person bends. A leg seen on one side only counts for both; where
+    no leg was seen the trunk alone decides. NaN when a part of the trunk was not seen.
+    """
+    trunk = sum(typical[part] for part in TRUNK_PARTS)
     legs = [leg for leg in (sum(typical[part] for part in leg) for leg in _LEG_PARTS) if leg == leg]
     if not legs:
         return float(trunk / TRUNK_SHARE)
     return float((trunk + sum(legs) / len(legs)) / (TRUNK_SHARE + LEG_SHARE))
+
+
+def stature_of(joints: Array) -> float:
+    """Estimate stature in metres from one person's joints (T, 20, 3), as ``stature`` does."""
+    return stature(typical_lengths(part_lengths(joints)))
+
+
+class RunningMedians:
+    """Keeps the median length of each part over one person's last frames."""
+
+    def __init__(self, frames: int) -> None:
+        self._lengths = np.full((frames, len(PARTS)), np.nan)
+        self._ordered = np.empty((len(PARTS), frames))
+        self._counts = np.zeros(len(PARTS), np.int64)
+        self._frames = 0
+
+    def update(self, lengths: Array) -> Array:
+        """Take one frame's part lengths (19,), and give the medians (19,); both may be NaN."""
+        row = self._frames % len(self._lengths)
+        exchange(self._ordered, self._counts, self._lengths[row], lengths)
+        self._lengths[row] = lengths
+        self._frames += 1
+        typical: Array = medians(self._ordered, self._counts)
+        return typical
 
 
 class RunningHeight:
@@ -144,21 +168,14 @@ class RunningHeight:
     ) -> None:
         self._proportions = proportions
         self._wild_ratio = parameters.wild_ratio
-        self._lengths = np.full((parameters.height_frames, len(PARTS)), np.nan)
-        self._ordered = np.empty((len(PARTS), parameters.height_frames))
-        self._counts = np.zeros(len(PARTS), np.int64)
-        self._frames = 0
+        self._medians = RunningMedians(parameters.height_frames)
 
     def update(self, joints: Array) -> float:
         """Take one frame's (20, 3) joints and give the height in metres; NaN while unknown."""
         lengths = part_lengths(joints)
         if self._proportions is not None:
             lengths = in_proportion(lengths, self._proportions, self._wild_ratio)
-        row = self._frames % len(self._lengths)
-        exchange(self._ordered, self._counts, self._lengths[row], lengths)
-        self._lengths[row] = lengths
-        self._frames += 1
-        return _stature_of(medians(self._ordered, self._counts))
+        return stature(self._medians.update(lengths))
 
 
 def without_impossible(joints: Array, farthest_m: float = DEFAULT_BODY.farthest_joint_m) -> Array:

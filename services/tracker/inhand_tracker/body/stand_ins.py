@@ -12,7 +12,13 @@ import numpy as np
 from inhand_schemas.joints import JOINT_NAMES, SIDES, Joint
 
 from inhand_tracker.body.parameters import DEFAULT_BODY
-from inhand_tracker.body.skeleton import PARTS, TRUNK_SHARE, part_lengths
+from inhand_tracker.body.skeleton import (
+    PARTS,
+    TRUNK_PARTS,
+    TRUNK_SHARE,
+    RunningMedians,
+    part_lengths,
+)
 from inhand_tracker.geometry.arrays import Array
 
 REPLACEABLE = (
@@ -41,27 +47,20 @@ _SHARES = {
 }
 _UPPER_PARTS = [PARTS.index(name) for name in _SHARES]
 _UPPER_SHARES = np.array(list(_SHARES.values()))
-_TRUNK_PARTS = [PARTS.index(name) for name in ("Spine", "ShoulderCenter", "Head")]
 
 
-def seen_stature(lengths: Array, absent: Collection[int]) -> float:
-    """Estimate stature in metres from part lengths (T, 19) without those of absent joints.
+def seen_stature(typical: Array, absent: Collection[int]) -> float:
+    """Estimate stature in metres from typical part lengths (19,) without those of absent joints.
 
     It is that of the trunk, or, where the trunk has no lower end, of arms and neck. NaN where none
     of these was seen.
     """
-    whole_trunk = _are_seen(absent, *TRUNK)
-    parts = _TRUNK_PARTS if whole_trunk else _UPPER_PARTS
-    seen = np.isfinite(lengths[:, parts]).any(axis=0)
-    if not seen.any() or (whole_trunk and not seen.all()):
+    if _are_seen(absent, *TRUNK):
+        return float(typical[TRUNK_PARTS].sum() / TRUNK_SHARE)
+    seen = np.isfinite(typical[_UPPER_PARTS])
+    if not seen.any():
         return float("nan")
-    measured = lengths[:, parts][:, seen]
-    # np.nanmedian gives the same where nothing is missing, and takes ten times as long.
-    median = np.median if np.isfinite(measured).all() else np.nanmedian
-    typical = median(measured, axis=0)
-    if whole_trunk:
-        return float(typical.sum() / TRUNK_SHARE)
-    return float(typical.sum() / _UPPER_SHARES[seen].sum())
+    return float(typical[_UPPER_PARTS][seen].sum() / _UPPER_SHARES[seen].sum())
 
 
 def put_stand_ins(joints: Array, absent: Collection[int], height: float) -> Array:
@@ -100,14 +99,11 @@ class RunningStandIns:
 
     def __init__(self, absent: Collection[int]) -> None:
         self._absent = absent
-        self._lengths = np.full((DEFAULT_BODY.height_frames, len(PARTS)), np.nan)
-        self._frames = 0
+        self._medians = RunningMedians(DEFAULT_BODY.height_frames)
 
     def put(self, joints: Array) -> Array:
         """Take one frame's joints (20, 3), and give them with stand-ins."""
-        self._lengths[self._frames % len(self._lengths)] = part_lengths(joints)
-        self._frames += 1
-        height = seen_stature(self._lengths[: self._frames], self._absent)
+        height = seen_stature(self._medians.update(part_lengths(joints)), self._absent)
         return put_stand_ins(joints, self._absent, height)
 
 

@@ -45,7 +45,6 @@ class Moments(Generic[SkeletonT, FrameT]):
     """Pairs skeletons and frames by their sequence; times are seconds of one monotonic clock.
 
     ``pixels`` says whether frames are wanted at all, ``every`` whether no skeleton is skipped.
-    ``unused_frames`` counts frames that came and were not given out.
     """
 
     def __init__(
@@ -65,7 +64,7 @@ class Moments(Generic[SkeletonT, FrameT]):
         self._newest_skeleton = self._newest_frame = -1
         self._skeleton_at = float("-inf")
         self._flowing_until = float("-inf")
-        self.unused_frames = 0
+        self._unused_frames = 0
 
     @property
     def period_s(self) -> float:
@@ -110,6 +109,11 @@ class Moments(Generic[SkeletonT, FrameT]):
         skipped = tuple(one.skeleton for one in before)
         return Moment(chosen.skeleton, self._take_frame(chosen), skipped)
 
+    def take_unused_frames(self) -> int:
+        """Number of frames since the last call that came and were not given out."""
+        count, self._unused_frames = self._unused_frames, 0
+        return count
+
     def leave(self) -> int:
         """Give up all that waits, at the end; returns the number of skeletons."""
         left = len(self._waiting)
@@ -138,7 +142,7 @@ class Moments(Generic[SkeletonT, FrameT]):
 
     def _leave_frame(self, sequence: int) -> None:
         del self._frames[sequence]
-        self.unused_frames += 1
+        self._unused_frames += 1
 
     def _restart(self) -> None:
         """Forget frames of before the camera's restart: their numbers come again."""

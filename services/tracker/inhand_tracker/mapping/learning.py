@@ -19,7 +19,8 @@ from inhand_tracker.body.skeleton import (
     part_bases,
     part_lengths,
     pelvis_basis,
-    stature,
+    stature_of,
+    typical_lengths,
 )
 from inhand_tracker.body.stand_ins import put_stand_ins, seen_stature
 from inhand_tracker.geometry import rotations
@@ -76,7 +77,7 @@ class LabelledSequence:
         """Return the sequence with stand-ins for absent joints."""
         if not absent:
             return self
-        height = seen_stature(part_lengths(self.joints), absent)
+        height = seen_stature(typical_lengths(part_lengths(self.joints)), absent)
         return replace(self, joints=put_stand_ins(self.joints, absent, height))
 
     def cut(self, first: int, end: int) -> "LabelledSequence":
@@ -154,7 +155,7 @@ def _pieces(sequence: LabelledSequence, mirror_normal: Array) -> Iterator[Relati
     """TR1 of the usable frames of a sequence, in pieces that need little memory."""
     sequence = sequence.right_handed(mirror_normal)
     joints, translations = sequence.joints, sequence.translations
-    height = stature(part_lengths(joints))
+    height = stature_of(joints)
     with np.errstate(invalid="ignore", divide="ignore"):
         pelvis = pelvis_basis(joints)
     poses = body_pose(joints, pelvis, height)

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import ndtri, stdtrit
 
 from inhand_tracker.body.anchors import ANCHORS, Anchors, find_anchors
-from inhand_tracker.body.skeleton import has_pelvis, part_lengths, stature
+from inhand_tracker.body.skeleton import has_pelvis, stature_of
 from inhand_tracker.body.window import (
     VIEWS,
     describe_bodies,
@@ -124,7 +124,7 @@ def _samples_of(
     usable = _usable_frames(sequence)
     right_handed = sequence.right_handed(shape.mirror_normal)
     joints = right_handed.joints[usable]
-    height = stature(part_lengths(joints))
+    height = stature_of(joints)
     turns = rotations.to_matrix(right_handed.rotations[usable])
     centres = right_handed.translations[usable] + turns @ centre
     anchors = find_anchors(joints)

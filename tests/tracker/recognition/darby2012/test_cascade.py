@@ -24,7 +24,7 @@ UNTURNED = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 def height_of(joints: np.ndarray) -> float:
-    return stature(part_lengths(joints)[None])
+    return stature(part_lengths(joints))
 
 
 def pose_of(joints: np.ndarray) -> np.ndarray:
