@@ -144,13 +144,8 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
     def compiled(function: Callable[..., None]) -> Callable[..., Any]:
         with _kept_here():
             made = _vectorised(function, layout, types)
-
-        @wraps(function)
-        def called(*arrays: Any) -> Any:
-            with np.errstate(invalid="ignore", divide="ignore"):
-                return made(*arrays)
-
-        return called
+        silent: Any = np.errstate(invalid="ignore", divide="ignore")(made)
+        return wraps(function)(silent)
 
     return compiled
 
@@ -163,7 +158,7 @@ def _vectorised(function: Callable[..., None], layout: str, types: list[str]) ->
         builder.build = partial(_build_loop, function, builder)
     made.add(f"void({', '.join(types)})")
     made.disable_compile()
-    return made.build_ufunc()
+    return made.build_ufunc().ufunc
 
 
 def _build_loop(function: Callable[..., None], builder: Any, compiled: Any) -> Any:

@@ -31,7 +31,7 @@ def ball(distance: float) -> tuple[np.ndarray, np.ndarray]:
 def test_depths_are_those_of_the_trackers_raster() -> None:
     vertices, faces = ball(1.0)
     canvas = painted(vertices, faces)
-    depths = nearest_depths(CAMERA.project(vertices), vertices[:, 2], faces, 48)
+    depths = nearest_depths(CAMERA.project(vertices), vertices[:, 2], faces, (48, 48))
     shown = canvas.inverse_depth > 0.0
     assert shown.sum() > 400
     # The raster's lines add pixels along the rim, and it knows no perspective within a face.

@@ -1,11 +1,15 @@
 """A sphere goes where its object's pose goes."""
 
 import numpy as np
+import pytest
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
+from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.pose_gaussian import PoseGaussian
 from people import quaternion_of
 from scipy.spatial.transform import Rotation
 
 SPHERE = BoundingSphere(np.array([0.1, -0.2, 0.3]), 0.25)
+CAMERA = Intrinsics(520.0, 510.0, 320.0, 240.0, 640, 480)
 TURNS = Rotation.from_rotvec([[0.4, 1.0, -0.3], [0.0, 0.0, 2.0]])
 
 
@@ -18,9 +22,21 @@ def test_the_origin_is_an_arm_away_from_the_centre() -> None:
         np.testing.assert_allclose(centre - SPHERE.arm(turn), translation, atol=1e-12)
 
 
-def test_its_ends_lie_on_it_opposite_in_pairs_and_turn_along() -> None:
-    centre = np.array([0.0, 0.0, 2.0])
-    offsets = SPHERE.ends(centre, quaternion_of(TURNS[0])) - centre
-    np.testing.assert_allclose(np.linalg.norm(offsets, axis=1), SPHERE.radius)
-    np.testing.assert_allclose(offsets[:3], -offsets[3:])
-    np.testing.assert_allclose(offsets[:3] / SPHERE.radius, TURNS[0].as_matrix().T, atol=1e-12)
+def pose(centre: tuple[float, float, float], turn: Rotation) -> PoseGaussian:
+    return PoseGaussian(np.array(centre), quaternion_of(turn), np.eye(6))
+
+
+def test_its_way_in_the_image_is_the_farthest_that_an_end_of_its_axes_goes() -> None:
+    ends = 0.25 * np.vstack((np.eye(3), -np.eye(3)))
+    before, after = (
+        CAMERA.project(turn.apply(ends) + centre)
+        for turn, centre in zip(TURNS, ([0.1, 0.0, 2.0], [0.3, -0.1, 1.5]), strict=True)
+    )
+    way = SPHERE.way(pose((0.1, 0.0, 2.0), TURNS[0]), pose((0.3, -0.1, 1.5), TURNS[1]), CAMERA)
+    assert way == pytest.approx(np.linalg.norm(after - before, axis=1).max())
+
+
+def test_what_is_behind_the_camera_goes_nowhere_in_the_image() -> None:
+    here, behind = pose((0.0, 0.0, 2.0), TURNS[0]), pose((0.0, 0.0, -2.0), TURNS[0])
+    assert SPHERE.way(here, behind, CAMERA) == 0.0
+    assert SPHERE.way(here, here, CAMERA) == 0.0

@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.kernels.sphere_way import farthest_way
+from inhand_tracker.geometry.pose_gaussian import PoseGaussian
 
 
 @dataclass(frozen=True)
@@ -19,10 +20,14 @@ class BoundingSphere:
         """Give the translations (P, 3) of poses by their spheres' centres (P, 3)."""
         return centres - rotations.rotate(orientations, self.centre)
 
-    def ends(self, centres: Array, orientations: Array) -> Array:
-        """Give six points (..., 6, 3) of the sphere, opposite in pairs, at its centres (..., 3)."""
-        axes = self.radius * np.concatenate((np.eye(3), -np.eye(3)))
-        return centres[..., None, :] + rotations.rotate(orientations[..., None, :], axes)
+    def way(self, earlier: PoseGaussian, now: PoseGaussian, camera: Intrinsics) -> float:
+        """Pixels that the sphere goes between two poses' means: the farthest that one of six points
+        of it does, opposite in pairs. 0 where none is before the camera."""
+        return float(
+            farthest_way(
+                earlier.centre, earlier.rotation, now.centre, now.rotation, self.radius, camera.lens
+            )
+        )
 
     def arm(self, rotation: Array) -> Array:
         """Give the way (3,) from the object's origin to the centre, as a rotation (4,) turns it."""

@@ -50,32 +50,29 @@ class PoseMixture:
     weights: Array
 
     @cached_property
-    def _means(self) -> tuple[Array, Array]:
+    def means(self) -> tuple[Array, Array]:
+        """The parts' centres (K, 3) and rotations (K, 4)."""
         return means_of(self.parts)
 
     @cached_property
     def _roots(self) -> Array:
         """The triangular roots (K, 6, 6) of the parts' covariances."""
-        return np.array([part.root for part in self.parts])
+        return roots_of(np.array([part.covariance for part in self.parts]))
 
     def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
         """Draw ``count`` poses (P, 3) and (P, 4), of each part in proportion to its weight."""
         ends = np.rint(np.cumsum(self.weights) * count).astype(int)
         parts = np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
-        normals = random.normal(size=(len(parts), 6))
-        poses: tuple[Array, Array] = kernels.draw(parts, *self._means, self._roots, normals)
+        normals = random.standard_normal((len(parts), 6))
+        poses: tuple[Array, Array] = kernels.draw(parts, *self.means, self._roots, normals)
         return poses
 
     def log_densities(self, centres: Array, orientations: Array) -> Array:
         """Log densities (K, P) of poses, of each part times its weight."""
-        means, turns = self._means
-        squares = kernels.square_distances(
-            means[:, None], turns[:, None], self._roots[:, None], centres, orientations
+        densities: Array = kernels.log_densities(
+            self.weights, *self.means, self._roots, centres, orientations
         )
-        diagonals = np.diagonal(self._roots, axis1=1, axis2=2)
-        with np.errstate(divide="ignore"):
-            scales = np.log(self.weights) - np.log(diagonals).sum(axis=1) - kernels.LOG_TURNS
-        return scales[:, None] - 0.5 * squares
+        return densities
 
     def log_density(self, centres: Array, orientations: Array) -> Array:
         """Log density (P,) of poses (P, 3) and (P, 4)."""
@@ -83,7 +80,7 @@ class PoseMixture:
 
     def moments(self) -> PoseGaussian:
         """Give the normal distribution of the same mean and covariance."""
-        centres, turns = self._means
+        centres, turns = self.means
         mean = PoseGaussian(
             self.weights @ centres, rotations.mean(turns, self.weights), np.zeros((6, 6))
         )

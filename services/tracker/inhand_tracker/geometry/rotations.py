@@ -4,7 +4,7 @@ What trackers call often, on few poses at once, is compiled (``kernels/quaternio
 """
 
 import numpy as np
-from inhand_runtime.compiled import vectorised
+from inhand_runtime.compiled import njit, vectorised
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels.nearest_rotation import principal_vector
@@ -88,8 +88,7 @@ def mean(quaternion: Array, weights: Array) -> Array:
     ``quaternion`` is (..., N, 4) and ``weights`` broadcasts to (..., N); the result (..., 4) does
     not depend on the quaternions' signs.
     """
-    scatter = np.einsum("...n,...ni,...nj->...ij", weights, quaternion, quaternion)
-    return principal(scatter)
+    return _mean(quaternion, weights)
 
 
 def principal(scatter: Array) -> Array:
@@ -128,8 +127,25 @@ def _from_matrix(matrix: Array, four: Array, quaternion: Array) -> None:
     set_quaternion(quaternion, quaternion_of_matrix(matrix))
 
 
-@vectorised("(q,q)->(q)")
-def _principal(scatter: Array, quaternion: Array) -> None:
-    found = principal_vector(scatter.copy())
+@njit(cache=True, nogil=True)
+def _set_principal(quaternion: Array, scatter: Array) -> None:
+    """Set the principal quaternion of a scatter matrix, which is used up."""
+    found = principal_vector(scatter)
     greatest = found[np.argmax(np.abs(found))]
     quaternion[:] = found if greatest >= 0.0 else -found
+
+
+@vectorised("(n,q),(n)->(q)")
+def _mean(quaternions: Array, weights: Array, quaternion: Array) -> None:
+    scatter = np.zeros((4, 4))
+    for index in range(len(quaternions)):
+        for row in range(4):
+            weighted = weights[index] * quaternions[index, row]
+            for column in range(4):
+                scatter[row, column] += weighted * quaternions[index, column]
+    _set_principal(quaternion, scatter)
+
+
+@vectorised("(q,q)->(q)")
+def _principal(scatter: Array, quaternion: Array) -> None:
+    _set_principal(quaternion, scatter.copy())

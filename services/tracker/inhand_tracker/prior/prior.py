@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from inhand_tracker.body.anchors import Anchors
-from inhand_tracker.geometry.arrays import Array, Singles
+from inhand_tracker.geometry.arrays import Array, Indices, Singles
 from inhand_tracker.geometry.pose_gaussian import turn_blocks
 from inhand_tracker.prior.combination import (
     TINY,
@@ -55,20 +55,23 @@ class Prior:
     persistence_s: float
 
     @cached_property
+    def _lower(self) -> tuple[Indices, Indices]:
+        """Rows and columns (T,) of a lower triangle."""
+        return np.tril_indices(self.translation_products.shape[-1])
+
+    @cached_property
     def _triangles(self) -> Singles:
         """The lower triangles (L, 2 T) of both products side by side: they are symmetric, and what
         is read for each body is half as much."""
-        rows, columns = np.tril_indices(self.translation_products.shape[-1])
         both = self.translation_products, self.rotation_products
-        return np.concatenate([products[:, rows, columns] for products in both], axis=1)
+        return np.concatenate([products[:, *self._lower] for products in both], axis=1)
 
     def products_at(self, local: Array) -> Array:
         """The lower triangles (2, E, E) of both products that are expected, by landmarks' shares
         (L,)."""
         count = self.translation_products.shape[-1]
         expected = np.zeros((2, count, count))
-        rows, columns = np.tril_indices(count)
-        expected[:, rows, columns] = (local.astype(np.float32) @ self._triangles).reshape(2, -1)
+        expected[:, *self._lower] = (local.astype(np.float32) @ self._triangles).reshape(2, -1)
         return expected
 
     @cached_property

@@ -76,7 +76,7 @@ def _look(
     """Find the fields of ``Contours`` but for the direction."""
     raster, endless = parameters.contour_raster, parameters.endless_m
     view = view_along(shape, direction, raster, parameters.contour_margin)
-    depths, owners = nearest_faces(view.pixels, view.depths, shape.faces, raster)
+    depths, owners = nearest_faces(view.pixels, view.depths, shape.faces, (raster, raster))
     mask = np.isfinite(depths)
     whole = _without_small_holes(mask, (parameters.small_hole * raster) ** 2)
     outline, flat_normals = _spaced_outline(whole, parameters)

@@ -86,7 +86,7 @@ class _Seen:
 def _see(shape: ObjectShape, direction: Array, parameters: ShapeParameters) -> _Seen:
     raster = parameters.boundary_raster
     view = view_along(shape, direction, raster, parameters.boundary_margin)
-    depths = nearest_depths(view.pixels, view.depths, shape.faces, raster)
+    depths = nearest_depths(view.pixels, view.depths, shape.faces, (raster, raster))
     # A point between two pixels of the boundary may round to one beside it.
     beside = np.asarray(cv2.erode(depths, np.ones((3, 3))), np.float64)
     return _Seen(view, depths, np.where(np.isfinite(depths), depths, beside))

@@ -1,6 +1,7 @@
 """Colours as histograms: what an object's are, what its surroundings' are, and which is which."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -17,12 +18,15 @@ Bins = NDArray[np.uint16]
 LEVELS = 16
 """Number of levels of each of red, green and blue."""
 BINS = LEVELS**3
+REMEMBERED = 64
+"""Number of objects' scores by colour that are kept for the next image, in which most colours are
+the same."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Colours:
     """Histograms (4096,) that sum to 1 of an object and of what is around it; None until some
-    pixels of it were seen."""
+    pixels of it were seen. One is equal to itself alone: it never changes."""
 
     of_object: Singles | None = None
     around: Singles | None = None
@@ -78,6 +82,7 @@ def log_odds_by_colour(colours: Colours, parameters: SightParameters = DEFAULT_S
     )
 
 
+@lru_cache(maxsize=REMEMBERED)
 def colour_scores(colours: Colours, parameters: SightParameters = DEFAULT_SIGHT) -> Singles:
     """Return the log-likelihood ratios (4096, 2) of each colour for a pixel's being within and
     beside the object."""

@@ -60,7 +60,8 @@ def prepare(
 ) -> SightFrame:
     """Cut the part within a region out of an image, or take all of it.
 
-    Depth of another size is brought to that of the colours. Edges and bins are found when they are
+    Depth of another size is brought to that of the colours. A part of very many pixels, where the
+    object is large or may be anywhere, is made smaller. Edges and bins are found when they are
     first asked for.
     """
     camera, colour, depth = image.camera, image.colour, image.depth
@@ -75,12 +76,30 @@ def prepare(
         camera, pixels = cut(camera, region)
         colour = None if colour is None else colour[pixels]
         depth = None if depth is None else depth[pixels]
+        step = math.ceil(math.sqrt(camera.width * camera.height / parameters.most_pixels))
+        if step > 1:
+            camera, colour, depth = _smaller(camera, colour, depth, step)
     return SightFrame(
         camera,
         None if colour is None else np.ascontiguousarray(colour),
         None if depth is None else np.ascontiguousarray(depth, np.float32),
         parameters,
     )
+
+
+def _smaller(
+    camera: Intrinsics, colour: Bytes | None, depth: Singles | None, step: int
+) -> tuple[Intrinsics, Bytes | None, Singles | None]:
+    """Make one pixel of ``step`` × ``step``: their mean colour, and a depth that was measured."""
+    width, height = camera.width // step, camera.height // step
+    used = slice(0, height * step), slice(0, width * step)
+    if colour is not None:
+        size = (width, height)
+        colour = np.asarray(cv2.resize(colour[used], size, interpolation=cv2.INTER_AREA), np.uint8)
+    if depth is not None:
+        depth = depth[used][step // 2 :: step, step // 2 :: step]
+    camera = replace(camera, width=width * step, height=height * step)
+    return camera.scaled_to(width, height), colour, depth
 
 
 def cut(camera: Intrinsics, region: Region) -> tuple[Intrinsics, tuple[slice, slice]]:

@@ -5,11 +5,12 @@ et al. 2008): that separates an object's edges from clutter.
 """
 
 import math
+from functools import cache
 
 import cv2
 import numpy as np
 
-from inhand_tracker.geometry.arrays import Bytes, Singles
+from inhand_tracker.geometry.arrays import Array, Bytes, Singles
 from inhand_tracker.sight.kernels.mark_edges import count_distances, find_distances, mark_edges
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
@@ -50,11 +51,16 @@ def edge_scores(distances: Bytes, parameters: SightParameters = DEFAULT_SIGHT) -
     A share of a boundary's points shows an edge within about a pixel; the rest is like anywhere.
     Where edges are everywhere, they say little.
     """
-    steps = np.arange(FARTHEST_PIXELS + 1)
-    near = np.exp(-np.square(steps / parameters.matched_pixels) / 2.0)
-    near /= near.sum()
     matched = parameters.matched_share
     anywhere = np.ones((CHANNELS, FARTHEST_PIXELS + 1))
     count_distances(distances, DOWN, COUNTED_LINES, anywhere)
     anywhere /= anywhere.sum(axis=1, keepdims=True)
+    near = _near(parameters.matched_pixels)
     return np.log((1.0 - matched) + matched * near / anywhere).astype(np.float32)
+
+
+@cache
+def _near(matched_pixels: float) -> Array:
+    """The probability (8,) of each distance where an edge is about ``matched_pixels`` away."""
+    near = np.exp(-np.square(np.arange(FARTHEST_PIXELS + 1) / matched_pixels) / 2.0)
+    return np.asarray(near / near.sum())

@@ -125,12 +125,13 @@ class PoseRefiner:
         if prior is None:
             nothing = Priors(np.zeros((count, 3)), np.zeros((count, 4)), np.zeros((count, 6, 6)))
             return nothing, np.tile([parameters.reach_m, parameters.reach_rad], (count, 1))
+        one_each = np.zeros((count, 1))
         each = Priors(
-            np.array(np.broadcast_to(prior.translation, (count, 3))),
-            np.array(np.broadcast_to(prior.rotation, (count, 4))),
-            np.array(np.broadcast_to(prior.information, (count, 6, 6))),
+            prior.translation + one_each,
+            prior.rotation + one_each,
+            prior.information + one_each[..., None],
         )
-        return each, np.array(np.broadcast_to(prior.reach(), (count, 2)))
+        return each, prior.reach() + one_each
 
     def _settings(self, view: SightView, trust: float) -> GatherSettings:
         coloured, deep = view.frame.bins is not None, view.frame.depth is not None

@@ -39,9 +39,8 @@ def silhouette_depths(
 ) -> Array:
     """Draw the depth (H, W) of the object's surface in each pixel, infinite beside it."""
     placed = rotations.rotate(rotation, shape.vertices) + translation
-    size = max(camera.width, camera.height)
-    depths = nearest_depths(camera.project(placed), placed[:, 2], shape.faces, size)
-    return depths[: camera.height, : camera.width]
+    size = camera.height, camera.width
+    return nearest_depths(camera.project(placed), placed[:, 2], shape.faces, size)
 
 
 def pixels_covered(measured: Singles | None, depths: Array, aside_m: float) -> Flags:

@@ -134,6 +134,35 @@ def square_distances(
     square[0] = total
 
 
+@vectorised("(k),(k,v),(k,q),(k,s,s),(p,v),(p,q)->(k,p)")
+def log_densities(
+    weights: Array,
+    centres: Array,
+    rotations: Array,
+    roots: Array,
+    pose_centres: Array,
+    pose_rotations: Array,
+    densities: Array,
+) -> None:
+    """Find the log-densities (K, P) of poses, (P, 3) and (P, 4), by parts of means (K, 3) and
+    (K, 4) and of covariances with ``roots`` (K, 6, 6), each times its weight (K,)."""
+    deviation = np.empty(6)
+    for part in range(len(weights)):
+        root = roots[part]
+        scale = np.log(weights[part]) - LOG_TURNS
+        for axis in range(6):
+            scale -= np.log(root[axis, axis])
+        for pose in range(len(pose_centres)):
+            set_deviation(
+                centres[part], rotations[part], pose_centres[pose], pose_rotations[pose], deviation
+            )
+            solve_lower(root, deviation)
+            square = 0.0
+            for axis in range(6):
+                square += deviation[axis] * deviation[axis]
+            densities[part, pose] = scale - 0.5 * square
+
+
 @vectorised("(s,s),(v,v)->(s,s)")
 def turn_blocks(matrix: Array, turn: Array, turned: Array) -> None:
     """Rotate both kinds of deviations that a matrix (6, 6) is of: T M Tᵀ, T of two (3, 3)."""
@@ -170,6 +199,30 @@ def share_near(normals: Array, root: Array, near_m: float, near_rad: float, shar
         if moved < near_m * near_m and turned < near_rad * near_rad:
             near += 1
     share[0] = near / len(normals)
+
+
+@vectorised("(p,v),(p,q),(),()->(p)")
+def each_once(
+    centres: Array, rotations: Array, near_m: float, near_rad: float, chosen: Array
+) -> None:
+    """Choose, by a 1 in ``chosen`` (P,), poses (P, 3) and (P, 4) of which none is within some
+    metres and radians of one that was chosen before."""
+    deviation = np.empty(6)
+    for pose in range(len(centres)):
+        chosen[pose] = 1.0
+        for other in range(pose):
+            if chosen[other] == 0.0:
+                continue
+            set_deviation(
+                centres[other], rotations[other], centres[pose], rotations[pose], deviation
+            )
+            moved, turned = 0.0, 0.0
+            for axis in range(3):
+                moved += deviation[axis] ** 2
+                turned += deviation[3 + axis] ** 2
+            if moved < near_m**2 and turned < near_rad**2:
+                chosen[pose] = 0.0
+                break
 
 
 @vectorised("(s,s),(v)->(s,s)")

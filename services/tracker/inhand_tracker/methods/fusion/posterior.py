@@ -7,14 +7,14 @@ import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
-from inhand_tracker.geometry.kernels.pose_normals import deviations, inverses
+from inhand_tracker.geometry.kernels.pose_normals import each_once, inverses
 from inhand_tracker.geometry.pose_gaussian import (
-    SIX,
     PoseGaussian,
     PoseMixture,
     means_of,
     mixture,
     moved_information,
+    roots_of,
 )
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.sight.refinement import PosePrior
@@ -55,7 +55,8 @@ class ImagePosterior:
         """Weigh modes by their probability (Laplace's approximation); ``seen`` (K,) is the image's
         log-likelihood of each."""
         expected = self.belief.log_density(*means_of(modes))
-        volumes = [np.log(np.diag(mode.root)).sum() for mode in modes]
+        roots = roots_of(np.array([mode.covariance for mode in modes]))
+        volumes = np.log(np.diagonal(roots, axis1=1, axis2=2)).sum(axis=1)
         return mixture(modes, self._tempered(seen) + expected + volumes)
 
     def modes(self, centres: Array, orientations: Array) -> tuple[list[PoseGaussian], Array]:
@@ -75,7 +76,7 @@ class ImagePosterior:
     ) -> tuple[list[PoseGaussian], Array]:
         """Move poses to where the image and each's ``nearest`` (S,) part of the belief agree."""
         parts = self.belief.parts
-        places, turns = means_of(parts)
+        places, turns = self.belief.means
         arms = self.sphere.arm(turns)
         information = inverses(np.array([part.covariance for part in parts]))
         of_origins = moved_information(information, arms)
@@ -94,19 +95,10 @@ class ImagePosterior:
         modes = list(map(PoseGaussian, means[0][chosen], means[1][chosen], covariances[chosen]))
         return modes, refined.log_likelihoods[chosen]
 
-    def _each_once(self, centres: Array, orientations: Array) -> list[int]:
+    def _each_once(self, centres: Array, orientations: Array) -> Indices:
         """Choose poses (S, 3), (S, 4) of which none is the same as one before."""
-        squares = np.square(
-            deviations(centres[:, None], orientations[:, None], centres, orientations, SIX)
-        )
-        same = (squares[..., :3].sum(axis=-1) < self.parameters.same_mode_m**2) & (
-            squares[..., 3:].sum(axis=-1) < self.parameters.same_mode_rad**2
-        )
-        chosen: list[int] = []
-        for index, others in enumerate(same):
-            if not others[chosen].any():
-                chosen.append(index)
-        return chosen
+        near = self.parameters.same_mode_m, self.parameters.same_mode_rad
+        return np.flatnonzero(each_once(centres, orientations, *near))
 
     def _tempered(self, seen: Array) -> Array:
         return self.parameters.image_temper * self.sharpness * seen

@@ -116,8 +116,9 @@ class ImageSearch:
     ) -> tuple[Array, Array]:
         """Poses (S, 3), (S, 4) to refine: the mean of each part believed, and the likeliest of
         hypotheses (P, 3), (P, 4) by their scores (P,)."""
-        means, turns = means_of(posterior.belief.parts)
-        likeliest = np.argsort(scores)[::-1][: posterior.parameters.refined_hypotheses]
+        means, turns = posterior.belief.means
+        count = posterior.parameters.refined_hypotheses
+        likeliest = np.argpartition(scores, -count)[-count:]
         return (
             np.concatenate((means, centres[likeliest])),
             np.concatenate((turns, orientations[likeliest])),

@@ -3,7 +3,6 @@
 What is believed before an image is seen is ``belief``'s, the search in it ``search``'s.
 """
 
-import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cache
@@ -18,7 +17,7 @@ from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.estimate import AGREEMENT_M, AGREEMENT_RAD, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.kernels.pose_normals import share_near
-from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever, means_of
+from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever
 from inhand_tracker.methods.follower import Follower, FollowingTracker
 from inhand_tracker.methods.fusion.belief import Belief, BodyExpectation, carry_over
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
@@ -137,10 +136,7 @@ class FusionFollower(Follower):
         """Sharpness, from 0 to 1, of an object that moved to where it is expected."""
         if self._before is None:
             return 1.0
-        poses = means_of((self._before.expected, expected))
-        earlier, now = image.camera.project(self._sphere.ends(*poses))
-        squares = np.square(now - earlier).sum(axis=1)
-        way = math.sqrt(squares.max(initial=0.0, where=squares >= 0.0))
+        way = self._sphere.way(self._before.expected, expected, image.camera)
         return 1.0 / (1.0 + (way / self._parameters.blurred_pixels) ** 2)
 
     def _state(self, believed: PoseGaussian, *, seen: bool) -> Estimate:

@@ -22,13 +22,20 @@ def mark_edges(
     An edge counts for every channel that its normal agrees with (``agreement``, a cosine).
     """
     height, width = across.shape
+    squares = np.empty((height, width), np.int32)
+    for row in range(height):
+        for column in range(width):
+            gradient_x, gradient_y = np.int32(across[row, column]), np.int32(down[row, column])
+            squares[row, column] = gradient_x * gradient_x + gradient_y * gradient_y
+    least_square = np.int32(np.ceil(least_gradient * least_gradient))
     diagonal = np.float32(np.sqrt(0.5))
     for row in range(1, height - 1):
         for column in range(1, width - 1):
-            x, y = np.float32(across[row, column]), np.float32(down[row, column])
-            square = x * x + y * y
-            if square < least_gradient * least_gradient:
+            square = squares[row, column]
+            if square < least_square:
                 continue
+            x = np.float32(across[row, column])
+            y = np.float32(down[row, column])
             strengths = (abs(x), abs(x + y) * diagonal, abs(y), abs(x - y) * diagonal)
             if strengths[0] >= max(strengths[1], strengths[2], strengths[3]):
                 step_row, step_column = 0, 1
@@ -38,15 +45,11 @@ def mark_edges(
                 step_row, step_column = 1, 0
             else:
                 step_row, step_column = 1, -1
-            ahead_x = np.float32(across[row + step_row, column + step_column])
-            ahead_y = np.float32(down[row + step_row, column + step_column])
-            behind_x = np.float32(across[row - step_row, column - step_column])
-            behind_y = np.float32(down[row - step_row, column - step_column])
-            if square < ahead_x * ahead_x + ahead_y * ahead_y:
+            if square < squares[row + step_row, column + step_column]:
                 continue
-            if square <= behind_x * behind_x + behind_y * behind_y:
+            if square <= squares[row - step_row, column - step_column]:
                 continue
-            least = np.float32(agreement) * np.sqrt(square)
+            least = np.float32(agreement) * np.sqrt(np.float32(square))
             for channel in range(4):
                 if strengths[channel] >= least:
                     edges[row + 1, column + 1] |= np.uint8(1 << channel)
