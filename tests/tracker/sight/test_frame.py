@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.sight.frame import prepare
+from inhand_tracker.sight.parameters import DEFAULT_SIGHT
 
 CAMERA = Intrinsics(100.0, 110.0, 31.5, 23.5, 64, 48)
 POINT = np.array([0.05, 0.02, 1.0])
@@ -52,3 +55,20 @@ def test_depth_alone_keeps_its_size() -> None:
     assert frame.bins is None
     assert frame.edges is None
     assert frame.edge_scores is None
+
+
+def test_a_region_of_very_many_pixels_is_seen_in_fewer_that_show_the_same() -> None:
+    region = (3.0, 2.0, 63.0, 45.0)
+    whole = prepare(image(), region)
+    small = prepare(image(), region, replace(DEFAULT_SIGHT, most_pixels=300))
+    assert (small.camera.width, small.camera.height) == (20, 14)
+    np.testing.assert_allclose(
+        3.0 * (small.camera.project(POINT) + 0.5), whole.camera.project(POINT) + 0.5
+    )
+    assert small.depth is not None
+    assert whole.depth is not None
+    np.testing.assert_array_equal(small.depth, whole.depth[1:42:3, 1::3])
+    assert small.colour is not None
+    assert whole.colour is not None
+    mean = whole.colour[:42].reshape(14, 3, 20, 3, 3).mean(axis=(1, 3))
+    np.testing.assert_allclose(small.colour, mean, atol=0.51)
