@@ -7,6 +7,7 @@ import numpy as np
 from inhand_schemas.messages import ObjectPose, Skeletons
 
 from inhand_lab.datasets.dataset import DatasetError
+from inhand_lab.datasets.recording_times import FrameNumbers
 
 
 def join_labels(
@@ -18,22 +19,15 @@ def join_labels(
     programs round times. Raises DatasetError where most frames have none, and most labels no frame.
     """
     joined: list[ObjectPose | None] = [None] * len(frames)
-    numbered: dict[int, list[int]] = {}
-    for index, frame in enumerate(frames):
-        numbered.setdefault(frame.sequence, []).append(index)
-    nearest_ns = _half_period_ns(frames)
+    numbers = FrameNumbers(frames)
     strangers = []
     for label in labels:
-        distances_ns = {
-            index: abs(frames[index].time_ns - label.time_ns)
-            for index in numbered.get(label.sequence, [])
-        }
-        index = min(distances_ns, key=distances_ns.__getitem__, default=-1)
-        if index < 0 or distances_ns[index] > nearest_ns:
+        index = numbers.nearest(label)
+        if index is None:
             strangers.append(label)
             continue
         other = joined[index]
-        if other is None or abs(other.time_ns - frames[index].time_ns) >= distances_ns[index]:
+        if other is None or numbers.apart_ns(index, other) >= numbers.apart_ns(index, label):
             joined[index] = label
     unlabelled = sum(label is None for label in joined)
     if 2 * len(strangers) > len(labels) and 2 * unlabelled > len(frames):
@@ -63,13 +57,6 @@ def check_people(path: Path, labels: Sequence[ObjectPose], frames: Sequence[Skel
             f"{path}: labels name person {min(named - shown)}, and the skeletons have "
             f"{', '.join(map(str, sorted(shown)))}: write the id of whoever uses the object"
         )
-
-
-def _half_period_ns(frames: Sequence[Skeletons]) -> float:
-    """Return half the time from one frame to the next, in the median; 0 where there are too few."""
-    steps = np.diff([frame.time_ns for frame in frames])
-    steps = steps[steps > 0]
-    return 0.5 * float(np.median(steps)) if len(steps) else 0.0
 
 
 def _difference(labels: Sequence[ObjectPose], frames: Sequence[Skeletons]) -> str:

@@ -14,15 +14,17 @@ from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.wire.conversion import Need, image_of, joints_of
 
 from inhand_lab.datasets.followed_people import follow_people
+from inhand_lab.datasets.frame_pixels import pixels_of
 from inhand_lab.datasets.recorded_frames import (
     RecordedFrame,
-    iterate_pixels,
     labelled_camera,
     load_camera_info,
 )
 from inhand_lab.datasets.tracks import Track, empty_track
 from inhand_lab.world.messages import camera_info, person_message, pixels_message
 from inhand_lab.world.simulation import Simulation
+
+_NO_PIXELS = (-1, None)
 
 
 @dataclass(frozen=True)
@@ -56,15 +58,14 @@ def observe(
     """
     name = labelled_camera(frames)
     info = load_camera_info(path, name) if needs else None
-    pixels = iterate_pixels(path, name) if info is not None else iter(())
-    current = next(pixels, None)
-    for frame, followed in zip(frames, follow_people(frames), strict=True):
-        while current is not None and current.time_ns < frame.time_ns:
-            current = next(pixels, None)
+    pixels = pixels_of(path, frames, name) if info is not None else iter(())
+    number, current = next(pixels, _NO_PIXELS)
+    for index, (frame, followed) in enumerate(zip(frames, follow_people(frames), strict=True)):
         image = None
-        if info is not None and current is not None and current.time_ns == frame.time_ns:
+        if info is not None and current is not None and number == index:
             with suppress(MessageError):
                 image = image_of(current, info, needs)
+            number, current = next(pixels, _NO_PIXELS)
         joints = None if followed.person is None else joints_of(followed.person)
         yield Observation(frame.time_ns, joints, image, followed.somebody_else)
 

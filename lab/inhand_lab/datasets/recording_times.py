@@ -1,6 +1,9 @@
-"""Checks the times of a recording's frames, and says how many of them there are a second."""
+"""Checks the times of a recording's frames, says how many of them there are a second, and finds
+the frame that a message is of."""
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Array, Indices
@@ -9,6 +12,44 @@ from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
 from inhand_lab.datasets.parameters import DEFAULT_DATASET
 
 _UNITS_NS = {"seconds": 10**9, "milliseconds": 10**6, "microseconds": 10**3}
+
+
+class Stamped(Protocol):
+    """Anything with the number and the time of a frame."""
+
+    @property
+    def sequence(self) -> int:
+        """The frame's number."""
+
+    @property
+    def time_ns(self) -> int:
+        """When the frame was taken, in nanoseconds."""
+
+
+class FrameNumbers:
+    """Finds which of some frames a message is of: other programs round times."""
+
+    def __init__(self, frames: Sequence[Stamped]) -> None:
+        self._times_ns = [frame.time_ns for frame in frames]
+        self._by_sequence: dict[int, list[int]] = {}
+        for number, frame in enumerate(frames):
+            self._by_sequence.setdefault(frame.sequence, []).append(number)
+        steps = np.diff(self._times_ns)
+        steps = steps[steps > 0]
+        self._half_frame_ns = 0.5 * float(np.median(steps)) if len(steps) else 0.0
+
+    def nearest(self, message: Stamped) -> int | None:
+        """Return the number of the frame that has a message's ``sequence`` and a time less than
+        half a frame away; None where there is none."""
+        same = self._by_sequence.get(message.sequence, [])
+        number = min(same, key=lambda one: self.apart_ns(one, message), default=None)
+        if number is not None and self.apart_ns(number, message) <= self._half_frame_ns:
+            return number
+        return None
+
+    def apart_ns(self, number: int, message: Stamped) -> int:
+        """Return how many nanoseconds a frame and a message are apart."""
+        return abs(self._times_ns[number] - message.time_ns)
 
 
 def check_times(path: Path, times_ns: Indices) -> None:

@@ -12,7 +12,8 @@ import numpy as np
 from inhand_runtime.errors import InhandError
 from inhand_tracker.geometry.arrays import Array, Indices
 
-from inhand_lab.datasets.recorded_frames import RecordedFrame, iterate_pixels
+from inhand_lab.datasets.frame_pixels import pixels_of
+from inhand_lab.datasets.recorded_frames import RecordedFrame
 from inhand_lab.recognition import adaptive_trackers
 from inhand_lab.recognition.parameters import DEFAULT_RECOGNITION_EVALUATION
 
@@ -58,13 +59,12 @@ def _images_from(
     path: Path, frames: Sequence[RecordedFrame], first: int
 ) -> tuple[Indices, list[bytes]]:
     """Read the JPEG images from a frame on; return the numbers (S,) of their frames, and them."""
-    by_time = {
-        pixels.time_ns: pixels.colour.data
-        for pixels in iterate_pixels(path)
-        if pixels.colour is not None and pixels.colour.codec == "jpeg"
+    images = {
+        number: pixels.colour.data
+        for number, pixels in pixels_of(path, frames)
+        if number >= first and pixels.colour is not None and pixels.colour.codec == "jpeg"
     }
-    shown = [i for i in range(first, len(frames)) if frames[i].time_ns in by_time]
-    return np.array(shown, np.int64), [by_time[frames[i].time_ns] for i in shown]
+    return np.array(list(images), np.int64), list(images.values())
 
 
 def _first_box(box: Array) -> list[int]:

@@ -1,6 +1,6 @@
 """Draws tracked frames with the true and the tracked object, as in the paper's figure 13."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,9 +14,9 @@ from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.wire.poses import pose_message
 from matplotlib.figure import Figure
 
+from inhand_lab.datasets.frame_pixels import pixels_of
 from inhand_lab.datasets.recorded_frames import (
     RecordedFrame,
-    iterate_pixels,
     labelled_camera,
     load_camera_info,
 )
@@ -63,9 +63,13 @@ def draw_tracked_frames(
     figure = _figure(rows, columns)
     figure.suptitle(f"{title}\ntrue green, tracked red; time and vertex error", fontsize=10)
     tiles = figure.subplots(LAYOUT.tile_rows, LAYOUT.tile_columns).flat
-    colours = _colours(recording.path, name, {frames[index].time_ns for index in chosen})
+    colours = {
+        index: decode_colour(pixels.colour)
+        for index, pixels in pixels_of(recording.path, frames, name)
+        if index in chosen and pixels.colour is not None
+    }
     for axes, index in zip(tiles, chosen, strict=True):
-        picture = _picture(colours.get(frames[index].time_ns), camera)
+        picture = _picture(colours.get(index), camera)
         picture.draw_skeleton(recording.joints[index])
         picture.draw_object(shape, _pose(true, index), TRUE)
         picture.draw_object(shape, _pose(tracked, index), TRACKED)
@@ -98,14 +102,6 @@ def _figure(rows: slice, columns: slice) -> Figure:
         ),
         layout="constrained",
     )
-
-
-def _colours(path: Path, camera: str | None, times_ns: set[int]) -> Mapping[int, Bytes]:
-    return {
-        frame.time_ns: decode_colour(frame.colour)
-        for frame in iterate_pixels(path, camera)
-        if frame.time_ns in times_ns and frame.colour is not None
-    }
 
 
 def _picture(colour: Bytes | None, camera: Intrinsics) -> Picture:

@@ -11,9 +11,9 @@ from inhand_tracker.wire.conversion import image_of, joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry
 from inhand_lab.datasets.followed_people import follow_people
+from inhand_lab.datasets.frame_pixels import pixels_of
 from inhand_lab.datasets.recorded_frames import (
     RecordedFrame,
-    iterate_pixels,
     load_camera_info,
 )
 from inhand_lab.datasets.stretches import entry_frames
@@ -45,12 +45,10 @@ def _samples_of(dataset: Dataset, entry: DatasetEntry, most: int) -> Iterator[Ap
         return
     chosen = np.linspace(0, len(frames) - 1, min(most, len(frames))).astype(int)
     people = [followed.person for followed in follow_people(frames)]
-    by_time = {frames[index].time_ns: (frames[index], people[index]) for index in chosen}
-    for pixels in iterate_pixels(path, camera):
-        if pixels.time_ns in by_time:
-            frame, person = by_time[pixels.time_ns]
+    for index, pixels in pixels_of(path, frames, camera):
+        if index in chosen:
             with suppress(MessageError):
-                yield from _sample_of(frame, person, pixels, info)
+                yield from _sample_of(frames[index], people[index], pixels, info)
 
 
 def _sample_of(

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import DatasetError
@@ -187,3 +188,39 @@ def test_trackers_together_give_what_each_gives_alone(
         np.testing.assert_array_equal(track.translations, [one.translation for one in estimates])
         np.testing.assert_array_equal(track.rotations, [one.rotation for one in estimates])
     assert not np.array_equal(tracks[1].translations, tracks[2].translations)
+
+
+RESTAMPED = {
+    "1 ms late": {"time_ns": 10**6},
+    "1 ms early": {"time_ns": -(10**6)},
+    "numbered anew": {"sequence": 1000},
+}
+
+
+@pytest.mark.parametrize("other", RESTAMPED)
+def test_pixels_are_seen_though_another_program_stamped_them(tmp_path: Path, other: str) -> None:
+    assert images_by(tmp_path, RESTAMPED[other]) == [True] * FRAMES
+
+
+def test_pixels_of_another_moment_are_not_seen(tmp_path: Path) -> None:
+    assert images_by(tmp_path, {"time_ns": 7 * FRAME_NS // 10}) == [False] * FRAMES
+
+
+def images_by(folder: Path, off: dict[str, int]) -> list[bool]:
+    """Whether each frame is seen with an image, where the pixels' stamps are off."""
+    with RecordingWriter(folder / "a.mcap") as writer:
+        for message in messages(FRAMES, 0, images=True, camera="front"):
+            if isinstance(message, RgbdFrame):
+                stamps = {name: getattr(message, name) + by for name, by in off.items()}
+                message = msgspec.structs.replace(message, **stamps)
+            topic = TOPICS[type(message)]
+            writer.write(
+                topic.key(Site(), "box" if topic is LABEL else "front"),
+                topic.encode(message),
+                received_ns=message.time_ns,
+                captured_ns=message.time_ns,
+                sequence=message.sequence,
+            )
+    path = folder / "a.mcap"
+    seen = observe(path, load_frames(path, "box"), ("colour",))
+    return [one.image is not None for one in seen]
