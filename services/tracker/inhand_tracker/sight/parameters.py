@@ -117,7 +117,7 @@ class SightParameters:
     independent."""
     surface_point_weight: float = 1.0
     """Share of its information that a point of the surface keeps."""
-    outline_samples: int = 8
+    outline_samples: int = 6
     """Number of samples on either side of a point of the outline, across it."""
     least_step_pixels: float = 0.5
     """Least distance, in pixels, from one of those samples to the next."""
