@@ -44,6 +44,23 @@ class Site:
         """All liveliness tokens of this rig, as a Zenoh key expression."""
         return f"{self._root}/@live/*/*"
 
+    def claim_key(self, service: str, instance: str, phase: str, claim: str) -> str:
+        """The key of the token by which a process claims a name; raises KeyFormatError."""
+        for what, name in (("phase", phase), ("claim", claim)):
+            require_name(what, name)
+        return f"{self._claims(service, instance)}/{phase}/{claim}"
+
+    def claim_pattern(self, service: str, instance: str, phase: str = "*") -> str:
+        """The claims to a name in one phase, or in all, as a Zenoh key expression."""
+        if phase != "*":
+            require_name("phase", phase)
+        return f"{self._claims(service, instance)}/{phase}/*"
+
+    def _claims(self, service: str, instance: str) -> str:
+        require_name("service", service)
+        require_name("instance", instance)
+        return f"{self._root}/@claim/{service}/{instance}"
+
     def pattern_of_version(self, version: int) -> str:
         """All that another version of Inhand publishes for this rig, as a Zenoh key expression."""
         return f"{self.realm}/@v{version}/{self.rig}/*/*"
@@ -89,6 +106,15 @@ def parse_live_key(key: str) -> tuple[str, str]:
     require_name("service", chunks[4])
     require_name("instance", chunks[5])
     return chunks[4], chunks[5]
+
+
+def parse_claim(key: str) -> str:
+    """The claim in the key of a claim's token; raises KeyFormatError."""
+    chunks = key.split("/")
+    if len(chunks) != 8 or chunks[3] != "@claim":
+        raise KeyFormatError(f"{key!r} is no key of a claim")
+    require_name("claim", chunks[7])
+    return chunks[7]
 
 
 def require_name(what: str, name: str) -> None:

@@ -212,7 +212,7 @@ def undecodable_pictures(scene: Scene) -> None:
 
 def twins(scene: Scene) -> None:
     """A recorder is started twice; two trackers publish one object; and one of them is started
-    again while the first of that name is stopped and cannot answer, and then both go on."""
+    again while the first of that name is stopped and cannot answer, and then the first goes on."""
     scene.configure(scene.tracker("one"), scene.tracker("two"))
     scene.start("recorder")
     second = scene.rig.inhand("recorder", "--config", scene.rig.config)
@@ -224,9 +224,10 @@ def twins(scene: Scene) -> None:
         time.sleep(TOLD_AFTER_S)
         scene.status()
         first.popen.send_signal(signal.SIGSTOP)
-        scene.start("tracker", "--name", "one")
+        meanwhile = scene.start("tracker", "--name", "one")
         first.popen.send_signal(signal.SIGCONT)
-        time.sleep(TOLD_AFTER_S)
+        meanwhile.wait()
+        told(("tracker", "--config", scene.rig.config, "--name", "one"), meanwhile)
         scene.status()
 
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from inhand_schemas.errors import KeyFormatError, UnknownVersionError
-from inhand_schemas.keys import ParsedKey, Site, parse_key, parse_live_key
+from inhand_schemas.keys import ParsedKey, Site, parse_claim, parse_key, parse_live_key
 from inhand_schemas.topics import POSE, TOPICS, topic_of
 from message_strategies import names
 
@@ -52,6 +52,8 @@ def test_an_invalid_name_is_refused_everywhere(name: str) -> None:
     with pytest.raises(KeyFormatError):
         Site().live_key("tracker", name)
     with pytest.raises(KeyFormatError):
+        Site().claim_key("tracker", "a", "up", name)
+    with pytest.raises(KeyFormatError):
         parse_key(f"inhand/@v1/rig/pose/{name}")
 
 
@@ -91,6 +93,18 @@ def test_a_liveliness_key_is_no_stream() -> None:
 
 def test_a_liveliness_key_names_service_and_instance() -> None:
     assert parse_live_key(Site().live_key("tracker", "a")) == ("tracker", "a")
+
+
+def test_a_claims_key_gives_the_claim_back() -> None:
+    key = Site("home", "kitchen").claim_key("tracker", "a", "up", "17_ab")
+    assert key == "home/@v1/kitchen/@claim/tracker/a/up/17_ab"
+    assert parse_claim(key) == "17_ab"
+
+
+@pytest.mark.parametrize("key", [Site().live_key("a", "b"), "a/@v1/r/@claim/a/b/up", "a/b"])
+def test_another_form_is_no_claims_key(key: str) -> None:
+    with pytest.raises(KeyFormatError, match="no key of a claim"):
+        parse_claim(key)
 
 
 @pytest.mark.parametrize(

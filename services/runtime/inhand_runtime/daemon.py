@@ -15,6 +15,7 @@ from inhand_schemas.keys import Site
 from inhand_schemas.messages import Health, Message
 from inhand_schemas.topics import HEALTH, AnyTopic, Topic
 
+from inhand_runtime.claims import Elders, claimed_name
 from inhand_runtime.errors import InhandError
 from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import UNBOUNDED, Inbox, Received
@@ -24,10 +25,8 @@ from inhand_runtime.session import (
     Publisher,
     Session,
     Subscription,
-    announced,
+    connected,
     hear_namesakes,
-    is_alone,
-    lives,
     open_session,
     subscribe,
 )
@@ -60,6 +59,8 @@ class Daemon:
         self.inbox = Inbox()
         self.health = HealthBoard(service, instance)
         self.stop = stop
+        self.given_way: str | None = None
+        """Why this instance ends although nobody asked for it, if it does."""
         self._session = session
         self._subscriptions: list[Subscription] = []
         self._kept: list[Publisher[Any]] = []
@@ -109,9 +110,19 @@ class Daemon:
 
         return hear_namesakes(self._session, key, note)
 
+    def give_way(self) -> None:
+        """End, since an instance of the same name was up earlier."""
+        self.given_way = (
+            f"another {self.health.service} {self.instance} was up earlier in rig "
+            f"{self.site.rig!r} of realm {self.site.realm!r}, and could not be seen when this one "
+            "started: this one ends; give one of them another name"
+        )
+        self.health.trouble("elder", self.given_way)
+        self.stop.set()
+
     def is_alone(self) -> bool:
         """Whether no other process is connected now."""
-        return is_alone(self._session)
+        return not connected(self._session)
 
     def receive(self, timeout_s: float) -> Received | None:
         """The next sample of the inbox, or None; a main loop that calls it is seen to live."""
@@ -137,37 +148,30 @@ def running_daemon(service: str, settings: Settings[Section]) -> Iterator[Daemon
 
     SIGTERM or SIGINT sets ``daemon.stop``; a second one ends the process at once. Raises
     SettingsError or InhandError when the session cannot be opened, and InhandError when an
-    instance of that name lives already.
+    instance of that name lives already; at the end of the block also when one that was up earlier
+    came into sight meanwhile, which sets ``daemon.stop``.
     """
     configure_logs(settings.log, settings.instance)
     stop = threading.Event()
     with set_on_signals(stop), open_session(settings.zenoh) as session:
-        _refuse_namesake(session, settings.site, service, settings.instance)
-        daemon = Daemon(session, settings.site, service, settings.instance, stop)
-        with (
-            announced(session, settings.site, service, settings.instance),
-            _publishing_health(daemon, settings.zenoh),
-        ):
-            log.info("%s %s is up", service, settings.instance)
-            try:
-                yield daemon
-            finally:
-                daemon.health.state = "stopping"
-                daemon.stop.set()
-                daemon.inbox.close()
-        log.info("%s %s stopped", service, settings.instance)
-
-
-def _refuse_namesake(session: Session, site: Site, service: str, instance: str) -> None:
-    if lives(session, site, service, instance):
-        raise InhandError(
-            f"{service} {instance} runs already in rig {site.rig!r} of realm {site.realm!r}: "
-            "stop it first, or give this one another name"
-        )
+        site, instance = settings.site, settings.instance
+        with claimed_name(session, site, service, instance, stop) as elders:
+            daemon = Daemon(session, site, service, instance, stop)
+            with _publishing_health(daemon, elders, settings.zenoh):
+                log.info("%s %s is up", service, instance)
+                try:
+                    yield daemon
+                finally:
+                    daemon.health.state = "stopping"
+                    daemon.stop.set()
+                    daemon.inbox.close()
+        log.info("%s %s stopped", service, instance)
+    if daemon.given_way is not None:
+        raise InhandError(daemon.given_way)
 
 
 @contextlib.contextmanager
-def _publishing_health(daemon: Daemon, settings: ZenohSettings) -> Iterator[None]:
+def _publishing_health(daemon: Daemon, elders: Elders, settings: ZenohSettings) -> Iterator[None]:
     """Publish the health once a second, and a last time at the end of the block.
 
     Whoever publishes health under the same name is a namesake, and both say so.
@@ -176,7 +180,7 @@ def _publishing_health(daemon: Daemon, settings: ZenohSettings) -> Iterator[None
     handle = daemon.hear_namesakes(publisher.key)
     finished = threading.Event()
     reporter = threading.Thread(
-        target=_report, args=(daemon, publisher, finished, settings), name="health"
+        target=_report, args=(daemon, elders, publisher, finished, settings), name="health"
     )
     reporter.start()
     try:
@@ -188,10 +192,16 @@ def _publishing_health(daemon: Daemon, settings: ZenohSettings) -> Iterator[None
 
 
 def _report(
-    daemon: Daemon, publisher: Publisher[Health], finished: threading.Event, settings: ZenohSettings
+    daemon: Daemon,
+    elders: Elders,
+    publisher: Publisher[Health],
+    finished: threading.Event,
+    settings: ZenohSettings,
 ) -> None:
     reports = 0
     while not finished.wait(HEALTH_PERIOD_S):
+        if elders.stayed() and daemon.given_way is None:
+            daemon.give_way()
         publisher.put(daemon.health.report())
         daemon.repeat_kept()
         reports += 1

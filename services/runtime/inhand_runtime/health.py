@@ -42,7 +42,7 @@ class HealthBoard:
     ) -> None:
         self.state: ServiceState = "starting"
         self.effort: float | None = None
-        self._service = service
+        self.service = service
         self._instance = instance
         self._now = now
         self._lock = threading.Lock()
@@ -198,7 +198,7 @@ class HealthBoard:
             return Health(
                 sequence=self._sequence - 1,
                 time_ns=time.time_ns(),
-                service=self._service,
+                service=self.service,
                 instance=self._instance,
                 state="degraded" if troubles and self.state == "running" else self.state,
                 uptime_s=now - self._started,

@@ -218,17 +218,21 @@ def subscribe(
     )
 
 
-def is_alone(session: Session) -> bool:
-    """Whether no other process is connected now."""
+def session_id(session: Session) -> str:
+    """What tells a session from all others: hexadecimal digits."""
+    return str(session.info.zid())
+
+
+def connected(session: Session) -> frozenset[str]:
+    """The sessions of the processes that are connected now."""
     info = session.info
-    return not (info.peers_zid() or info.routers_zid())
+    return frozenset(str(other) for other in (*info.peers_zid(), *info.routers_zid()))
 
 
-def lives(session: Session, site: Site, service: str, instance: str) -> bool:
-    """Whether an instance of that name announced itself and lives, as far as is known now."""
-    key = site.live_key(service, instance)
-    replies = session.liveliness().get(key, timeout=LIVELINESS_TIMEOUT_S)
-    return any(reply.ok is not None for reply in replies)
+def tokens(session: Session, pattern: str) -> set[str]:
+    """The keys of the liveliness tokens that the connected processes, and this one, show now."""
+    replies = session.liveliness().get(pattern, timeout=LIVELINESS_TIMEOUT_S)
+    return {str(reply.ok.key_expr) for reply in replies if reply.ok is not None}
 
 
 def hear_namesakes(session: Session, key: str, on_sample: Callable[[], None]) -> Subscription:
@@ -241,10 +245,24 @@ def hear_namesakes(session: Session, key: str, on_sample: Callable[[], None]) ->
 
 
 @contextlib.contextmanager
-def announced(session: Session, site: Site, service: str, instance: str) -> Iterator[None]:
-    """Show all who look that an instance lives, until the block ends or the process dies."""
-    with session.liveliness().declare_token(site.live_key(service, instance)):
+def shown(session: Session, key: str) -> Iterator[None]:
+    """Show a liveliness token to all who look, until the block ends or the process dies."""
+    with session.liveliness().declare_token(key):
         yield
+
+
+def watch_tokens(
+    session: Session, pattern: str, on_change: Callable[[str, bool], None]
+) -> Subscription:
+    """Call ``on_change(key, shown)`` for each token that is shown now, and at each change.
+
+    It is called from Zenoh's threads, and must not raise; keep the returned handle.
+    """
+
+    def receive(sample: zenoh.Sample) -> None:
+        on_change(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
+
+    return session.liveliness().declare_subscriber(pattern, receive, history=True)
 
 
 def watch_instances(
@@ -255,9 +273,9 @@ def watch_instances(
     It is called from Zenoh's threads; keep the returned handle.
     """
 
-    def receive(sample: zenoh.Sample) -> None:
+    def change(key: str, lives: bool) -> None:
         with contextlib.suppress(KeyFormatError):  # a foreign program's token is nobody of ours
-            service, instance = parse_live_key(str(sample.key_expr))
-            on_change(service, instance, sample.kind == zenoh.SampleKind.PUT)
+            service, instance = parse_live_key(key)
+            on_change(service, instance, lives)
 
-    return session.liveliness().declare_subscriber(site.live_pattern(), receive, history=True)
+    return watch_tokens(session, site.live_pattern(), change)
