@@ -10,12 +10,11 @@ from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import Health
 
+from inhand.stopped import Instance, Stopped, stopped_lines
+
 SILENT_AFTER_S = 3.5
 """Seconds without a word after which an instance that lives is said to hang: it speaks each one."""
 MOST_PROBLEMS_OF_ONE = 16
-
-Instance = tuple[str, str]
-"""A service's name and an instance's."""
 
 
 @dataclass(frozen=True)
@@ -66,13 +65,21 @@ class Roll:
         complete = bool(living) and living.keys() >= set(expected)
         return quiet and complete and all(self._speaks(heard) for heard in living.values())
 
-    def problems(self, expected: Iterable[Instance] = ()) -> list[str]:
-        """What is wrong, a line each: who is missing or hangs, and what each says is wrong."""
+    def problems(
+        self, expected: Iterable[Instance] = (), stopped: Iterable[Stopped] = ()
+    ) -> list[str]:
+        """What is wrong, a line each: who is missing or hangs, and what each says is wrong.
+
+        ``stopped`` are processes of this machine, which cannot show that they are there.
+        """
         living = self.living()
+        missing = set(expected) - living.keys()
+        standing = stopped_lines(stopped, missing, living)
         lines = [
             f"{service} {name} is missing: it does not run, or cannot be reached from here"
-            for service, name in sorted(set(expected) - living.keys())
+            for service, name in sorted(missing - set(standing.values()))
         ]
+        lines += standing
         for instance, heard in living.items():
             who = " ".join(instance)
             if not self._speaks(heard):

@@ -11,6 +11,7 @@ from inhand_recorder.verification import examine_recording
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED
 from inhand_runtime.recording.part_file import PART_SUFFIX
+from inhand_runtime.wording import counted
 from rich.table import Table
 
 from inhand.looking import output
@@ -52,6 +53,8 @@ def _info(arguments: argparse.Namespace) -> int:
     infos = [inspect_recording(path) for path in arguments.files]
     for info in infos:
         output().print(_info_table(info))
+        for line in (*info.clock, *info.faults):
+            print(f"  {line}")
     _result(arguments, "recordings", [_info_values(info) for info in infos])
     return 0
 
@@ -60,7 +63,7 @@ def _verify(arguments: argparse.Namespace) -> int:
     examined = {str(path): examine_recording(path) for path in arguments.files}
     for path, one in examined.items():
         count = len(one.problems)
-        print(f"{path}: whole and true" if not count else f"{path}: {count} problems")
+        print(f"{path}: whole and true" if not count else f"{path}: {counted(count, 'problem')}")
         for line in one.problems:
             print(f"  {line}")
         for line in one.notes:
@@ -76,13 +79,12 @@ def _recover(arguments: argparse.Namespace) -> int:
     for path in arguments.files:
         report = recover_recording(path, arguments.output or _recovered(path))
         print(
-            f"{report.output}: {report.messages} messages of {report.keys} keys; "
-            f"{report.skipped_bytes} bytes could not be saved"
+            f"{report.output}: {counted(report.messages, 'message')} of "
+            f"{counted(report.keys, 'key')}; "
+            f"{counted(report.skipped_bytes, 'byte')} could not be saved"
         )
-        if report.undecodable:
-            print(f"  {report.undecodable} messages were left out: they cannot be decoded")
-        if report.unchecked:
-            print(f"  {report.unchecked} messages are unchecked: no checksum covers them")
+        for line in report.faults:
+            print(f"  {line}")
         reports.append(_report_values(path, report))
     _result(arguments, "recovered", reports)
     return 0
@@ -118,7 +120,7 @@ def _info_table(info: RecordingInfo) -> Table:
     table = listing(
         ("key", "message"),
         ("messages", "Hz", "bytes", "lost"),
-        f"{info.path}: {info.bytes:,} bytes, {info.duration_s:.3f} s, {state}",
+        f"{info.path}: {counted(info.bytes, 'byte')}, {info.duration_s:.3f} s, {state}",
     )
     for key in info.keys:
         table.add_row(
@@ -138,9 +140,12 @@ def _info_values(info: RecordingInfo) -> dict[str, Any]:
         "bytes": info.bytes,
         "start_ns": info.start_ns,
         "end_ns": info.end_ns,
+        "duration_s": info.duration_s,
         "messages": info.messages,
         "complete": info.complete,
         "unread_bytes": info.unread_bytes,
+        "clock": info.clock,
+        "faults": info.faults,
         "metadata": info.metadata,
         "keys": {
             key.key: {
@@ -164,4 +169,5 @@ def _report_values(path: Path, report: RecoveryReport) -> dict[str, Any]:
         "skipped_bytes": report.skipped_bytes,
         "unchecked": report.unchecked,
         "undecodable": report.undecodable,
+        "faults": report.faults,
     }

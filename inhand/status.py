@@ -5,19 +5,21 @@ or two publish the same.
 """
 
 import argparse
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import msgspec
 from inhand_runtime.exit_codes import DONE, FAILED
 from inhand_runtime.settings import SERVICES, load_rig_file
+from inhand_runtime.wording import counted
 from inhand_schemas.errors import KeyFormatError, MessageError
-from inhand_schemas.messages import Health
+from inhand_schemas.messages import Health, TopicHealth
 from inhand_schemas.topics import HEALTH
 from rich.console import Console
 from rich.table import Table
 
-from inhand.instances import Heard, Instance, Roll, short_key
+from inhand.instances import Heard, Roll, short_key
 from inhand.looking import (
     Look,
     add_looking_arguments,
@@ -26,10 +28,11 @@ from inhand.looking import (
     output,
 )
 from inhand.results import listing, write_json
+from inhand.stopped import Instance, stopped_services
 
 SECONDS = 5.0
-MOST_KEYS = 10
-"""Number of keys of an instance, at the most, whose unused messages have a line each."""
+MOST_KEYS = 5
+"""Number of keys of an instance, at the most, that have a line each of one kind."""
 LATE_MS = 100.0
 """Milliseconds after its capture from which on a message is said to come late."""
 
@@ -48,8 +51,9 @@ def run(arguments: argparse.Namespace) -> int:
         look.follow_tokens(roll.change)
         look.follow(HEALTH)
         _listen(look, roll, expected, arguments.seconds)
-    living, problems = roll.living(), roll.problems(expected)
-    if not living and not expected:
+    living, stopped = roll.living(), stopped_services(load_rig_file(arguments.config).zenoh)
+    problems = roll.problems(expected, stopped)
+    if not living and not expected and not problems:
         raise nothing_heard(look.site, arguments.seconds)
     if living:
         output().print(_table(living))
@@ -109,22 +113,35 @@ def _table(living: dict[Instance, Heard | None]) -> Table:
 def _unused(health: Health) -> dict[str, int]:
     """How many messages of each key came and were not used, or never came."""
     return {
-        key: topic.dropped + topic.malformed + topic.lost
+        key: topic.dropped + topic.refused + topic.malformed + topic.lost
         for key, topic in health.topics.items()
-        if topic.dropped or topic.malformed or topic.lost
+        if topic.dropped or topic.refused or topic.malformed or topic.lost
     }
 
 
 def late_lines(living: dict[Instance, Heard | None]) -> list[str]:
-    """One line for each key that came late to an instance, and for each that cannot keep up."""
+    """Return a line for each key that came late to an instance, and for each that cannot keep up;
+    of many keys a line for the latest, and one for all others."""
     lines = []
     for instance, heard in living.items():
         if heard is None:
             continue
         who, health = " ".join(instance), heard.health
-        for key, topic in health.topics.items():
-            if topic.late_ms is not None and topic.late_ms >= LATE_MS:
-                lines.append(f"{who}, {short_key(key)}: up to {topic.late_ms:.0f} ms after capture")
+        late_ms = {
+            key: topic.late_ms
+            for key, topic in health.topics.items()
+            if topic.late_ms is not None and topic.late_ms >= LATE_MS
+        }
+        latest, others = _first(late_ms)
+        lines += [
+            f"{who}, {short_key(key)}: up to {late_ms[key]:.0f} ms after capture" for key in latest
+        ]
+        if others:
+            longest_ms = max(late_ms[key] for key in others)
+            lines.append(
+                f"{who}, and {counted(len(others), 'more key')}: up to {longest_ms:.0f} ms after "
+                "capture"
+            )
         if health.effort is not None and health.effort < 1.0:
             lines.append(
                 f"{who}: does {100.0 * health.effort:.0f} % of its usual work in a frame, to keep "
@@ -134,29 +151,33 @@ def late_lines(living: dict[Instance, Heard | None]) -> list[str]:
 
 
 def left_unused(living: dict[Instance, Heard | None]) -> list[str]:
-    """One line for each key that an instance did not use every message of, and why; of many keys
-    those with the most."""
+    """Return a line for each key that an instance did not use every message of, and why; of many
+    keys a line for those with the most, and one for all others."""
     lines = []
     for instance, heard in living.items():
         if heard is None:
             continue
-        who, unused = " ".join(instance), _unused(heard.health)
-        most = sorted(unused, key=unused.__getitem__, reverse=True)[:MOST_KEYS]
-        for key in most:
-            topic = heard.health.topics[key]
-            reasons = [
-                f"{count} {reason}"
-                for count, reason in (
-                    (topic.dropped, "came too late or too fast"),
-                    (topic.malformed, "could not be read"),
-                    (topic.lost, "never came"),
-                )
-                if count
-            ]
-            lines.append(f"{who}, {short_key(key)}: {', '.join(reasons)}")
-        if len(most) < len(unused):
-            left = sum(unused.values()) - sum(unused[key] for key in most)
-            lines.append(
-                f"{who}, {len(unused) - len(most)} more keys: {left} messages were not used"
-            )
+        who, topics, unused = " ".join(instance), heard.health.topics, _unused(heard.health)
+        most, others = _first(unused)
+        lines += [f"{who}, {short_key(key)}: {_reasons([topics[key]])}" for key in most]
+        if others:
+            reasons = _reasons([topics[key] for key in others])
+            lines.append(f"{who}, and {counted(len(others), 'more key')}: {reasons}")
     return lines
+
+
+def _reasons(topics: Sequence[TopicHealth]) -> str:
+    """Why messages of these keys were not used, and how many for each reason."""
+    counts = (
+        (sum(topic.dropped for topic in topics), "came too late or too fast"),
+        (sum(topic.refused for topic in topics), "came on more keys than are recorded"),
+        (sum(topic.malformed for topic in topics), "could not be read"),
+        (sum(topic.lost for topic in topics), "never came"),
+    )
+    return ", ".join(f"{count} {reason}" for count, reason in counts if count)
+
+
+def _first(amounts: Mapping[str, float]) -> tuple[list[str], list[str]]:
+    """The keys with the greatest amounts, and all others."""
+    ordered = sorted(amounts, key=amounts.__getitem__, reverse=True)
+    return ordered[:MOST_KEYS], ordered[MOST_KEYS:]

@@ -239,9 +239,9 @@ class Event(Message, frozen=True, kw_only=True):
 class TopicHealth(Struct, frozen=True, kw_only=True):
     """The traffic of one key at one instance since it started.
 
-    ``dropped`` reached the instance and was not used, ``lost`` is what the numbers of those that
-    came show as missing. ``late_ms`` is the longest time, in milliseconds, from capture to arrival
-    since the last report.
+    ``dropped`` reached the instance and was too late or too much to be used, ``refused`` is what it
+    does not take at all, ``lost`` is what the numbers of those that came show as missing.
+    ``late_ms`` is the longest time, in milliseconds, from capture to arrival since the last report.
     """
 
     published: Count = 0
@@ -251,6 +251,7 @@ class TopicHealth(Struct, frozen=True, kw_only=True):
     rate_hz: NonNegative = 0.0
     lost: Count = 0
     late_ms: NonNegative | None = None
+    refused: Count = 0
 
     def __post_init__(self) -> None:
         _require_finite("rate", (self.rate_hz, self.late_ms or 0.0))

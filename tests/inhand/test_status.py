@@ -56,4 +56,21 @@ def test_of_a_flood_of_keys_those_with_the_most_are_named_and_the_others_counted
     lines = left_unused(living(topics))
     assert lines[0] == "tracker mug, event/k1000: 1000 could not be read"
     assert len(lines) == MOST_KEYS + 1
-    assert lines[-1] == f"tracker mug, 990 more keys: {sum(range(1, 991))} messages were not used"
+    rest = sum(range(1, 1001 - MOST_KEYS))
+    assert lines[-1] == f"tracker mug, and 995 more keys: {rest} could not be read"
+
+
+def test_of_a_flood_of_late_keys_the_latest_are_named_and_the_others_counted() -> None:
+    topics = {
+        f"inhand/@v1/rig/event/k{number}": TopicHealth(received=1, late_ms=1000.0 + number)
+        for number in range(MOST_KEYS + 1)
+    }
+    lines = late_lines(living(topics))
+    assert lines[0] == "tracker mug, event/k5: up to 1005 ms after capture"
+    assert lines[-1] == "tracker mug, and 1 more key: up to 1000 ms after capture"
+    assert len(lines) == MOST_KEYS + 1
+
+
+def test_what_a_recorder_refuses_did_not_come_too_late() -> None:
+    (line,) = left_unused(living({"(other keys)": TopicHealth(refused=7)}))
+    assert line == "tracker mug, (other keys): 7 came on more keys than are recorded"

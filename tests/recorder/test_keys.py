@@ -46,5 +46,6 @@ def test_keys_beyond_the_bound_are_counted_and_the_others_recorded(
     (path,) = tmp_path.glob("*.mcap")
     assert len(list(read_recording(path))) == 5
     report = daemon.health.report()
-    assert sum(topic.dropped for topic in report.topics.values()) == 3
+    assert sum(topic.refused for topic in report.topics.values()) == 3
+    assert sum(topic.dropped for topic in report.topics.values()) == 0
     assert any("more than 5 keys are published" in trouble for trouble in report.troubles)

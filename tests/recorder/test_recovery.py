@@ -11,13 +11,14 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from inhand_recorder.faults import RECOVERY_RECORD
 from inhand_recorder.inspection import inspect_recording
 from inhand_recorder.losses import (
     LOSSES_RECORD,
     LossCounter,
     format_losses,
 )
-from inhand_recorder.recovery import RECOVERY_RECORD, recover_recording
+from inhand_recorder.recovery import recover_recording
 from inhand_recorder.scanning import scan
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import (
@@ -64,6 +65,7 @@ def test_metadata_is_kept_and_the_origin_told(whole: Path, tmp_path: Path) -> No
         "skipped_bytes": "0",
         "unchecked": "0",
         "undecodable": "0",
+        "faults": "",
     }
 
 

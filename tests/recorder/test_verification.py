@@ -42,7 +42,10 @@ def test_a_changed_byte_in_a_payload_is_told_with_its_place(tmp_path: Path) -> N
     data[data.index(pose(15)) + 5] ^= 1
     path.write_bytes(data)
     problems = verify_recording(path)
-    assert any("from byte" in problem and "damaged" in problem for problem in problems)
+    assert any(
+        "part from byte" in line and "1 of its 30 messages lost" in line for line in problems
+    )
+    assert any(f"{POSE_KEY} number 15, received" in line for line in problems)
     assert any("checksum of the whole file" in problem for problem in problems)
     assert any("index counts 90 messages, and 89 can be read" in problem for problem in problems)
 
@@ -52,8 +55,10 @@ def test_a_payload_of_another_type_is_told_with_its_key(tmp_path: Path) -> None:
         write(writer, pose(0), 0, 10)
         write(writer, b"\xc0", 1, 20)
         write(writer, b"\x81", 2, 30)
-    (problem,) = verify_recording(writer.path)
-    assert problem.startswith(f"{POSE_KEY}: 2 messages cannot be decoded, the first: no valid")
+    error, named = sorted(verify_recording(writer.path), reverse=True)
+    assert error.startswith(f"{POSE_KEY}: the first message that cannot be decoded: no valid")
+    assert named.startswith(f"{POSE_KEY}: 2 messages, numbers 1-2, received from ")
+    assert named.endswith(": undecodable")
 
 
 def test_times_of_reception_that_go_back_are_told(tmp_path: Path) -> None:
@@ -61,7 +66,7 @@ def test_times_of_reception_that_go_back_are_told(tmp_path: Path) -> None:
         for number, received_ns in enumerate((10, 30, 20, 40)):
             write(writer, pose(number), number, received_ns)
     (problem,) = verify_recording(writer.path)
-    assert problem == f"{POSE_KEY}: the time of reception goes back 1 times"
+    assert problem == f"{POSE_KEY}: the time of reception goes back 1 time"
 
 
 def test_losses_that_disagree_with_the_numbers_are_told(tmp_path: Path) -> None:

@@ -110,6 +110,7 @@ LATE = replace(
     topics={"inhand/@v1/rig/rgbd/kitchen": TopicHealth(received=360, late_ms=7.5)},
     effort=0.75,
 )
+REFUSED = replace(LATE, topics={"(other keys)": TopicHealth(refused=12)})
 
 TRUTH = ObjectPose(
     sequence=9,
@@ -128,6 +129,7 @@ TRUTH = ObjectPose(
 GOLDEN_MESSAGES: dict[str, Message] = {
     **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
     "Health.v1.late": LATE,
+    "Health.v1.refused": REFUSED,
     "ObjectPose.v1.truth": TRUTH,
 }
 """By the stem of their golden files: one of each type, and one more for fields it grew by."""

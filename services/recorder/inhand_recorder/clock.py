@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from datetime import UTC, datetime
 
 CLOCK_RECORD = "clock_steps"
 """The name of the metadata record that a recording keeps its clock's steps in."""
@@ -31,6 +32,11 @@ class ClockWatch:
 
     def _offset(self) -> int:
         return self._wall_ns() - self._monotonic_ns()
+
+
+def time_text(time_ns: int) -> str:
+    """A time of the wall clock, in nanoseconds since the epoch, as a person reads it (UTC)."""
+    return datetime.fromtimestamp(time_ns / 1e9, UTC).isoformat(timespec="milliseconds")
 
 
 def format_clock_steps(steps: Mapping[int, int]) -> dict[str, str]:

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 
+from inhand_runtime.wording import counted
+
 from inhand_recorder.losses import LossCounter
 
 
@@ -23,6 +25,6 @@ class GapReporter:
             if losses.lost >= max(1, 2 * self._reported.get(key, 0)):
                 self._reported[key] = losses.lost
                 self._report(
-                    f"{losses.lost} messages of {key} are missing so far: their publisher skipped "
-                    "them, or they were lost on the way or in a full queue"
+                    f"{counted(losses.lost, 'message')} of {key} missing so far: skipped by the "
+                    "publisher, or lost on the way or in a full queue"
                 )

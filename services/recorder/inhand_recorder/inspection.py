@@ -1,16 +1,21 @@
 """What is in a recording, in whatever state it is."""
 
+from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from inhand_runtime.recording import APART_ENCODING
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
+from inhand_runtime.recording.layout import PROFILE
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.topics import topic_of
-from mcap.records import Channel, Message, Metadata
+from mcap.records import Channel, Header, Message, Metadata
 
+from inhand_recorder.clock import CLOCK_RECORD, parse_clock_steps
+from inhand_recorder.faults import UNCHECKED, FaultLedger
 from inhand_recorder.losses import LossCounter
-from inhand_recorder.scanning import channels, is_complete, opened, scan
+from inhand_recorder.reception import ReceptionTimes
+from inhand_recorder.scanning import Stretch, channels, is_complete, opened, scan
 
 UNDECODABLE = " (undecodable)"
 """Stands behind the key of messages that a recording keeps apart."""
@@ -37,8 +42,11 @@ class KeyInfo:
 class RecordingInfo:
     """What a recording holds; times are of reception, in nanoseconds since the epoch.
 
-    ``complete`` says that it was finished and nothing in it is unreadable. ``metadata`` holds the
-    named records, ``losses`` (as the recorder wrote them) among them.
+    ``duration_s`` is the seconds from the first message to the last, by a clock that nobody set:
+    steps of the wall clock are taken out, and each is told in ``clock``. ``complete`` says that it
+    was finished and nothing in it is unreadable; ``faults`` name in lines what is missing or
+    unchecked. ``metadata`` holds the named records, ``losses`` (as the recorder wrote them) among
+    them.
     """
 
     path: Path
@@ -49,11 +57,9 @@ class RecordingInfo:
     complete: bool
     unread_bytes: int
     metadata: dict[str, dict[str, str]]
-
-    @property
-    def duration_s(self) -> float:
-        """Seconds from the first message to the last."""
-        return (self.end_ns - self.start_ns) / 1e9
+    duration_s: float
+    clock: tuple[str, ...]
+    faults: tuple[str, ...]
 
     @property
     def messages(self) -> int:
@@ -62,68 +68,66 @@ class RecordingInfo:
 
 
 @dataclass
-class _Tally:
-    messages: int = 0
-    bytes: int = 0
-    start_ns: int = 0
-    end_ns: int = 0
-
-    def add(self, message: Message) -> None:
-        first = self.messages == 0
-        self.messages += 1
-        self.bytes += len(message.data)
-        self.start_ns = message.log_time if first else min(self.start_ns, message.log_time)
-        self.end_ns = max(self.end_ns, message.log_time)
-
-    @property
-    def rate_hz(self) -> float:
-        seconds = (self.end_ns - self.start_ns) / 1e9
-        return (self.messages - 1) / seconds if seconds > 0 else 0.0
-
-
-@dataclass
 class _Contents:
-    tallies: dict[str, _Tally] = field(default_factory=dict)
+    keys: dict[int, str]
+    faults: FaultLedger
+    sizes: Counter[str] = field(default_factory=Counter)
+    times: ReceptionTimes = field(default_factory=ReceptionTimes)
     counter: LossCounter = field(default_factory=LossCounter)
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     unread_bytes: int = 0
 
+    def take(self, stretch: Stretch) -> None:
+        self.unread_bytes += stretch.unread_bytes
+        self.faults.take(stretch)
+        for record in (*stretch.records, *stretch.doubtful):
+            if isinstance(record, Message) and record.channel_id in self.keys:
+                key = self.keys[record.channel_id]
+                self.sizes[key] += len(record.data)
+                self.times.add(key, record.log_time)
+                self.counter.count(key, record.sequence)
+            elif isinstance(record, Metadata) and record.name != CHECKSUMS_RECORD:
+                self.metadata[record.name] = record.metadata
+            elif isinstance(record, Header):
+                self.times.in_order = record.profile == PROFILE
+        for record in stretch.doubtful:
+            self.faults.note(record, UNCHECKED)
+
 
 def inspect_recording(path: Path) -> RecordingInfo:
     """Read all of ``path``, whole, cut off or damaged; raises RecordingError when it is none."""
-    contents = _Contents()
     with opened(path) as data:
         size, complete = len(data), is_complete(data)
         keys = {number: _shown_key(channel) for number, channel in channels(data).items()}
+        contents = _Contents(keys, FaultLedger(keys))
         for stretch in scan(data):
-            contents.unread_bytes += stretch.unread_bytes
-            for record in (*stretch.records, *stretch.doubtful):
-                if isinstance(record, Message) and record.channel_id in keys:
-                    key = keys[record.channel_id]
-                    contents.tallies.setdefault(key, _Tally()).add(record)
-                    contents.counter.count(key, record.sequence)
-                elif isinstance(record, Metadata) and record.name != CHECKSUMS_RECORD:
-                    contents.metadata[record.name] = record.metadata
-    tallies, losses = contents.tallies, contents.counter.losses()
+            contents.take(stretch)
+    losses = contents.counter.losses()
+    spans, duration_s, clock = contents.times.without_steps(
+        parse_clock_steps(contents.metadata.get(CLOCK_RECORD, {}))
+    )
     return RecordingInfo(
         path=path,
         bytes=size,
-        start_ns=min((tally.start_ns for tally in tallies.values()), default=0),
-        end_ns=max((tally.end_ns for tally in tallies.values()), default=0),
+        start_ns=min(contents.times.received_ns, default=0),
+        end_ns=max(contents.times.received_ns, default=0),
         keys=tuple(
             KeyInfo(
                 key,
                 _type(key),
-                tally.messages,
-                tally.bytes,
-                tally.rate_hz,
+                span.messages,
+                contents.sizes[key],
+                span.rate_hz,
                 losses[key].lost if _is_numbered(key) else 0,
             )
-            for key, tally in sorted(tallies.items())
+            for key, span in sorted(spans.items())
         ),
         complete=complete and contents.unread_bytes == 0,
         unread_bytes=contents.unread_bytes,
         metadata=contents.metadata,
+        duration_s=duration_s,
+        clock=clock,
+        faults=tuple(contents.faults.lines()),
     )
 
 

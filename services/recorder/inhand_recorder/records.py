@@ -80,6 +80,16 @@ def record_at(data: Bytes, offset: int) -> McapRecord | None:
     return record if stream.count == len(body) else None
 
 
+def message_head(data: Bytes, offset: int) -> Message | None:
+    """The message that begins at ``offset``, without its payload, wherever that ends; or None."""
+    start = offset + HEADER_BYTES
+    if start + MESSAGE_BYTES > len(data) or data[offset] != Opcode.MESSAGE:
+        return None
+    stream = ReadDataStream(BytesIO(data[start : start + MESSAGE_BYTES]))
+    head: Message = Message.read(stream, MESSAGE_BYTES)
+    return head
+
+
 def length_at(data: Bytes, offset: int) -> int:
     """Bytes of the whole record at ``offset``, its header included."""
     length: int = struct.unpack_from("<Q", data, offset + 1)[0]

@@ -4,17 +4,30 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from inhand_runtime.recording import MESSAGE_ENCODING, RecordingError, RecordingWriter
+from inhand_runtime.recording import (
+    APART_ENCODING,
+    MESSAGE_ENCODING,
+    RecordingError,
+    RecordingWriter,
+)
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
 from inhand_schemas.errors import KeyFormatError, MessageError, UnknownVersionError
 from inhand_schemas.topics import AnyTopic, topic_of
 from mcap.records import Channel, Message, Metadata
 
+from inhand_recorder.faults import (
+    APART,
+    FAULTS_FIELD,
+    FOREIGN,
+    RECOVERY_RECORD,
+    UNCHECKED,
+    UNDECODABLE,
+    FaultLedger,
+)
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses, parse_losses
 from inhand_recorder.records import Bytes
 from inhand_recorder.scanning import Stretch, channels, opened, scan
 
-RECOVERY_RECORD = "recovery"
 RECOVERING_SUFFIX = ".recovering"
 
 
@@ -23,7 +36,8 @@ class RecoveryReport:
     """What was saved: ``messages`` messages of ``keys`` keys, and what was not.
 
     ``unchecked`` of them are covered by no checksum, and decode; ``undecodable`` messages were left
-    out. ``skipped_bytes`` could not be read, or were no messages of Inhand's.
+    out. ``skipped_bytes`` could not be read, or were no messages of Inhand's. ``faults`` names in
+    lines each message that is damaged, cut off, left out or unchecked, as far as it can be named.
     """
 
     output: Path
@@ -32,6 +46,7 @@ class RecoveryReport:
     skipped_bytes: int
     unchecked: int = 0
     undecodable: int = 0
+    faults: tuple[str, ...] = ()
 
 
 def recover_recording(path: Path, output: Path) -> RecoveryReport:
@@ -64,11 +79,12 @@ def recover_recording(path: Path, output: Path) -> RecoveryReport:
         rescue.skipped_bytes,
         rescue.unchecked,
         rescue.undecodable,
+        rescue.fault_lines(),
     )
 
 
 def _rescue(path: Path, data: Bytes, writer: RecordingWriter) -> "_Rescue":
-    rescue = _Rescue(writer, _known(path, channels(data)))
+    rescue = _Rescue(writer, channels(data), path)
     for stretch in scan(data):
         rescue.take(stretch)
     if rescue.messages == 0:
@@ -78,9 +94,15 @@ def _rescue(path: Path, data: Bytes, writer: RecordingWriter) -> "_Rescue":
 
 
 class _Rescue:
-    def __init__(self, writer: RecordingWriter, known: dict[int, tuple[str, AnyTopic]]) -> None:
+    def __init__(self, writer: RecordingWriter, by_number: dict[int, Channel], path: Path) -> None:
         self._writer = writer
-        self._known = known
+        self._known = _known(path, by_number)
+        self._apart = {
+            number
+            for number, channel in by_number.items()
+            if channel.message_encoding == APART_ENCODING
+        }
+        self.faults = FaultLedger({number: one.topic for number, one in by_number.items()})
         self._counter = LossCounter()
         self._dropped: dict[str, int] = {}
         self.found: set[str] = set()
@@ -91,13 +113,16 @@ class _Rescue:
 
     def take(self, stretch: Stretch) -> None:
         self.skipped_bytes += stretch.unread_bytes
+        self.faults.take(stretch)
         for record in stretch.records:
             if isinstance(record, Message):
                 self._take_message(record)
             elif isinstance(record, Metadata):
                 self._take_metadata(record)
         for record in stretch.doubtful:
-            self.unchecked += self._take_message(record)
+            if self._take_message(record):
+                self.unchecked += 1
+                self.faults.note(record, UNCHECKED)
 
     def finish(self, source: Path) -> None:
         losses = self._counter.losses(self._dropped)
@@ -107,16 +132,22 @@ class _Rescue:
             "skipped_bytes": str(self.skipped_bytes),
             "unchecked": str(self.unchecked),
             "undecodable": str(self.undecodable),
+            FAULTS_FIELD: "\n".join(self.fault_lines()),
         }
         self._writer.add_metadata(RECOVERY_RECORD, origin)
 
+    def fault_lines(self) -> tuple[str, ...]:
+        return tuple(self.faults.lines(kept=(UNCHECKED,)))
+
     def _take_message(self, record: Message) -> bool:
-        """Whether the message was saved."""
+        """Whether the message was saved; what was not is named."""
         key, topic = self._known.get(record.channel_id, (None, None))
         if key is None or topic is None:
+            self.faults.note(record, APART if record.channel_id in self._apart else FOREIGN)
             self.skipped_bytes += len(record.data)
             return False
         if not _decodes(topic, record.data):
+            self.faults.note(record, UNDECODABLE)
             self.undecodable += 1
             self.skipped_bytes += len(record.data)
             return False

@@ -11,7 +11,7 @@ from mcap.records import (
     Schema,
 )
 
-from inhand_recorder.records import length_at, record_at
+from inhand_recorder.records import length_at, message_head, record_at
 
 # The start of a schema, channel or message within a chunk.
 _INNER_ANCHOR = re.compile(rb"(?=[\x03\x04\x05][\s\S]{5}\x00\x00\x00)")
@@ -19,10 +19,16 @@ _INNER_ANCHOR = re.compile(rb"(?=[\x03\x04\x05][\s\S]{5}\x00\x00\x00)")
 
 @dataclass
 class Remains:
-    """What is left of a chunk whose own checksum does not hold."""
+    """What is left of a chunk whose own checksum does not hold.
+
+    ``broken`` are heads of messages that a checksum contradicts, or whose end is not where it
+    should be; ``cut_off`` is the head of the one in which the data ends. Both are without payload.
+    """
 
     records: tuple[McapRecord, ...] = ()
     doubtful: tuple[Message, ...] = ()
+    broken: tuple[Message, ...] = ()
+    cut_off: tuple[Message, ...] = ()
     unread_bytes: int = 0
 
     @property
@@ -38,6 +44,8 @@ def remains_of(data: bytes, digests: frozenset[bytes], times: tuple[int, int]) -
     """
     proved: list[McapRecord] = []
     doubtful: list[Message] = []
+    broken: list[Message] = []
+    cut_off: tuple[Message, ...] = ()
     unread = offset = 0
     while offset < len(data):
         record = record_at(data, offset)
@@ -49,11 +57,15 @@ def remains_of(data: bytes, digests: frozenset[bytes], times: tuple[int, int]) -
             offset += length_at(data, offset)
         else:
             following = _next_inner(data, offset, digests, times)
+            head = message_head(data, offset)
+            if head is not None and times[0] <= head.log_time <= times[1]:
+                if record is None and following == len(data):
+                    cut_off = (head,)
+                else:
+                    broken.append(head)
             unread += following - offset
             offset = following
-    if digests and not any(isinstance(record, Message) for record in proved):
-        return remains_of(data, frozenset(), times)  # they are another chunk's: the record was lost
-    return Remains(tuple(proved), tuple(doubtful), unread)
+    return Remains(tuple(proved), tuple(doubtful), tuple(broken), cut_off, unread)
 
 
 def _next_inner(data: bytes, offset: int, digests: frozenset[bytes], times: tuple[int, int]) -> int:
@@ -62,12 +74,20 @@ def _next_inner(data: bytes, offset: int, digests: frozenset[bytes], times: tupl
     if isinstance(record, Message):
         # A payload alone may be damaged: then the record behind it stands where its length says.
         behind = offset + length_at(data, offset)
-        if behind == len(data) or _is_inner(record_at(data, behind), digests, times):
+        if behind == len(data) or _stands(data, behind, digests, times):
             return behind
     for match in _INNER_ANCHOR.finditer(data, offset + 1):
-        if _is_inner(record_at(data, match.start()), digests, times):
+        if _stands(data, match.start(), digests, times):
             return match.start()
     return len(data)
+
+
+def _stands(data: bytes, offset: int, digests: frozenset[bytes], times: tuple[int, int]) -> bool:
+    """Whether a record begins here: it proves itself, or its head lies within the chunk's times."""
+    if _is_inner(record_at(data, offset), digests, times):
+        return True
+    head = message_head(data, offset)
+    return head is not None and times[0] <= head.log_time <= times[1]
 
 
 def _is_inner(record: McapRecord | None, digests: frozenset[bytes], times: tuple[int, int]) -> bool:

@@ -29,7 +29,7 @@ from mcap.records import (
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
 from inhand_recorder.records import HEADER_BYTES, Bytes, checked_records, length_at, record_at
-from inhand_recorder.remains import remains_of
+from inhand_recorder.remains import Remains, remains_of
 
 State: TypeAlias = Literal["whole", "cut", "damaged"]
 
@@ -46,7 +46,9 @@ class Stretch:
     A ``whole`` stretch is one record, or a chunk's records when their checksum holds. Of a ``cut``
     or ``damaged`` chunk ``records`` are the messages whose own checksum holds, and what it defines
     (schemas and channels); ``doubtful`` are messages that none covers. What a checksum contradicts
-    is among ``unread_bytes``.
+    is among ``unread_bytes``, and its head among ``broken``; ``cut_off`` is the head of the message
+    in which the file ends. ``expected`` is the number of messages that were written there, where
+    the checksums before it say so.
     """
 
     offset: int
@@ -55,6 +57,9 @@ class Stretch:
     records: tuple[McapRecord, ...] = ()
     unread_bytes: int = 0
     doubtful: tuple[Message, ...] = ()
+    broken: tuple[Message, ...] = ()
+    cut_off: tuple[Message, ...] = ()
+    expected: int | None = None
 
 
 @contextmanager
@@ -143,17 +148,22 @@ def channels(data: Bytes) -> dict[int, Channel]:
 def scan(data: Bytes, offset: int = len(MAGIC)) -> Iterator[Stretch]:
     """All stretches from ``offset`` on, without a hole between them."""
     end = len(data) - len(MAGIC) if data[-len(MAGIC) :] == MAGIC else len(data)
-    digests: frozenset[bytes] = frozenset()
+    digests: tuple[bytes, ...] = ()
     while offset < end:
         stretch = _stretch_at(data, offset, digests)
+        yield stretch
+        # Checksums are those of the chunk behind them, and of no other.
+        if data[offset] == Opcode.CHUNK or stretch.state != "whole":
+            digests = ()
         for record in stretch.records:
             if isinstance(record, Metadata) and record.name == CHECKSUMS_RECORD:
                 digests = parse_digests(record.metadata)
-        yield stretch
         offset += stretch.length
+    if digests:  # the file ends between a chunk's checksums and the chunk
+        yield Stretch(end, 0, "cut", expected=len(digests))
 
 
-def _stretch_at(data: Bytes, offset: int, digests: frozenset[bytes]) -> Stretch:
+def _stretch_at(data: Bytes, offset: int, digests: tuple[bytes, ...]) -> Stretch:
     record = record_at(data, offset)
     if isinstance(record, Chunk):
         return _chunk(record, offset, length_at(data, offset), digests)
@@ -161,38 +171,54 @@ def _stretch_at(data: Bytes, offset: int, digests: frozenset[bytes]) -> Stretch:
         return Stretch(offset, length_at(data, offset), "whole", (record,))
     anchor = _next_anchor(data, offset + 1)
     if anchor is not None:
-        return Stretch(offset, anchor - offset, "damaged", (), anchor - offset)
+        length, expected = anchor - offset, len(digests) or None
+        return Stretch(offset, length, "damaged", unread_bytes=length, expected=expected)
     return _cut(data, offset, digests)
 
 
-def _chunk(chunk: Chunk, offset: int, length: int, digests: frozenset[bytes]) -> Stretch:
+def _chunk(chunk: Chunk, offset: int, length: int, digests: tuple[bytes, ...]) -> Stretch:
     records = checked_records(chunk)
     if records is not None:
         return Stretch(offset, length, "whole", records)
     if chunk.compression:
-        return Stretch(offset, length, "damaged", (), length)
+        return Stretch(offset, length, "damaged", unread_bytes=length)
     times = chunk.message_start_time, chunk.message_end_time
-    remains = remains_of(chunk.data, digests, times)
+    remains = remains_of(chunk.data, frozenset(digests), times)
     unread = length if not remains.messages else remains.unread_bytes
-    return Stretch(offset, length, "damaged", remains.records, unread, remains.doubtful)
+    return _left(offset, length, "damaged", remains, unread, digests)
 
 
-def _cut(data: Bytes, offset: int, digests: frozenset[bytes]) -> Stretch:
+def _cut(data: Bytes, offset: int, digests: tuple[bytes, ...]) -> Stretch:
     rest = data[offset:]
     chunk_head = struct.Struct("<BQQQQIIQ")
     if len(rest) >= chunk_head.size:
         opcode, _, start, end, _, _, compression_length, _ = chunk_head.unpack_from(rest)
         if opcode == Opcode.CHUNK and compression_length == 0:
-            remains = remains_of(rest[chunk_head.size :], digests, (start, end))
-            return Stretch(
-                offset,
-                len(rest),
-                "cut",
-                remains.records,
-                remains.unread_bytes,
-                remains.doubtful,
-            )
-    return Stretch(offset, len(rest), "cut", (), len(rest))
+            remains = remains_of(rest[chunk_head.size :], frozenset(digests), (start, end))
+            return _left(offset, len(rest), "cut", remains, remains.unread_bytes, digests)
+    expected = len(digests) or None
+    return Stretch(offset, len(rest), "cut", unread_bytes=len(rest), expected=expected)
+
+
+def _left(
+    offset: int,
+    length: int,
+    state: State,
+    remains: Remains,
+    unread_bytes: int,
+    digests: tuple[bytes, ...],
+) -> Stretch:
+    return Stretch(
+        offset,
+        length,
+        state,
+        remains.records,
+        unread_bytes,
+        remains.doubtful,
+        remains.broken,
+        remains.cut_off,
+        len(digests) or None,
+    )
 
 
 def _next_anchor(data: Bytes, offset: int) -> int | None:

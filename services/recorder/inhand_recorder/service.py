@@ -11,6 +11,7 @@ from inhand_runtime.inbox import Received
 from inhand_runtime.recording import RecordingError
 from inhand_runtime.settings import FilePath, Section, Settings
 from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.wording import counted
 from inhand_runtime.writable import try_folder
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.topics import RGBD, TOPICS, topic_of
@@ -209,11 +210,11 @@ class _Recorder:
         self._journal.write(entry)
 
     def _refuse_key(self, key: str) -> None:
-        self._daemon.health.dropped(key)
+        self._daemon.health.refused(key)
         self._daemon.health.trouble(
             "keys",
-            f"more than {MOST_KEYS} keys are published: what comes on new ones is not recorded; "
-            "some program invents names",
+            f"more than {counted(MOST_KEYS, 'key')} are published: what comes on new ones is not "
+            "recorded; some program invents names",
             lasts_s=REFUSED_KEYS_LAST_S,
         )
 
@@ -225,4 +226,6 @@ class _Recorder:
             for _ in range(messages):
                 self._daemon.health.dropped(key)
         if left:
-            self._daemon.health.error(f"{left.total()} messages could not be written any more")
+            self._daemon.health.error(
+                f"could not be written any more: {counted(left.total(), 'message')}"
+            )

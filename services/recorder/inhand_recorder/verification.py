@@ -5,16 +5,23 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
 from inhand_runtime.recording import APART_ENCODING
+from inhand_runtime.wording import counted
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.topics import INFO, RGBD, topic_of
 from mcap.records import DataEnd, Message, Metadata, Statistics
 
-from inhand_recorder.clock import CLOCK_RECORD, parse_clock_steps
+from inhand_recorder.clock import CLOCK_RECORD, parse_clock_steps, time_text
+from inhand_recorder.faults import (
+    FAULTS_FIELD,
+    RECOVERY_RECORD,
+    UNCHECKED,
+    UNDECODABLE,
+    FaultLedger,
+)
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, Losses, parse_losses
 from inhand_recorder.records import Bytes
 from inhand_recorder.scanning import (
@@ -52,10 +59,11 @@ def verify_recording(path: Path) -> list[str]:
 def examine_recording(path: Path) -> Examination:
     """What ``verify_recording`` finds, and notes beside it; raises RecordingError."""
     with opened(path) as data:
-        messages = _Messages({number: one.topic for number, one in channels(data).items()})
+        known = channels(data)
+        messages = _Messages({number: one.topic for number, one in known.items()})
         apart = {
             number
-            for number, channel in channels(data).items()
+            for number, channel in known.items()
             if channel.message_encoding == APART_ENCODING
         }
         problems = list(_problems(path, data, messages, apart))
@@ -73,6 +81,7 @@ def _problems(path: Path, data: Bytes, messages: "_Messages", apart: set[int]) -
         )
     written: dict[str, str] = {}
     for stretch in scan(data):
+        messages.faults.take(stretch)
         yield from _structural_problems(data, stretch)
         for record in stretch.records:
             if isinstance(record, Message):
@@ -81,11 +90,16 @@ def _problems(path: Path, data: Bytes, messages: "_Messages", apart: set[int]) -
                 written = record.metadata
             elif isinstance(record, Metadata) and record.name == CLOCK_RECORD:
                 messages.clock_steps = parse_clock_steps(record.metadata)
+            elif isinstance(record, Metadata) and record.name == RECOVERY_RECORD:
+                messages.recovery = record.metadata
             elif isinstance(record, Statistics) and record.message_count != messages.number:
                 yield (
-                    f"the index counts {record.message_count} messages, "
-                    f"and {messages.number} can be read"
+                    f"the index counts {counted(record.message_count, 'message')}, "
+                    f"and {messages.number:,} can be read"
                 )
+        for record in stretch.doubtful:
+            messages.faults.note(record, UNCHECKED)
+    yield from messages.faults.lines()
     yield from messages.problems()
     yield from messages.missing_infos(path)
     if written:
@@ -93,8 +107,6 @@ def _problems(path: Path, data: Bytes, messages: "_Messages", apart: set[int]) -
 
 
 def _structural_problems(data: Bytes, stretch: Stretch) -> Iterator[str]:
-    if stretch.unread_bytes:
-        yield f"{stretch.unread_bytes} bytes from byte {stretch.offset} on are {stretch.state}"
     for record in stretch.records:
         if not isinstance(record, DataEnd) or record.data_section_crc == 0:
             continue
@@ -109,13 +121,15 @@ class _Messages:
         self._keys = keys
         self._received_ns: dict[str, int] = {}
         self._backwards: dict[str, int] = {}
-        self._malformed: dict[str, list[str]] = {}
+        self._malformed: dict[str, str] = {}
         self._apart: Counter[str] = Counter()
         self._counts: Counter[str] = Counter()
         self._first_ns: dict[str, int] = {}
         self._last_ns: dict[str, int] = {}
         self.clock_steps: dict[int, int] = {}
+        self.recovery: dict[str, str] = {}
         self.counter = LossCounter()
+        self.faults = FaultLedger(keys)
         self.number = 0
 
     def check(self, message: Message, *, apart: bool) -> None:
@@ -135,21 +149,22 @@ class _Messages:
             topic, _ = topic_of(key)
             topic.decode(message.data)
         except (KeyFormatError, MessageError) as error:
-            self._malformed.setdefault(key, []).append(str(error))
+            self._malformed.setdefault(key, str(error))
+            self.faults.note(message, UNDECODABLE)
 
     def problems(self) -> Iterator[str]:
-        for key, errors in self._malformed.items():
-            yield f"{key}: {len(errors)} messages cannot be decoded, the first: {errors[0]}"
+        for key, error in self._malformed.items():
+            yield f"{key}: the first message that cannot be decoded: {error}"
         steps_back = sum(step_ns < 0 for step_ns in self.clock_steps.values())
         for key, times in self._backwards.items():
             if times > steps_back:
-                yield f"{key}: the time of reception goes back {times} times"
+                yield f"{key}: the time of reception goes back {counted(times, 'time')}"
         for key, count in self._counts.items():
             seconds = (self._last_ns[key] - self._first_ns[key]) / 1e9
             if count >= FEWEST_TIMED and not seconds < 0 and count > MOST_PLAUSIBLE_HZ * seconds:
                 yield (
-                    f"{key}: {count} messages captured in {seconds:g} s: the times are in another "
-                    "unit than nanoseconds, or all the same"
+                    f"{key}: {counted(count, 'message')} captured in {seconds:g} s: the times are "
+                    "in another unit than nanoseconds, or all the same"
                 )
 
     def missing_infos(self, path: Path) -> Iterator[str]:
@@ -166,10 +181,11 @@ class _Messages:
 
     def notes(self) -> Iterator[str]:
         for at_ns, step_ns in sorted(self.clock_steps.items()):
-            at = datetime.fromtimestamp(at_ns / 1e9, UTC).isoformat(timespec="seconds")
-            yield f"the clock was set by {step_ns / 1e9:+.3f} s at {at}"
+            yield f"the clock was set by {step_ns / 1e9:+.3f} s at {time_text(at_ns)}"
+        for line in self.recovery.get(FAULTS_FIELD, "").splitlines():
+            yield f"recovered from {self.recovery.get('source', 'another file')}: {line}"
         for key, count in self._apart.items():
-            yield f"{key}: {count} messages that cannot be decoded are kept apart"
+            yield f"{key}: kept apart, as undecodable: {counted(count, 'message')}"
 
 
 def _loss_problems(written: Mapping[str, str], counted: Mapping[str, Losses]) -> Iterator[str]:

@@ -51,6 +51,7 @@ class HealthBoard:
         self._published: Counter[str] = Counter()
         self._received: Counter[str] = Counter()
         self._dropped: Counter[str] = Counter()
+        self._refused: Counter[str] = Counter()
         self._malformed: Counter[str] = Counter()
         self._lost: Counter[str] = Counter()
         self._overflowed: Counter[str] = Counter()
@@ -95,6 +96,10 @@ class HealthBoard:
     def dropped(self, key: str, count: int = 1) -> None:
         """Count messages that were skipped as too old, or for another reason than a full inbox."""
         self._count(self._dropped, key, count)
+
+    def refused(self, key: str) -> None:
+        """Count a message that the instance does not take, however much room there is."""
+        self._count(self._refused, key)
 
     def drops(self) -> dict[str, int]:
         """How many messages of each key the inbox had no room for so far."""
@@ -188,6 +193,7 @@ class HealthBoard:
                     lost=self._lost[key],
                     rate_hz=(totals[key] - self._last_totals[key]) / elapsed,
                     late_ms=self._latest_ms.get(key),
+                    refused=self._refused[key],
                 )
                 for key in sorted(self._keys)
             }

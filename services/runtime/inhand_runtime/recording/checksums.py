@@ -29,12 +29,12 @@ def format_digests(digests: Iterable[bytes]) -> dict[str, str]:
     return {_ALGORITHM: base64.b64encode(b"".join(digests)).decode()}
 
 
-def parse_digests(values: Mapping[str, str]) -> frozenset[bytes]:
+def parse_digests(values: Mapping[str, str]) -> tuple[bytes, ...]:
     """What ``format_digests`` wrote; empty where it is damaged or of another algorithm."""
     try:
         joined = base64.b64decode(values.get(_ALGORITHM, ""), validate=True)
     except (binascii.Error, ValueError):
-        return frozenset()
-    return frozenset(
+        return ()
+    return tuple(
         joined[start : start + DIGEST_BYTES] for start in range(0, len(joined), DIGEST_BYTES)
     )
