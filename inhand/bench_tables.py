@@ -11,6 +11,7 @@ from inhand_lab.benchmarks.likelihood_check import ObjectCheck
 from inhand_lab.benchmarks.tracker_speed import TrackerSpeed
 from inhand_lab.benchmarks.training_cost import TrainingCost
 from inhand_lab.benchmarks.transport_delay import TransportDelays
+from inhand_runtime.wording import counted
 from rich.table import Table
 
 _TRAINING_ROWS: dict[str, Callable[[TrainingCost], float]] = {
@@ -44,7 +45,7 @@ def weighing_table(speed: TrackerSpeed) -> Table:
     table.add_column("hypotheses", justify="right")
     threads = list(dict.fromkeys(cost.threads for cost in speed.weighing))
     for count in threads:
-        table.add_column("1 thread" if count == 1 else f"{count} threads", justify="right")
+        table.add_column(counted(count, "thread"), justify="right")
     table.add_column("NumPy, edges alone, one by one", justify="right")
     for hypotheses in dict.fromkeys(cost.hypotheses for cost in speed.weighing):
         costs = [cost for cost in speed.weighing if cost.hypotheses == hypotheses]
@@ -87,7 +88,7 @@ def watching_table(costs: FrameCosts) -> Table:
     table = Table(title=f"a frame with images, ms of one core (cores in use at {rate:.0f} Hz)")
     table.add_column("people", justify="right")
     for count in dict.fromkeys(cost.objects for cost in costs.watching):
-        name = "1 object each" if count == 1 else f"{count} objects each"
+        name = f"{counted(count, 'object')} each"
         table.add_column(name, justify="right")
     for people in dict.fromkeys(cost.people for cost in costs.watching):
         cells = [f"{c.ms:.1f} ({c.cores:.2f})" for c in costs.watching if c.people == people]
@@ -136,7 +137,7 @@ def training_table(costs: list[TrainingCost]) -> Table:
     """A column a size; in brackets, how many times the first one's."""
     table = Table("", title="training on simulated people (times the first column's)")
     for cost in costs:
-        table.add_column(f"{cost.learning.frames:,} frames", justify="right")
+        table.add_column(counted(cost.learning.frames, "frame"), justify="right")
     for name, value in _TRAINING_ROWS.items():
         first = value(costs[0])
         table.add_row(name, *(f"{_short(value(c))} ({_short(value(c) / first)})" for c in costs))

@@ -15,6 +15,7 @@ from inhand_lab.demonstration.review import Review, review
 from inhand_lab.demonstration.typical_frame import draw_typical_frame
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.wording import counted
 from inhand_schemas.topics import POSE, SKELETONS
 from rich.console import Console
 from rich.progress import Progress, TextColumn, TimeElapsedColumn
@@ -112,7 +113,7 @@ def _watch(look: Look, rig: subprocess.Popen[bytes], seconds: float) -> None:
                 x, y, z = pose.camera_from_object.translation
                 progress.update(
                     task,
-                    description=f"{pose.object} {pose.state}, {poses} poses, "
+                    description=f"{pose.object} {pose.state}, {counted(poses, 'pose')}, "
                     f"at x {x:+.2f} y {y:+.2f} z {z:+.2f} m, confidence {pose.confidence:.2f}",
                 )
     if poses == 0:
@@ -174,7 +175,7 @@ def _summary(result: dict[str, Any]) -> list[str]:
 def _judge(result: dict[str, Any]) -> int:
     lost = sum(topic["lost"] for topic in result["topics"].values())
     if lost:
-        print(f"inhand demo: {lost} messages were lost", file=sys.stderr)
+        print(f"inhand demo: lost {counted(lost, 'message')}", file=sys.stderr)
     if result["vertex_error_cm"] > ERROR_BOUND_CM:
         print("inhand demo: the error is beyond its bound", file=sys.stderr)
     return int(lost > 0 or result["vertex_error_cm"] > ERROR_BOUND_CM)

@@ -8,6 +8,7 @@ from typing import Any
 
 import msgpack
 from inhand_runtime.inbox import Received
+from inhand_runtime.wording import counted
 from rich.console import Console
 from rich.pretty import pretty_repr
 
@@ -81,7 +82,7 @@ def _as_text(key: str, message: Any) -> str:
 
 def _sizes_for_bytes(value: Any) -> Any:
     if isinstance(value, bytes):
-        return f"<{len(value)} bytes>"
+        return f"<{counted(len(value), 'byte')}>"
     if isinstance(value, list):
         return [_sizes_for_bytes(item) for item in value]
     if isinstance(value, dict):

@@ -11,6 +11,7 @@ from inhand_lab.importers.motion import import_motion
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.utd_mhad import import_utd_mhad
 from inhand_lab.importers.ycb_video import import_ycb_video
+from inhand_runtime.wording import counted
 from rich.console import Console
 
 from inhand.looking import positive_number
@@ -64,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     known = FORMATS[arguments.format]
     dataset = known.importer(arguments.sources, arguments.out, arguments.frame_rate)
     console = Console()
-    console.print(f"{len(dataset.entries)} recordings in {dataset.folder}")
+    console.print(f"{counted(len(dataset.entries), 'recording')} in {dataset.folder}")
     if known.note:
         console.print(known.note)
     return 0

@@ -9,6 +9,7 @@ from inhand_lab.realism.parameters import DEFAULT_REALISM
 from inhand_lab.realism.sensor_comparison import LEFT_OUT, STEPS, SensorComparison, compare_sensors
 from inhand_lab.world.random_streams import GENERATOR_VERSION
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.wording import counted
 from rich.console import Console
 from rich.table import Table
 
@@ -58,9 +59,9 @@ def show_realism(data: Path, seed: int, json_file: Path | None) -> int:
 def _verdict(judged: int, off: int, others: int) -> str:
     limits = DEFAULT_REALISM
     return (
-        f"{judged} properties judged, {judged - off} of them within a factor of {limits.within}. "
-        f"{others} more are not judged: with eight other people the real figure itself might be "
-        f"off by more than that ({limits.confidence:.0%} interval of the bootstrap)."
+        f"{counted(judged, 'property', 'properties')} judged, {judged - off} of them within a factor "
+        f"of {limits.within}. {others} more not judged: with eight other people the real figure itself "
+        f"might be off by more than that ({limits.confidence:.0%} interval of the bootstrap)."
     )
 
 

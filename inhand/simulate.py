@@ -11,6 +11,7 @@ from inhand_lab.sensing.cameras import CAMERAS, KINECT
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.sheet import write_sheet
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.wording import counted
 from rich.console import Console
 
 from inhand.progress import progress_bar
@@ -80,7 +81,7 @@ def run(arguments: argparse.Namespace) -> int:
         _write_sheet(arguments, chosen or tuple(INTERACTIONS))
     if arguments.out is not None:
         dataset = _generate_driven(arguments) if arguments.bodies else _generate(arguments)
-        Console().print(f"{len(dataset.entries)} recordings in {dataset.folder}")
+        Console().print(f"{counted(len(dataset.entries), 'recording')} in {dataset.folder}")
     return 0
 
 
@@ -88,7 +89,7 @@ def _write_sheet(arguments: argparse.Namespace, interactions: Sequence[str]) -> 
     arguments.sheet.parent.mkdir(parents=True, exist_ok=True)
     with progress_bar("drawing", len(interactions)) as advance:
         write_sheet(arguments.sheet, interactions, arguments.seed, on_progress=advance)
-    Console().print(f"{len(interactions)} interactions in {arguments.sheet}")
+    Console().print(f"{counted(len(interactions), 'interaction')} in {arguments.sheet}")
 
 
 def _generate(arguments: argparse.Namespace) -> Dataset:

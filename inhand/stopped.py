@@ -31,7 +31,8 @@ class Stopped:
 
 def stopped_services(zenoh: ZenohSettings) -> list[Stopped]:
     """Return the stopped services of this machine that use an address of these settings."""
-    ports = {_port(address) for address in (zenoh.meeting, *zenoh.listen, *zenoh.connect)}
+    addresses = (zenoh.meeting, *zenoh.listen, *zenoh.connect)
+    ports = {port for address in addresses if (port := _port(address)) is not None}
     stopped = []
     for process in psutil.process_iter():
         with suppress(psutil.Error):  # it ended meanwhile, or belongs to somebody else
@@ -91,9 +92,9 @@ def _name(words: Sequence[str]) -> str | None:
     return None
 
 
-def _uses(process: psutil.Process, ports: Collection[int | None]) -> bool:
+def _uses(process: psutil.Process, ports: Collection[int]) -> bool:
     return any(
-        address and address.port in ports
+        getattr(address, "port", None) in ports
         for connection in process.net_connections(kind="inet")
         for address in (connection.laddr, connection.raddr)
     )

@@ -14,6 +14,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from inhand_runtime.wording import counted
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 
@@ -188,7 +189,7 @@ def _visible_fractions(path: Path, truth: dict[int, Any]) -> dict[int, list[floa
     for number, instances in infos.items():
         if len(instances) != len(truth.get(number, ())):
             raise DatasetError(
-                f"{path}: image {number} has {len(instances)} instances, and "
+                f"{path}: image {number} has {counted(len(instances), 'instance')}, and "
                 f"{len(truth.get(number, ()))} in {TRUTH}: make both files together"
             )
     return {number: [one.visib_fract for one in infos[number]] for number in infos}

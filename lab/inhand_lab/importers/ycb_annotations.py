@@ -7,6 +7,7 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from inhand_runtime.wording import counted
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 
@@ -96,7 +97,10 @@ def _read_meta(path: Path) -> Annotation:
     # MATLAB drops the last axis where it is 1.
     matrices = np.moveaxis(poses.reshape(*poses.shape[:2], -1), -1, 0)
     if len(matrices) != classes.size or divisor.size != 1:
-        raise DatasetError(f"{path}: {classes.size} classes with {len(matrices)} poses")
+        raise DatasetError(
+            f"{path}: {counted(classes.size, 'class', 'classes')} with "
+            f"{counted(len(matrices), 'pose')}"
+        )
     by_class = dict(zip(classes.ravel().astype(int).tolist(), matrices, strict=True))
     return _annotation(path, camera_matrix, float(divisor.item()), by_class)
 

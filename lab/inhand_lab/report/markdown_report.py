@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from inhand_runtime.wording import counted
+
 from inhand_lab.report.grid import Grid
 from inhand_lab.report.tables import MEASURES, error_grid, interaction_grid, shown_grids
 
@@ -55,8 +57,8 @@ def markdown(result: Mapping[str, Any], pictures: Mapping[str, Sequence[str]]) -
     lines = [
         "# Evaluation",
         "",
-        f"{result['frames']} frames tracked in {result['seconds']:.0f} s; terms of the likelihood: "
-        f"{result['terms']}.",
+        f"{counted(result['frames'], 'frame')} tracked in {result['seconds']:.0f} s; terms of "
+        f"the likelihood: {result['terms']}.",
         "",
         *(f"Note: {note}.\n" for note in result["notes"]),
         *(grid.for_markdown() for grid in report_grids(result)),

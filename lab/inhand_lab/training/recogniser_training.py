@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from inhand_runtime.wording import counted
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.presence import usual_presence
@@ -112,8 +113,9 @@ def _check_enough(people: Sequence[JointSequence], actions: Sequence[str], origi
     participants = {one.participant for one in people}
     if len(actions) < 2 or len(participants) < 2:
         raise DatasetError(
-            f"{origin}: {len(actions)} actions by {len(participants)} participants: recognition "
-            "compares two actions at the least, by two participants at the least"
+            f"{origin}: {counted(len(actions), 'action')} by "
+            f"{counted(len(participants), 'participant')}: recognition compares "
+            "two actions at the least, by two participants at the least"
         )
 
 

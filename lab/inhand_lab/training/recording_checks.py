@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from inhand_runtime.wording import counted
 from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_tracker.body.skeleton import PELVIS_JOINTS
 from inhand_tracker.geometry import rotations
@@ -68,9 +69,10 @@ def check_hands(entries: Sequence[DatasetEntry], sequences: Sequence[LabelledSeq
     index = int(np.flatnonzero(odd)[0])
     entry, hand = entries[index], "other" if odd is at_other else "dominant"
     mended = "right" if entry.handedness == "left" else "left"
+    others = int((~odd & (at_dominant | at_other)).sum())
     raise DatasetError(
         f"{entry.file}: {entry.object!r} is at the {hand} hand of a {entry.handedness}-handed "
-        f"person, unlike in {int((~odd & (at_dominant | at_other)).sum())} other recordings: "
+        f"person, unlike in {counted(others, 'other recording')}: "
         f'write handedness = "{mended}" in dataset.toml, or take the recording out'
     )
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from inhand_runtime.wording import counted
 from inhand_schemas.joints import Joint
 from inhand_tracker.body.skeleton import RIGHT_HAND, part_bases, pelvis_basis
 from inhand_tracker.geometry import rotations
@@ -50,7 +51,7 @@ def check_rotations(
             entry = entries[index]
             raise DatasetError(
                 f"{entry.file}: {entry.object!r} is turned to the body in other ways than in "
-                f"{len(entries) - 1} other recordings, and in the same ones if {mend}"
+                f"{counted(len(entries) - 1, 'other recording')}, and in the same ones if {mend}"
             )
 
 

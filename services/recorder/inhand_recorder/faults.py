@@ -54,9 +54,9 @@ class FaultLedger:
                     self.note(record, what)
         if stretch.unread_bytes or (stretch.state == "cut" and stretch.expected):
             self.places.append(self._place(stretch))
-        for record in (*stretch.records, *stretch.doubtful):
-            if isinstance(record, Message):
-                self._latest_ns = max(self._latest_ns, record.log_time)
+        for one in (*stretch.records, *stretch.doubtful):
+            if isinstance(one, Message):
+                self._latest_ns = max(self._latest_ns, one.log_time)
 
     def note(self, record: Message, what: str) -> None:
         """Take note of one message."""

@@ -7,6 +7,8 @@ from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import ColourImage, DepthImage
 from numpy.typing import NDArray
 
+from inhand_runtime.wording import counted
+
 JPEG_QUALITY = 90
 ZSTD_LEVEL = 1
 LUMINANCE_OF_RGB = np.array((0.299, 0.587, 0.114))
@@ -54,7 +56,9 @@ def decode_depth(image: DepthImage) -> NDArray[np.uint16]:
         except zstandard.ZstdError as error:
             raise MessageError(f"damaged depth: {error}") from None
     if len(data) != size:
-        raise MessageError(f"damaged depth: {len(data)} bytes do not fill the image")
+        raise MessageError(
+            f"damaged depth: {counted(len(data), 'byte')}, where the image takes {size:,}"
+        )
     return np.frombuffer(data, "<u2").reshape(image.height, image.width).astype(np.uint16)
 
 

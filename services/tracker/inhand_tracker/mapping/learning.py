@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
+from inhand_runtime.wording import counted
 
 from inhand_tracker.body.skeleton import (
     body_pose,
@@ -167,8 +168,9 @@ def _pieces(sequence: LabelledSequence, mirror_normal: Array) -> Iterator[Relati
     )
     if len(usable) < 2:
         raise UnusableSequenceError(
-            f"a sequence of participant {sequence.participant!r} has {len(usable)} frames in "
-            "which the whole body and the object's label are known: two are the least"
+            f"a sequence of participant {sequence.participant!r} has "
+            f"{counted(len(usable), 'frame')} in which the whole body and the "
+            "object's label are known: two are the least"
         )
     consecutive = np.append(np.diff(usable) == 1, False)
     for start in range(0, len(usable), PIECE):

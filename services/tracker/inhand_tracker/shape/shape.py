@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from inhand_runtime.errors import InhandError
 from inhand_runtime.settings_errors import ENCODING, suggestion
+from inhand_runtime.wording import counted
 from inhand_schemas.keys import require_name
 
 from inhand_tracker.geometry.arrays import Array, Indices
@@ -101,8 +102,8 @@ def load_shape(folder: Path) -> ObjectShape:
         raise InhandError(f"{description}: {error}") from None
     if len(marked) < 3:
         raise InhandError(
-            f"{description} marks {len(marked)} vertices: the error score needs 3 or more; "
-            "write marked_vertices = [[x, y, z], …] in metres"
+            f"{description} marks {counted(len(marked), 'vertex', 'vertices')}: the "
+            "error score needs 3 or more; write marked_vertices = [[x, y, z], …] in metres"
         )
     vertices, faces = read_mesh(find_mesh(folder))
     return ObjectShape(name, vertices, faces, marked, normal / np.linalg.norm(normal), symmetries)
