@@ -74,7 +74,8 @@ class Roll:
         """
         living = self.living()
         missing = set(expected) - living.keys()
-        standing = stopped_lines(stopped, missing, living)
+        silent = [instance for instance, heard in living.items() if not self._speaks(heard)]
+        standing = stopped_lines(stopped, missing, silent)
         lines = [
             f"{service} {name} is missing: it does not run, or cannot be reached from here"
             for service, name in sorted(missing - set(standing.values()))

@@ -60,8 +60,8 @@ def _verdict(judged: int, off: int, others: int) -> str:
     limits = DEFAULT_REALISM
     return (
         f"{counted(judged, 'property', 'properties')} judged, {judged - off} of them within a factor "
-        f"of {limits.within}. {others} more not judged: with eight other people the real figure itself "
-        f"might be off by more than that ({limits.confidence:.0%} interval of the bootstrap)."
+        f"of {limits.within}. {others} more not judged: with eight other people the real figure "
+        f"itself might be off by more than that ({limits.confidence:.0%} interval of the bootstrap)."
     )
 
 

@@ -47,20 +47,21 @@ def stopped_services(zenoh: ZenohSettings) -> list[Stopped]:
 
 
 def stopped_lines(
-    stopped: Iterable[Stopped], missing: Collection[Instance], living: Collection[Instance]
+    stopped: Iterable[Stopped], missing: Collection[Instance], silent: Collection[Instance]
 ) -> dict[str, Instance | None]:
     """Return a line for each that is stopped, with the instance that is then not missing, if any.
 
-    One that lives by its token is left out: that it says nothing is seen without this. A command
-    that names no instance is the missing one of its service where there is only one.
+    One that is ``silent``, and lives by its token, is left out: it is known to hang without this. A
+    command that names no instance is the one of its service that is missing or silent, where there
+    is only one.
     """
     lines: dict[str, Instance | None] = {}
     for one in stopped:
-        of_service = [instance for instance in missing if instance[0] == one.service]
+        of_service = [instance for instance in (*missing, *silent) if instance[0] == one.service]
         instance = None if one.name is None else (one.service, one.name)
         if instance is None and len(of_service) == 1 and _REPLAY not in one.command.split():
             instance = of_service[0]
-        if instance in living:
+        if instance in silent:
             continue
         who = f"`{one.command}`" if instance is None else " ".join(instance)
         lines[

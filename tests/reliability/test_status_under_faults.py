@@ -55,6 +55,25 @@ def test_a_stopped_process_is_said_to_hang(rig: RunningRig) -> None:
     assert line.startswith("recorder disk hangs, or is stopped")
 
 
+@pytest.mark.long
+def test_a_stopped_replay_is_said_to_hang_though_no_settings_name_it(
+    wire: Wire, rig: RunningRig
+) -> None:
+    recorder(rig)
+    rig.inhand("recorder", "--config", rig.config).said("is up")
+    walk = write(rig.folder / "walk.mcap", entries(30))
+    heard = wire.hear(RGBD)
+    replay = rig.inhand("replay", walk, "--loop", "--config", rig.config)
+    eventually("frames", lambda: heard)
+    replay.popen.send_signal(signal.SIGSTOP)
+    code, problems = status(rig)
+    replay.popen.send_signal(signal.SIGCONT)
+    assert code == 1
+    (line,) = problems
+    assert line.startswith(f"`inhand replay {walk} --loop ")
+    assert "hangs, or is stopped" in line
+
+
 def test_a_second_instance_of_one_name_refuses_to_start(rig: RunningRig) -> None:
     recorder(rig)
     rig.inhand("recorder", "--config", rig.config).said("is up")
