@@ -59,9 +59,10 @@ def show_realism(data: Path, seed: int, json_file: Path | None) -> int:
 def _verdict(judged: int, off: int, others: int) -> str:
     limits = DEFAULT_REALISM
     return (
-        f"{counted(judged, 'property', 'properties')} judged, {judged - off} of them within a factor "
-        f"of {limits.within}. {others} more not judged: with eight other people the real figure "
-        f"itself might be off by more than that ({limits.confidence:.0%} interval of the bootstrap)."
+        f"{counted(judged, 'property', 'properties')} judged, {judged - off} of them within a "
+        f"factor of {limits.within}. {others} more not judged: with eight other people the real "
+        f"figure itself might be off by more than that "
+        f"({limits.confidence:.0%} interval of the bootstrap)."
     )
 
 
