@@ -135,7 +135,7 @@ def test_recording_verify_ends_with_1_for_a_cut_file_and_recover_saves_it(
     assert main(["recording", "verify", str(whole), str(cut)]) == 1
     assert f"inhand recording recover {cut}" in capsys.readouterr().out
     assert main(["recording", "recover", str(cut)]) == 0
-    assert "10 messages of 1 keys" in capsys.readouterr().out
+    assert "10 messages of 1 key;" in capsys.readouterr().out
     assert main(["recording", "verify", str(tmp_path / "cut.recovered.mcap")]) == 0
 
 
