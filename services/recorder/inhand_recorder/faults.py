@@ -43,6 +43,7 @@ class FaultLedger:
     def __init__(self, keys: Mapping[int, str]) -> None:
         self._keys = keys
         self._latest_ns = 0
+        self._reasons: dict[tuple[str, str], str] = {}
         self.faults: list[Fault] = []
         self.places: list[str] = []
 
@@ -58,10 +59,11 @@ class FaultLedger:
             if isinstance(one, Message):
                 self._latest_ns = max(self._latest_ns, one.log_time)
 
-    def note(self, record: Message, what: str) -> None:
-        """Take note of one message."""
+    def note(self, record: Message, what: str, reason: str = "") -> None:
+        """Take note of one message; of a key's messages of one fault the first reason stays."""
         key = self._keys.get(record.channel_id, f"channel {record.channel_id}")
         self.faults.append(Fault(key, record.sequence, record.log_time, what))
+        self._reasons.setdefault((key, what), reason)
 
     def lines(self, *, kept: Sequence[str] = ()) -> list[str]:
         """Return a line for each place, and one for each key's messages of one fault.
@@ -75,7 +77,9 @@ class FaultLedger:
         lines = []
         for (key, what), faults in grouped.items():
             end = "" if not kept else ", kept" if what in kept else ", left out"
-            lines.append(f"{_named(key, faults)}: {what}{end}")
+            reason = self._reasons[key, what]
+            first = "" if not reason else f"; the first: {reason}" if faults[1:] else f"; {reason}"
+            lines.append(f"{_named(key, faults)}: {what}{end}{first}")
         return self.places + lines
 
     def _place(self, stretch: Stretch) -> str:

@@ -146,8 +146,10 @@ class _Rescue:
             self.faults.note(record, APART if record.channel_id in self._apart else FOREIGN)
             self.skipped_bytes += len(record.data)
             return False
-        if not _decodes(topic, record.data):
-            self.faults.note(record, UNDECODABLE)
+        try:
+            topic.decode(record.data)
+        except MessageError as error:
+            self.faults.note(record, UNDECODABLE, str(error))
             self.undecodable += 1
             self.skipped_bytes += len(record.data)
             return False
@@ -187,11 +189,3 @@ def _known(path: Path, by_number: dict[int, Channel]) -> dict[int, tuple[str, An
             continue
         known[number] = channel.topic, topic
     return known
-
-
-def _decodes(topic: AnyTopic, payload: bytes) -> bool:
-    try:
-        topic.decode(payload)
-    except MessageError:
-        return False
-    return True

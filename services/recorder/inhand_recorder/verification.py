@@ -121,7 +121,6 @@ class _Messages:
         self._keys = keys
         self._received_ns: dict[str, int] = {}
         self._backwards: dict[str, int] = {}
-        self._malformed: dict[str, str] = {}
         self._apart: Counter[str] = Counter()
         self._counts: Counter[str] = Counter()
         self._first_ns: dict[str, int] = {}
@@ -149,12 +148,9 @@ class _Messages:
             topic, _ = topic_of(key)
             topic.decode(message.data)
         except (KeyFormatError, MessageError) as error:
-            self._malformed.setdefault(key, str(error))
-            self.faults.note(message, UNDECODABLE)
+            self.faults.note(message, UNDECODABLE, str(error))
 
     def problems(self) -> Iterator[str]:
-        for key, error in self._malformed.items():
-            yield f"{key}: the first message that cannot be decoded: {error}"
         steps_back = sum(step_ns < 0 for step_ns in self.clock_steps.values())
         for key, times in self._backwards.items():
             if times > steps_back:
