@@ -57,8 +57,8 @@ def frames_without_info(scene: Scene) -> None:
 
 
 def tracker_behind(scene: Scene) -> None:
-    """A recording with pictures is replayed to a tracker at six times its rate."""
-    scene.configure(scene.tracker(), scene.capture(rate=6.0))
+    """A recording with pictures is replayed to a tracker at thirty times its rate."""
+    scene.configure(scene.tracker(), scene.capture(rate=30.0))
     for service in ("tracker", "recorder", "capture"):
         scene.start(service)
     time.sleep(TOLD_AFTER_S)
