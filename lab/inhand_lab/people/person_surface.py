@@ -20,6 +20,8 @@ from inhand_lab.people.solids import belly, head_radii, pelvis, rib_cage
 
 SKIN = ((236, 196, 170), (214, 166, 132), (176, 124, 88), (124, 84, 60), (88, 58, 42))
 EYE = (40, 34, 32)
+EYE_WHITE = (232, 228, 222)
+LIP_RED = (150, 30, 40)
 HAIR = ((36, 28, 24), (78, 52, 34), (120, 88, 52), (164, 150, 130))
 
 LimbSolid = tuple[Joint, Joint, float, float, str]
@@ -149,12 +151,24 @@ def _palette(person: SimulatedPerson) -> dict[str, Rgb]:
 def _head(person: SimulatedPerson, skin: Rgb, hair: Rgb) -> Surface:
     wide, deep, high = radii = head_radii(person)
     cap = ellipsoid((0.0, -0.18 * deep, 0.20 * high), radii * (1.07, 0.95, 0.87), hair)
-    nose = ellipsoid((0.0, deep, -0.12 * high), (0.012, 0.016, 0.020), skin, detail=1)
-    eyes = [
-        ellipsoid((side * 0.42 * wide, 0.90 * deep, 0.10 * high), (0.012, 0.008, 0.006), EYE, 1)
-        for side in (-1.0, 1.0)
-    ]
-    return join_surfaces([ellipsoid((0.0, 0.0, 0.0), radii, skin), cap, nose, *eyes])
+    nose = ellipsoid((0.0, 0.99 * deep, -0.12 * high), (0.014, 0.019, 0.024), skin, detail=1)
+    mouth = ellipsoid((0.0, 0.88 * deep, -0.45 * high), (0.026, 0.008, 0.008), _lips(skin), 1)
+    face = [nose, mouth]
+    for side in (-1.0, 1.0):
+        aside = side * 0.42 * wide
+        face += [
+            ellipsoid((aside, 0.885 * deep, 0.10 * high), (0.018, 0.008, 0.009), EYE_WHITE, 1),
+            ellipsoid((aside, 0.930 * deep, 0.10 * high), (0.008, 0.006, 0.008), EYE, 1),
+            ellipsoid((aside, 0.875 * deep, 0.27 * high), (0.022, 0.007, 0.005), hair, 1),
+            ellipsoid((side * wide, -0.05 * deep, 0.0), (0.010, 0.020, 0.032), skin, 1),
+        ]
+    return join_surfaces([ellipsoid((0.0, 0.0, 0.0), radii, skin), cap, *face])
+
+
+def _lips(skin: Rgb) -> Rgb:
+    """The colour of the lips of somebody of this skin: between it and red."""
+    red, green, blue = (round(0.55 * s + 0.45 * r) for s, r in zip(skin, LIP_RED, strict=True))
+    return red, green, blue
 
 
 def _right_hand(person: SimulatedPerson, colour: Rgb) -> Surface:
