@@ -18,10 +18,11 @@ def cache_folder() -> Path:
         return Path(given.split(os.pathsep)[0])
     if usual := os.environ.get("XDG_CACHE_HOME"):
         return Path(usual).absolute() / "inhand"
-    return _home() / ".cache/inhand"
+    return home() / ".cache/inhand"
 
 
-def _home() -> Path:
+def home() -> Path:
+    """Return the user's home; the root folder for a user without one."""
     try:
         return Path.home()
     except RuntimeError:  # a user without a home, as in a container: nothing can be written there

@@ -1,0 +1,1 @@
+"""Skeletons from images: networks that find people, and their joints in space by the depth."""

@@ -1,0 +1,1 @@
+"""Compiled code of skeleton estimation: arrays in, arrays out."""
