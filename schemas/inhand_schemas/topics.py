@@ -42,8 +42,9 @@ KEPT = Delivery("every", "drop", "normal", kept=True)
 class Topic(Generic[T]):
     """A stream: ``topic.key(site, name)``, ``topic.encode(message)``, ``topic.decode(bytes)``.
 
-    ``gaps_are_losses`` says that a key's messages are numbered one by one. Poses have the numbers
-    of the frames that they are of, and a tracker that is behind leaves some out.
+    ``gaps_are_losses`` says that a key's messages are numbered one by one. Skeletons
+    and poses have the numbers of the frames that they are of, and who estimates them and is behind
+    leaves some out.
     """
 
     def __init__(
@@ -103,7 +104,7 @@ class Topic(Generic[T]):
 INFO = Topic("info", messages.CameraInfo, KEPT)
 RGBD = Topic("rgbd", messages.RgbdFrame, BULK)
 PREVIEW = Topic("preview", messages.Preview, BULK)
-SKELETONS = Topic("skeletons", messages.Skeletons, URGENT)
+SKELETONS = Topic("skeletons", messages.Skeletons, URGENT, gaps_are_losses=False)
 POSE = Topic("pose", messages.ObjectPose, URGENT, gaps_are_losses=False)
 EVENT = Topic("event", messages.Event, RELIABLE)
 LABEL = Topic("label", messages.ObjectPose, RELIABLE)

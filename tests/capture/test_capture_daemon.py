@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
+from fetched_weights import use_weights
 from inhand_runtime.inbox import Received
-from inhand_schemas.messages import Health, Message
+from inhand_schemas.messages import Health, Message, ObjectPose, Skeletons
 from inhand_schemas.topics import HEALTH, INFO, LABEL, RGBD, SKELETONS, AnyTopic
 from played import FRAME_NS as RECORDED_FRAME_NS
 from played import START_NS, entries, write
@@ -180,3 +182,42 @@ def test_a_source_whose_package_is_missing_says_what_to_install(
         "needs the package package_that_nobody_has, which is not installed: "
         "run pip install 'inhand[unusable]'" in daemon.stderr
     )
+
+
+@pytest.mark.long
+def test_a_simulator_that_hides_its_skeleton_has_it_estimated_from_its_pictures(
+    wire: Wire, rig: RunningRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    use_weights(monkeypatch, "lite")
+    heard = {topic: wire.hear(topic) for topic in (RGBD, SKELETONS, LABEL)}
+    rig.configure(
+        '[capture.front]\nsource = "simulator"\nskeletons = "estimated"\n'
+        "[capture.front.options]\nloop = false\nframes = 60\n"
+    )
+    assert rig.python("-m", "inhand_capture", "--config", rig.config).wait() == 0
+    frames, skeletons, labels = (_decoded(topic, got) for topic, got in heard.items())
+    times = {frame.sequence: frame.time_ns for frame in frames}
+    assert list(times) == list(range(60))
+    assert len(skeletons) >= 10
+    numbers = [message.sequence for message in skeletons]
+    assert numbers == sorted(set(numbers))
+    for message in skeletons:
+        assert isinstance(message, Skeletons)
+        assert message.time_ns == times[message.sequence]
+        (person,) = message.people
+        label = labels[message.sequence]
+        assert isinstance(label, ObjectPose)
+        assert label.person_joints is not None
+        off = np.linalg.norm(np.array(person.joints) - label.person_joints, axis=1)
+        assert np.median(off) < 0.06
+
+
+def test_estimated_skeletons_without_weights_are_refused_before_a_start(
+    rig: RunningRig, tmp_path: Path
+) -> None:
+    rig.configure('[capture.front]\nsource = "simulator"\nskeletons = "estimated"\n')
+    command = ("-m", "inhand_capture", "--config", rig.config, "--check-config")
+    daemon = rig.python(*command, INHAND_DATA=str(tmp_path))
+    assert daemon.wait() == 1
+    assert daemon.stderr.startswith(f"capture: there are no weights at {tmp_path}/models/pose_")
+    assert daemon.stderr.endswith("fetch them with `inhand models fetch`\n")

@@ -121,7 +121,10 @@ def _account(healths: dict[str, Any]) -> dict[str, int]:
         "lost_before_the_recorder": of("recorder", "rgbd")["lost"],
         "skeletons_published": of("capture", "skeletons")["published"],
         "skeletons_at_the_tracker": skeletons["received"],
-        "skeletons_lost": skeletons["lost"],
+        "skeletons_lost": max(
+            of("capture", "skeletons")["published"] - skeletons["received"] - skeletons["dropped"],
+            0,
+        ),
         "skeletons_left_out": skeletons["dropped"],
         "poses": of("tracker", "pose")["published"],
         "pictures_at_the_tracker": pictures["received"],

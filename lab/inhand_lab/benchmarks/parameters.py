@@ -175,3 +175,28 @@ DEFAULT_LIKELIHOOD_CHECK = LikelihoodCheckParameters()
 DEFAULT_TRACKER_SPEED = TrackerSpeedParameters()
 DEFAULT_TRAINING_COST = TrainingCostParameters()
 DEFAULT_TRANSPORT = TransportParameters()
+
+
+@dataclass(frozen=True)
+class SkeletonCheckParameters:
+    """On whom skeletons from images are checked."""
+
+    seed: int = 16
+    """Seed of the simulated people."""
+    people: int = 2
+    """Number of simulated people, each of whom does everything."""
+    frames: int = 90
+    """Number of frames of each recording: 3 s at 30 Hz, from the second second on."""
+    first_frame: int = 30
+    """Frame that each recording begins at: most of a performance's first second is standing."""
+    in_place_m: float = 0.5
+    """Distance from a person's HipCenter within which somebody found is that person, metres."""
+    real_step: int = 3
+    """Every so many-th frame of a real recording is lifted."""
+    timed_frames: int = 90
+    """Number of frames that are timed at each size."""
+    untimed_frames: int = 10
+    """Number of frames before them that are not: what is compiled is loaded then."""
+
+
+DEFAULT_SKELETON_CHECK = SkeletonCheckParameters()

@@ -65,8 +65,13 @@ class CameraPublisher:
         """Whether anybody listens to pictures now."""
         return self._rgbd.wanted()
 
-    def publish(self, captured: Captured) -> None:
-        """Send one moment, the small messages first, so that pixels never hold them up."""
+    def wants_skeletons(self) -> bool:
+        """Whether anybody listens to skeletons now."""
+        return self._skeletons.wanted()
+
+    def publish(self, captured: Captured) -> int:
+        """Send one moment, the small messages first, so that pixels never hold them up; return its
+        sequence number."""
         sequence = self._sequence
         self._sequence += 1
         if captured.people is not None and self._skeletons.wanted():
@@ -77,6 +82,7 @@ class CameraPublisher:
             self._publish_label(label, sequence, captured.time_ns)
         if captured.pixels is not None and self._rgbd.wanted():
             self._rgbd.put(_rgbd_frame(captured, captured.pixels(), sequence))
+        return sequence
 
     def _publish_label(self, label: ObjectPose, sequence: int, time_ns: int) -> None:
         if label.object not in self._labels:

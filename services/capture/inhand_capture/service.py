@@ -1,19 +1,26 @@
 """The capture service: the only file of capture that touches a session."""
 
+import contextlib
 import logging
 import time
-from collections.abc import Callable, Mapping
-from typing import Annotated, Any
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from inhand_runtime.daemon import Daemon, running_daemon
-from inhand_runtime.errors import InhandError
+from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.settings import Section, Settings
-from inhand_runtime.source import Source, SourceError, require_source, source_factory
+from inhand_runtime.source import Captured, Source, SourceError, require_source, source_factory
 from inhand_schemas.messages import CameraInfo
+from inhand_schemas.topics import SKELETONS
 from pydantic import AfterValidator, Field, model_validator
 
 from inhand_capture.publishing import CameraPublisher
 from inhand_capture.reopening import captures
+
+if TYPE_CHECKING:  # what estimates skeletons is loaded only where they are estimated
+    from inhand_capture.estimation.stage import SkeletonStage
 
 log = logging.getLogger(__name__)
 
@@ -38,12 +45,15 @@ class CaptureSettings(Section):
     """``[capture.NAME]``: which source publishes as the camera ``NAME``.
 
     ``options`` is the source's own table. The source starts as soon as somebody listens, at the
-    latest after ``wait_for_reader_s`` seconds.
+    latest after ``wait_for_reader_s`` seconds. Its own skeletons are published, or, where they are
+    "estimated", those that a ``network`` finds in its pictures.
     """
 
     source: Annotated[str, AfterValidator(_installed)]
     options: dict[str, Any] = {}
     wait_for_reader_s: Annotated[float, Field(ge=0, le=3600)] = 2.0
+    skeletons: Literal["source", "estimated"] = "source"
+    network: Literal["lite", "full", "heavy"] = "lite"
 
     @model_validator(mode="before")
     @classmethod
@@ -72,6 +82,13 @@ def check(settings: Settings[CaptureSettings]) -> Mapping[str, Any]:
         getattr(factory, "check_options", _nothing)(options)
     except SourceError as error:
         raise origin.refusal("options", str(error)) from None
+    if chosen.skeletons == "estimated":
+        from inhand_capture.estimation.networks import require_network
+
+        try:
+            require_network(chosen.network)
+        except SettingsError as error:
+            raise origin.refusal("skeletons", str(error)) from None
     return options
 
 
@@ -80,7 +97,8 @@ def run(settings: Settings[CaptureSettings]) -> None:
     chosen, options = settings.service, check(settings)
     with running_daemon("capture", settings) as daemon:
         try:
-            _publish(daemon, chosen, lambda: source_factory(chosen.source)(options))
+            with _skeleton_stage(daemon, chosen) as stage:
+                _publish(daemon, chosen, lambda: source_factory(chosen.source)(options), stage)
         except SourceError as error:
             raise InhandError(f"source {chosen.source}: {error}") from error
 
@@ -89,10 +107,38 @@ def _nothing(_options: Mapping[str, Any]) -> None:
     """Stands for the check that a source does not have."""
 
 
-def _publish(daemon: Daemon, chosen: CaptureSettings, open_source: Callable[[], Source]) -> None:
+@contextlib.contextmanager
+def _skeleton_stage(daemon: Daemon, chosen: CaptureSettings) -> Iterator["SkeletonStage | None"]:
+    """Run what estimates skeletons during the block; None where the source has its own."""
+    if chosen.skeletons == "source":
+        yield None
+        return
+    from inhand_capture.estimation.estimator import SkeletonEstimator
+    from inhand_capture.estimation.networks import open_network
+    from inhand_capture.estimation.stage import SkeletonStage
+
+    network = open_network(chosen.network)
+    outlet = daemon.publisher(SKELETONS, daemon.instance)
+    with SkeletonStage(
+        lambda info: SkeletonEstimator(network, info), outlet.put, daemon.health, outlet.key
+    ) as stage:
+        yield stage
+
+
+def _publish(
+    daemon: Daemon,
+    chosen: CaptureSettings,
+    open_source: Callable[[], Source],
+    stage: "SkeletonStage | None",
+) -> None:
     camera = CameraPublisher(daemon, daemon.instance)
 
+    def wanted() -> bool:
+        return camera.wants_pixels() or (stage is not None and camera.wants_skeletons())
+
     def opened(info: CameraInfo) -> None:
+        if stage is not None:
+            stage.introduce(info)
         camera.introduce(info)
         _wait_for_readers(camera, chosen.wait_for_reader_s, daemon)
 
@@ -100,17 +146,32 @@ def _publish(daemon: Daemon, chosen: CaptureSettings, open_source: Callable[[], 
         daemon.health.state = "running"
         daemon.health.trouble("source", f"source {chosen.source}: {error}")
 
-    for captured in captures(
-        open_source, camera.wants_pixels, daemon.stop, opened=opened, lost=lost
-    ):
+    for captured in captures(open_source, wanted, daemon.stop, opened=opened, lost=lost):
         daemon.health.came_round()
         if captured is not None:
-            camera.publish(captured)
+            if stage is None:
+                camera.publish(captured)
+            else:
+                _publish_to_estimate(camera, captured, stage)
             daemon.health.state = "running"
             daemon.health.well("source")
             daemon.health.latency(captured.time_ns)
     if not daemon.stop.is_set():
         log.info("source %s has come to its end", chosen.source)
+
+
+def _publish_to_estimate(
+    camera: CameraPublisher, captured: Captured, stage: "SkeletonStage"
+) -> None:
+    """Publish a moment without its source's skeletons, and let others be estimated, if anybody
+    listens to them."""
+    if captured.pixels is None:
+        camera.publish(replace(captured, people=None))
+        return
+    pixels = cache(captured.pixels)
+    sequence = camera.publish(replace(captured, people=None, pixels=pixels))
+    if camera.wants_skeletons():
+        stage.offer(sequence, captured.time_ns, pixels())
 
 
 def _wait_for_readers(camera: CameraPublisher, seconds: float, daemon: Daemon) -> None:

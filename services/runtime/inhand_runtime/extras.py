@@ -1,6 +1,9 @@
 """The optional dependencies of the distribution, and the line about one that is not installed."""
 
-EXTRAS = {"lab": ("faiss", "matplotlib", "scipy", "sklearn", "trimesh")}
+EXTRAS = {
+    "lab": ("faiss", "matplotlib", "scipy", "sklearn", "trimesh"),
+    "pose": ("ai_edge_litert",),
+}
 """Names of the modules that come with each extra of ours (pyproject.toml) and not without it."""
 
 

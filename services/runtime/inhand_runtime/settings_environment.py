@@ -13,6 +13,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from inhand_runtime.cache_folder import CACHE_VARIABLE
+from inhand_runtime.data_folder import DATA_VARIABLE
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings_annotations import annotation_at, part_of, takes_collection
 from inhand_runtime.settings_errors import ENVIRONMENT_PREFIX, NESTED, suggestion
@@ -52,7 +53,8 @@ def _variables() -> list[tuple[str, tuple[str, ...], str]]:
     return [
         (variable, tuple(variable[len(ENVIRONMENT_PREFIX) :].lower().split(NESTED)), text)
         for variable, text in os.environ.items()
-        if variable.upper().startswith(ENVIRONMENT_PREFIX) and variable != CACHE_VARIABLE
+        if variable.upper().startswith(ENVIRONMENT_PREFIX)
+        and variable not in (CACHE_VARIABLE, DATA_VARIABLE)
     ]
 
 

@@ -54,7 +54,7 @@ def _mixture() -> Floats:
 
 
 _MIXTURE = _mixture()
-_KNOWN = _MIXTURE.any(axis=1)
+_KNOWN = np.array([joint in SHARES for joint in Joint])
 
 
 def person_of(landmarks: Landmarks) -> FoundPerson:
@@ -81,9 +81,7 @@ class BlazePose:
     ) -> None:
         """Load a network by its name in ``LANDMARKS``; raises WeightsError, or SettingsError where
         LiteRT is not installed."""
-        self._landmarks = LandmarkNetwork(
-            require_weights(LANDMARKS[network], folder), parameters
-        )
+        self._landmarks = LandmarkNetwork(require_weights(LANDMARKS[network], folder), parameters)
         self._detector = PersonDetector(require_weights(DETECTOR, folder), parameters)
         self._parameters = parameters
         self._regions: list[Region] = []

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -44,7 +43,7 @@ class PersonDetector:
         Overlapping boxes are averaged by their scores, as the network's authors do it.
         """
         cut = crop(picture, view, SIDE, padded=True)
-        outputs = self._network(cv2.subtract(cut / np.float32(127.5), 1.0, dtype=cv2.CV_32F))
+        outputs = self._network(cut * np.float32(1.0 / 127.5) - np.float32(1.0))
         logits = np.clip(outputs["Identity_1"][:, 0].astype(float), -MOST_LOGIT, MOST_LOGIT)
         scores = 1.0 / (1.0 + np.exp(-logits))
         good = np.flatnonzero(scores >= self._parameters.detection_score)
@@ -69,4 +68,5 @@ def _overlaps(centres: Floats, sizes: Floats, best: int) -> Floats:
     low, high = centres - 0.5 * sizes, centres + 0.5 * sizes
     shared = np.clip(np.minimum(high, high[best]) - np.maximum(low, low[best]), 0.0, None)
     areas, both = sizes.prod(axis=1), shared.prod(axis=1)
-    return both / np.maximum(areas + areas[best] - both, 1e-12)
+    shares: Floats = both / np.maximum(areas + areas[best] - both, 1e-12)
+    return shares

@@ -98,7 +98,15 @@ def _pip(package: PinnedPackage, scratch: Path) -> list[str]:
 def _npm(package: PinnedPackage, scratch: Path) -> list[str]:
     npm = shutil.which("npm") or "npm"
     wanted = f"{package.name}@{package.version}"
-    return [npm, "pack", "--ignore-scripts", "--loglevel=error", "--pack-destination", str(scratch), wanted]
+    return [
+        npm,
+        "pack",
+        "--ignore-scripts",
+        "--loglevel=error",
+        "--pack-destination",
+        str(scratch),
+        wanted,
+    ]
 
 
 def _member(archive: Path, name: str) -> bytes:

@@ -10,7 +10,7 @@ from inhand_capture.estimation.found_person import Floats
 from inhand_capture.estimation.kernels.heat_maps import refine
 from inhand_capture.estimation.litert import LiteRtNetwork
 from inhand_capture.estimation.parameters import DEFAULT_BLAZEPOSE, BlazePoseParameters
-from inhand_capture.estimation.regions import Region, crop, region_of_circle
+from inhand_capture.estimation.regions import Region, crop, region_of_circle, whole_picture
 
 SIDE = 256
 POINTS = 33
@@ -51,6 +51,8 @@ class LandmarkNetwork:
             },
         )
         self._parameters = parameters
+        # What the first picture would have to wait for.
+        self.find(np.zeros((SIDE, SIDE, 3), np.uint8), whole_picture(SIDE, SIDE))
 
     def find(self, picture: NDArray[np.uint8], region: Region) -> Landmarks:
         """Find the points in a region of a picture (H, W, 3) RGB."""

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.extras import missing_extra
 from numpy.typing import NDArray
 
 from inhand_capture.estimation.weights import WeightsError
@@ -24,10 +25,8 @@ class LiteRtNetwork:
         """
         try:
             from ai_edge_litert.interpreter import Interpreter
-        except ModuleNotFoundError:
-            raise SettingsError(
-                'skeletons from images need the extra \'pose\': pip install "inhand[pose]"'
-            ) from None
+        except ModuleNotFoundError as error:
+            raise SettingsError(f"a network of LiteRT {missing_extra(error) or error}") from None
         try:
             self._interpreter: Any = Interpreter(str(path), num_threads=1)
             self._interpreter.allocate_tensors()

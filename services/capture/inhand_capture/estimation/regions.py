@@ -37,12 +37,8 @@ class Region:
     def to_picture(self, points: Floats, size: int) -> Floats:
         """Take points (N, 2) of a crop of that size to the picture."""
         matrix = self.matrix(size)
-        return points @ matrix[:, :2].T + matrix[:, 2]
-
-    def turned(self, vectors: Floats) -> Floats:
-        """Turn vectors (N, 2) of the crop's axes to the picture's."""
-        cosine, sine = math.cos(self.angle), math.sin(self.angle)
-        return vectors @ np.array([[cosine, sine], [-sine, cosine]])
+        there: Floats = points @ matrix[:, :2].T + matrix[:, 2]
+        return there
 
 
 def whole_picture(width: int, height: int) -> Region:
@@ -71,6 +67,4 @@ def region_of_circle(centre: Floats, rim: Floats, scale: float) -> Region:
     across, up = rim - centre
     angle = 0.5 * math.pi - math.atan2(-up, across)
     wrapped = (angle + math.pi) % (2.0 * math.pi) - math.pi
-    return Region(
-        float(centre[0]), float(centre[1]), 2.0 * scale * math.hypot(across, up), wrapped
-    )
+    return Region(float(centre[0]), float(centre[1]), 2.0 * scale * math.hypot(across, up), wrapped)

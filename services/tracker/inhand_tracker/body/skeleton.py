@@ -8,10 +8,11 @@ order of ``PARTS``. Missing joints are NaN.
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_runtime.running_medians import RunningMedians
 from inhand_schemas.joints import JOINT_NAMES, MIRRORED_JOINTS, PARENTS, SIDES, Joint
 
 from inhand_tracker.body.kernels import axes as kernels
-from inhand_tracker.body.kernels.part_lengths import exchange, in_proportion, medians
+from inhand_tracker.body.kernels.part_lengths import in_proportion
 from inhand_tracker.body.parameters import DEFAULT_BODY, BodyParameters
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
@@ -136,25 +137,6 @@ def stature_of(joints: Array) -> float:
     return stature(typical_lengths(part_lengths(joints)))
 
 
-class RunningMedians:
-    """Keeps the median length of each part over one person's last frames."""
-
-    def __init__(self, frames: int) -> None:
-        self._lengths = np.full((frames, len(PARTS)), np.nan)
-        self._ordered = np.empty((len(PARTS), frames))
-        self._counts = np.zeros(len(PARTS), np.int64)
-        self._frames = 0
-
-    def update(self, lengths: Array) -> Array:
-        """Take one frame's part lengths (19,), and give the medians (19,); both may be NaN."""
-        row = self._frames % len(self._lengths)
-        exchange(self._ordered, self._counts, self._lengths[row], lengths)
-        self._lengths[row] = lengths
-        self._frames += 1
-        typical: Array = medians(self._ordered, self._counts)
-        return typical
-
-
 class RunningHeight:
     """h_t: keeps the stature by the last frames' part lengths.
 
@@ -168,7 +150,7 @@ class RunningHeight:
     ) -> None:
         self._proportions = proportions
         self._wild_ratio = parameters.wild_ratio
-        self._medians = RunningMedians(parameters.height_frames)
+        self._medians = RunningMedians(len(PARTS), parameters.height_frames)
 
     def update(self, joints: Array) -> float:
         """Take one frame's (20, 3) joints and give the height in metres; NaN while unknown."""

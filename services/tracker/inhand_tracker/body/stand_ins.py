@@ -9,6 +9,7 @@ whoever is followed gets the same ones, seen or not.
 from collections.abc import Collection
 
 import numpy as np
+from inhand_runtime.running_medians import RunningMedians
 from inhand_schemas.joints import JOINT_NAMES, SIDES, Joint
 
 from inhand_tracker.body.parameters import DEFAULT_BODY
@@ -16,7 +17,6 @@ from inhand_tracker.body.skeleton import (
     PARTS,
     TRUNK_PARTS,
     TRUNK_SHARE,
-    RunningMedians,
     part_lengths,
 )
 from inhand_tracker.geometry.arrays import Array
@@ -99,7 +99,7 @@ class RunningStandIns:
 
     def __init__(self, absent: Collection[int]) -> None:
         self._absent = absent
-        self._medians = RunningMedians(DEFAULT_BODY.height_frames)
+        self._medians = RunningMedians(len(PARTS), DEFAULT_BODY.height_frames)
 
     def put(self, joints: Array) -> Array:
         """Take one frame's joints (20, 3), and give them with stand-ins."""

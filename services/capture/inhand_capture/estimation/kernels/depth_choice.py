@@ -76,30 +76,32 @@ def bounded(away, bound):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, nogil=True)
-def departure(child, parent, turn, length, costs):  # type: ignore[no-untyped-def]
+def departure(child, parent, turn, length, before, costs):  # type: ignore[no-untyped-def]
     """Return the cost of a joint (3,) after its parent (3,).
 
-    ``turn`` is by how much the network says that it is farther away, metres; NaN for no word.
-    ``costs`` are the deviation of such depths (metres), that of lengths (a share), the bound of a
-    cost, and the cost of a hidden joint.
+    ``turn`` is by how much the network says that it is farther away, metres; NaN for no word, as
+    for an unknown ``length``, and for the joint's place of ``before`` (3,). ``costs`` are the
+    deviation of such depths (metres), that of lengths (a share), that of a movement (metres), the
+    bound of a cost, and the cost of a hidden joint.
     """
     cost = 0.0
     if not np.isnan(turn):
-        cost += bounded((child[2] - parent[2] - turn) / costs[0], costs[2])
+        cost += bounded((child[2] - parent[2] - turn) / costs[0], costs[3])
     if not np.isnan(length):
-        cost += bounded((distance(child, parent) - length) / (costs[1] * length), costs[2])
+        cost += bounded((distance(child, parent) - length) / (costs[1] * length), costs[3])
+    if not np.isnan(before[2]):
+        cost += bounded((child[2] - before[2]) / costs[2], costs[3])
     return cost
 
 
 @njit(cache=True, nogil=True)
-def options_of(joint, parent, candidates, counts, direction, turn, length, middle):  # type: ignore[no-untyped-def]
-    """Return the depths (M,) at which a joint may lie, and how many of them were measured.
+def options_of(candidates, count, direction, parent, turn, length):  # type: ignore[no-untyped-def]
+    """Return the depths (M,) at which a joint may lie.
 
-    The others are where it may hide, by its parent (3,).
+    The first ``count`` are its candidates (K,), the others where it may hide by its parent (3,).
     """
-    count = counts[joint]
     options = np.empty(count + 3)
-    options[:count] = candidates[joint, :count]
+    options[:count] = candidates[:count]
     more = count
     if not np.isnan(length):
         options[count], options[count + 1] = depths_at_length(direction, parent, length)
@@ -107,54 +109,54 @@ def options_of(joint, parent, candidates, counts, direction, turn, length, middl
     if not np.isnan(turn) or more == 0:
         options[more] = parent[2] + (0.0 if np.isnan(turn) else turn)
         more += 1
-    return options[:more], count
+    return options[:more]
 
 
 @njit(cache=True, nogil=True)
-def choose_limb(chain, first, candidates, counts, rays, relative, lengths, costs):  # type: ignore[no-untyped-def]
-    """Return the best places (3, 3) and states (3,) of a limb's joints after its first.
+def choose_limb(chain, first, candidates, counts, rays, relative, lengths, before, costs):  # type: ignore[no-untyped-def]
+    """Return the cheapest places (L, 3) and states (L,) of a limb's joints after its first.
 
-    ``chain`` (4,) are its joints from the trunk outwards and ``first`` (3,) the place of the first
-    of them; ``candidates``, ``counts`` and ``relative`` are as for ``middle_depth``, ``rays``
-    (J, 2) directions, ``lengths`` (J,) from each joint to the one before, NaN where unknown.
-    Joints whose rays are not known have NaN.
+    ``chain`` (1 + L,) are its joints from the trunk outwards and ``first`` (3,) the place of the
+    first of them; ``candidates``, ``counts`` and ``relative`` are as for ``middle_depth``, ``rays``
+    (J, 2) directions, ``lengths`` (J,) from each joint to the one before, ``before`` (J, 3) where
+    the joints were. All combinations are tried, but those that cost too much early on.
     """
+    links = len(chain) - 1
     best = np.inf
-    places, states = np.full((3, 3), np.nan), np.zeros(3, np.uint8)
-    a, b, c = chain[1], chain[2], chain[3]
-    turn_a, turn_b = relative[a] - relative[chain[0]], relative[b] - relative[a]
-    turn_c = relative[c] - relative[b]
-    depths_a, seen_a = options_of(a, first, candidates, counts, rays[a], turn_a, lengths[a], 0.0)
-    for i in range(len(depths_a)):
-        place_a = on_ray(rays[a], depths_a[i])
-        cost_a = departure(place_a, first, turn_a, lengths[a], costs)
-        cost_a += 0.0 if i < seen_a else costs[3]
-        if cost_a >= best:
-            continue
-        depths_b, seen_b = options_of(
-            b, place_a, candidates, counts, rays[b], turn_b, lengths[b], 0.0
-        )
-        for j in range(len(depths_b)):
-            place_b = on_ray(rays[b], depths_b[j])
-            cost_b = cost_a + departure(place_b, place_a, turn_b, lengths[b], costs)
-            cost_b += 0.0 if j < seen_b else costs[3]
-            if cost_b >= best:
-                continue
-            depths_c, seen_c = options_of(
-                c, place_b, candidates, counts, rays[c], turn_c, lengths[c], 0.0
+    places, states = np.full((links, 3), np.nan), np.zeros(links, np.uint8)
+    trial, option = np.empty((links, 3)), np.full(links, -1)
+    costs_so_far = np.zeros(links + 1)
+    options = np.empty((links, candidates.shape[1] + 3))
+    sizes = np.zeros(links, np.int64)
+    link, entered = 0, True
+    while link >= 0:
+        joint = chain[link + 1]
+        parent = first if link == 0 else trial[link - 1]
+        turn = relative[joint] - relative[chain[link]]
+        if entered:
+            depths = options_of(
+                candidates[joint], counts[joint], rays[joint], parent, turn, lengths[joint]
             )
-            if np.isnan(rays[c, 0]):
-                depths_c = depths_c[:1]
-            for k in range(len(depths_c)):
-                place_c = on_ray(rays[c], depths_c[k])
-                cost = cost_b
-                if not np.isnan(rays[c, 0]):
-                    cost += departure(place_c, place_b, turn_c, lengths[c], costs)
-                    cost += 0.0 if k < seen_c else costs[3]
-                if cost < best:
-                    best = cost
-                    places[0], places[1], places[2] = place_a, place_b, place_c
-                    states[0] = TRACKED if i < seen_a else INFERRED
-                    states[1] = TRACKED if j < seen_b else INFERRED
-                    states[2] = TRACKED if k < seen_c else INFERRED
+            sizes[link], option[link] = len(depths), -1
+            options[link, : len(depths)] = depths
+        option[link] += 1
+        entered = False
+        if option[link] == sizes[link]:
+            link -= 1
+            continue
+        place = on_ray(rays[joint], options[link, option[link]])
+        hidden = costs[4] if option[link] >= counts[joint] else 0.0
+        cost = costs_so_far[link] + hidden
+        cost += departure(place, parent, turn, lengths[joint], before[joint], costs)
+        if cost >= best:
+            continue
+        trial[link] = place
+        costs_so_far[link + 1] = cost
+        if link + 1 < links:
+            link, entered = link + 1, True
+            continue
+        best = cost
+        for one in range(links):
+            places[one] = trial[one]
+            states[one] = TRACKED if option[one] < counts[chain[one + 1]] else INFERRED
     return places, states

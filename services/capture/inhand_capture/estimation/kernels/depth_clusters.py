@@ -12,7 +12,7 @@ def window_depths(depth, unit, x, y, reach):  # type: ignore[no-untyped-def]
     and its ``reach`` are in pixels.
     """
     height, width = depth.shape
-    column, row, whole = int(round(x)), int(round(y)), int(reach)
+    column, row, whole = round(x), round(y), int(reach)
     measured = np.empty((2 * whole + 1) ** 2, np.float64)
     count = 0
     for v in range(max(row - whole, 0), min(row + whole + 1, height)):
@@ -43,3 +43,29 @@ def clusters(ordered, gap, fewest, most):  # type: ignore[no-untyped-def]
         begin = end
     largest = np.argsort(-shares[:count])[:most]
     return middles[largest], shares[largest]
+
+
+@njit(cache=True, nogil=True)
+def surfaces_about(depth, unit, pixels, reaches, radii, distances, numbers):  # type: ignore[no-untyped-def]
+    """Return the depths (J, K) at which joints may lie, their shares (J, K) of the measured pixels
+    about them, and how many there are, (J,).
+
+    ``pixels`` (J, 2) may be NaN; ``reaches`` (J,) are in pixels, ``radii`` (J,), by which joints
+    lie below a surface, in metres. ``distances`` are the gap between clusters, a share, and the
+    least depth, metres; ``numbers`` the fewest pixels of a cluster, and the most clusters K.
+    """
+    joints = len(pixels)
+    places, shares = np.zeros((joints, numbers[1])), np.zeros((joints, numbers[1]))
+    counts = np.zeros(joints, np.int64)
+    for joint in range(joints):
+        x, y = pixels[joint]
+        if not (abs(x) < 1e6 and abs(y) < 1e6):
+            continue
+        ordered = window_depths(depth, unit, x, y, reaches[joint])
+        ordered = ordered[np.searchsorted(ordered, distances[1]) :]
+        middles, parts = clusters(ordered, distances[0], numbers[0], numbers[1])
+        counts[joint] = len(middles)
+        for one in range(len(middles)):
+            places[joint, one] = middles[one] + radii[joint]
+            shares[joint, one] = parts[one]
+    return places, shares, counts

@@ -1,0 +1,1 @@
+"""Compiled code that several services share: arrays in, arrays out."""
