@@ -31,7 +31,7 @@ VERBS = {
     "train": "learn a model from a labelled dataset",
     "evaluate": "measure methods on people that were not trained on",
     "recognise": "measure tracking where the object is not given, and recognition alone",
-    "bench": "measure tracker, training, transport, check likelihood and constants, do an ablation",
+    "bench": "measure tracker, training, transport, skeletons, likelihood, constants, ablation",
     "models": "get the networks that find people in images: fetch",
     "recording": "info, verify, recover and repair recordings",
     "topics": "list what a running site publishes",

@@ -7,6 +7,9 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from inhand_capture.estimation.found_person import PoseNetwork
+from inhand_capture.estimation.networks import open_network, require_network
+from inhand_capture.estimation.weights import DEFAULT_NETWORK
 from inhand_lab.benchmarks.ablation import Worth, ablate, varied
 from inhand_lab.benchmarks.checkout_comparison import (
     CaseComparison,
@@ -15,6 +18,8 @@ from inhand_lab.benchmarks.checkout_comparison import (
     packages_of,
 )
 from inhand_lab.benchmarks.constants import check_constants
+from inhand_lab.benchmarks.estimated_skeletons import check_skeletons, check_steps
+from inhand_lab.benchmarks.estimation_cost import measure_estimation
 from inhand_lab.benchmarks.frame_cost import frame_steps, measure_frames
 from inhand_lab.benchmarks.likelihood_check import check_likelihood
 from inhand_lab.benchmarks.parameters import (
@@ -23,6 +28,7 @@ from inhand_lab.benchmarks.parameters import (
     DEFAULT_TRAINING_COST,
     DEFAULT_TRANSPORT,
 )
+from inhand_lab.benchmarks.real_depth_lifting import check_real_lifting, real_recordings
 from inhand_lab.benchmarks.tracker_speed import measure_tracker
 from inhand_lab.benchmarks.training_cost import benchmark_training, training_steps
 from inhand_lab.benchmarks.transport_delay import measure_transport
@@ -32,6 +38,7 @@ from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
 from rich.console import Console, Group, RenderableType
 
+from inhand.bench_skeleton_tables import actions_table, costs_table, joints_table, rules_table
 from inhand.bench_tables import (
     ablation_table,
     comparison_table,
@@ -63,7 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         metavar="SOURCE",
         help="for likelihood: a folder of YCB-Video, or of an excerpt; for ablation and "
-        "constants: a dataset",
+        "constants: a dataset; for skeletons, if at hand: a folder of UTD-MHAD with its depth",
     )
     parser.add_argument(
         "--vary",
@@ -84,7 +91,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Measure and show the table; raises InhandError."""
-    if (arguments.subject in MEASURED_ON) != (arguments.source is not None):
+    named = arguments.source is not None
+    if named != (arguments.subject in MEASURED_ON) and arguments.subject != "skeletons":
         raise SettingsError(
             f"{', '.join(MEASURED_ON)}, and nothing else, are measured on a SOURCE: name it"
         )
@@ -169,10 +177,34 @@ def _transport(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     return transport_table(delays), asdict(delays)
 
 
+def _skeletons(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    files = [] if arguments.source is None else real_recordings(arguments.source)
+
+    def new_network() -> PoseNetwork:
+        return open_network(DEFAULT_NETWORK)
+
+    require_network(DEFAULT_NETWORK)
+    with progress_bar("estimating", check_steps()) as advance:
+        check = check_skeletons(new_network, advance)
+    costs = measure_estimation(new_network)
+    simulated = "on simulated people"
+    tables = [actions_table(check), rules_table(simulated, check.rules)]
+    tables.append(joints_table(simulated, check.joints))
+    result: dict[str, Any] = asdict(check)
+    if files:
+        with progress_bar("lifting", len(files)) as advance:
+            real = check_real_lifting(files, advance)
+        recorded = f"on {real.recordings} real recordings"
+        tables += [rules_table(recorded, real.rules), joints_table(recorded, real.joints)]
+        result["real"] = asdict(real)
+    return Group(*tables, costs_table(costs)), {**result, "costs": [asdict(cost) for cost in costs]}
+
+
 SUBJECTS_HELP = {
     "ablation": "the error of fusion without each of its parts",
     "constants": "its error with each number halved and doubled",
     "likelihood": "how true poses score, and refine, on real frames of YCB-Video",
+    "skeletons": "skeletons from images: found people, joints' errors, and what a frame costs",
     "tracker": "poses weighed in a second, and what a frame costs, by itself or against other code",
     "training": "time and memory of training by its size",
     "transport": "the delay of a frame to another process, beside Zenoh's own and dora-rs's",
@@ -184,6 +216,7 @@ SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "ablation": _ablation,
     "constants": _constants,
     "likelihood": _likelihood,
+    "skeletons": _skeletons,
     "tracker": _tracker,
     "training": _training,
     "transport": _transport,

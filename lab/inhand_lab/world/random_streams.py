@@ -6,7 +6,7 @@ import zlib
 
 import numpy as np
 
-GENERATOR_VERSION = 5
+GENERATOR_VERSION = 6
 """Version of the generator: the same version and seed make the same bytes."""
 PEOPLE_VERSION = 4
 """Version whose people and movements these are: what a version leaves alone stays the same."""
