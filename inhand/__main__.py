@@ -33,7 +33,7 @@ VERBS = {
     "recognise": "measure tracking where the object is not given, and recognition alone",
     "bench": "measure tracker, training, transport, skeletons, likelihood, constants, ablation",
     "models": "get the networks that find people in images: fetch",
-    "recording": "info, verify, recover and repair recordings",
+    "recording": "info, verify, recover, repair and complete recordings",
     "topics": "list what a running site publishes",
     "echo": "print messages",
     "rate": "measure rates, gaps and sizes",

@@ -1,6 +1,7 @@
 """``inhand recording``: look into recordings, verify them, and recover damaged ones."""
 
 import argparse
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,9 @@ from inhand.results import listing, write_json
 
 RECOVERED_SUFFIX = ".recovered.mcap"
 REPAIRED_SUFFIX = ".repaired.mcap"
+COMPLETED_SUFFIX = ".skeletons.mcap"
+
+NETWORKS = ("lite", "full", "heavy")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,6 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ("verify", _verify, "whether they are whole and true; exit 1 when one is not"),
         ("recover", _recover, "save what is left of recordings that were cut off or damaged"),
         ("repair", _repair, "add the camera info that a recording lacks, from another one"),
+        ("skeletons", _skeletons, "add the skeletons of the people in a recording's pictures"),
     ):
         action = actions.add_parser(name, help=text, description=text)
         action.add_argument("files", nargs="+", type=Path, metavar="FILE")
@@ -38,10 +43,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             action.add_argument(
                 "--info", type=Path, required=True, metavar="FILE", help="a recording that has it"
             )
-        if name in ("recover", "repair"):
+        if name == "skeletons":
+            _add_skeleton_arguments(action)
+        if name in ("recover", "repair", "skeletons"):
             action.add_argument(
                 "-o", "--output", type=Path, metavar="OUT", help="the file to write (of one FILE)"
             )
+
+
+def _add_skeleton_arguments(action: argparse.ArgumentParser) -> None:
+    action.add_argument(
+        "--network",
+        choices=NETWORKS,
+        default=NETWORKS[0],
+        help=f"what finds people (default: {NETWORKS[0]})",
+    )
+    action.add_argument(
+        "--replace", action="store_true", help="in place of the skeletons that it has"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -102,6 +121,34 @@ def _repair(arguments: argparse.Namespace) -> int:
         print(f"{output}: with the info of {', '.join(cameras)}")
         repaired.append({"path": str(path), "output": str(output), "cameras": cameras})
     _result(arguments, "repaired", repaired)
+    return DONE
+
+
+def _skeletons(arguments: argparse.Namespace) -> int:
+    # What estimates them is large, and no other action needs it.
+    from inhand_capture.estimation.networks import open_network, require_network
+
+    from inhand.recorded_skeletons import add_skeletons
+
+    if arguments.output is not None and len(arguments.files) > 1:
+        raise SettingsError("-o names one output: give one FILE, or leave -o out")
+    require_network(arguments.network)
+    completed = []
+    for path in arguments.files:
+        output = arguments.output or path.with_name(
+            path.name.removesuffix(".mcap") + COMPLETED_SUFFIX
+        )
+        cameras = add_skeletons(
+            path, output, lambda: open_network(arguments.network), replace=arguments.replace
+        )
+        for name, one in cameras.items():
+            of = f"{one.with_people} of {counted(one.frames, 'frame')}"
+            print(f"{output}: {name}: somebody in {of}")
+            if one.unusable:
+                print(f"  {counted(one.unusable, 'frame')} without skeletons: {one.reason}")
+        values = {name: asdict(one) for name, one in cameras.items()}
+        completed.append({"path": str(path), "output": str(output), "cameras": values})
+    _result(arguments, "completed", completed)
     return DONE
 
 

@@ -1,0 +1,154 @@
+"""Completes recordings of colour and depth: estimates the skeletons of the people in them."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from inhand_capture.estimation.estimator import EstimationError, SkeletonEstimator
+from inhand_capture.estimation.found_person import PoseNetwork
+from inhand_runtime.errors import InhandError
+from inhand_runtime.pixels import decode_colour, decode_depth
+from inhand_runtime.recording import (
+    RecordedMessage,
+    RecordingError,
+    RecordingWriter,
+    read_metadata,
+    read_recording,
+)
+from inhand_runtime.recording.part_file import PART_SUFFIX
+from inhand_schemas.errors import MessageError
+from inhand_schemas.keys import parse_key
+from inhand_schemas.messages import CameraInfo, RgbdFrame, Skeletons
+from inhand_schemas.topics import INFO, RGBD, SKELETONS
+
+
+@dataclass
+class CameraSkeletons:
+    """What was estimated of one camera's frames.
+
+    ``frames`` counts all, ``with_people`` those with somebody in view and ``unusable`` those
+    without skeletons; ``reason`` says why the first of these has none.
+    """
+
+    frames: int = 0
+    with_people: int = 0
+    unusable: int = 0
+    reason: str = ""
+
+
+@dataclass
+class _Cameras:
+    """What a recording holds of its cameras: infos, names of those with frames and skeletons."""
+
+    infos: dict[str, CameraInfo] = field(default_factory=dict)
+    with_frames: set[str] = field(default_factory=set)
+    with_skeletons: set[str] = field(default_factory=set)
+
+
+def add_skeletons(
+    path: Path, output: Path, new_network: Callable[[], PoseNetwork], *, replace: bool = False
+) -> dict[str, CameraSkeletons]:
+    """Write a recording, completed, to the new file ``output``; the input is never changed.
+
+    With ``replace`` the skeletons that it has are left out. Raises RecordingError where it has
+    skeletons already, or no pictures, or no camera's info, and InhandError where none of a camera's
+    frames serves.
+    """
+    cameras = _cameras_of(path)
+    wanted = _cameras_to_complete(path, cameras, replace=replace)
+    estimators = {
+        name: SkeletonEstimator(new_network(), cameras.infos[name]) for name in sorted(wanted)
+    }
+    estimated = {name: CameraSkeletons() for name in estimators}
+    with _written_or_gone(output) as writer:
+        for message in read_recording(path):
+            if message.topic is SKELETONS and message.name in wanted:
+                continue
+            _write(writer, message.key, message, message.payload)
+            if message.topic is RGBD and message.name in wanted:
+                camera = message.name
+                skeletons = _estimate(message, estimators[camera], estimated[camera])
+                if skeletons is not None:
+                    key = SKELETONS.key(parse_key(message.key).site, camera)
+                    _write(writer, key, message, SKELETONS.encode(skeletons))
+        for name, values in read_metadata(path).items():
+            writer.add_metadata(name, values)
+        writer.add_metadata("skeletons", {"source": path.name, "estimated": " ".join(wanted)})
+        _require_skeletons(path, estimated)
+    return estimated
+
+
+@contextmanager
+def _written_or_gone(output: Path) -> Iterator[RecordingWriter]:
+    """Write a recording in a block; where that fails, nothing of it stays."""
+    try:
+        with RecordingWriter(output) as writer:
+            yield writer
+    except InhandError:
+        output.with_name(output.name + PART_SUFFIX).unlink(missing_ok=True)
+        raise
+
+
+def _cameras_of(path: Path) -> _Cameras:
+    cameras = _Cameras()
+    for message in read_recording(path, streams=(INFO.stream, RGBD.stream, SKELETONS.stream)):
+        if message.topic is INFO:
+            cameras.infos.setdefault(message.name, INFO.decode(message.payload))
+        elif message.topic is RGBD:
+            cameras.with_frames.add(message.name)
+        else:
+            cameras.with_skeletons.add(message.name)
+    return cameras
+
+
+def _cameras_to_complete(path: Path, cameras: _Cameras, *, replace: bool) -> list[str]:
+    """Return the cameras whose skeletons are to be estimated; raises RecordingError."""
+    if not cameras.with_frames:
+        raise RecordingError(f"{path} holds no pictures: skeletons come from pictures with depth")
+    wanted = sorted(
+        cameras.with_frames if replace else cameras.with_frames - cameras.with_skeletons
+    )
+    if not wanted:
+        raise RecordingError(
+            f"{path} has skeletons already: add --replace to have them estimated instead"
+        )
+    if without := [name for name in wanted if name not in cameras.infos]:
+        raise RecordingError(
+            f"{path} lacks the info of camera {without[0]}: `inhand recording repair` adds it"
+        )
+    return wanted
+
+
+def _estimate(
+    message: RecordedMessage, estimator: SkeletonEstimator, counts: CameraSkeletons
+) -> Skeletons | None:
+    """Estimate the skeletons of one recorded frame, and count; None where it has none to give."""
+    counts.frames += 1
+    try:
+        frame: RgbdFrame = RGBD.decode(message.payload)
+        colour = None if frame.colour is None else decode_colour(frame.colour)
+        depth = None if frame.depth is None else decode_depth(frame.depth)
+        people = estimator.estimate(colour, depth, frame.time_ns)
+    except (EstimationError, MessageError) as error:
+        counts.reason = counts.reason or str(error)
+        counts.unusable += 1
+        return None
+    counts.with_people += bool(people)
+    return Skeletons(sequence=frame.sequence, time_ns=frame.time_ns, people=people)
+
+
+def _require_skeletons(path: Path, estimated: dict[str, CameraSkeletons]) -> None:
+    for name, counts in estimated.items():
+        if counts.unusable == counts.frames:
+            raise InhandError(f"{path}, camera {name}: {counts.reason}")
+
+
+def _write(writer: RecordingWriter, key: str, of: RecordedMessage, payload: bytes) -> None:
+    writer.write(
+        key,
+        payload,
+        received_ns=of.received_ns,
+        captured_ns=of.captured_ns,
+        sequence=of.sequence,
+    )
