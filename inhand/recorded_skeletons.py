@@ -82,8 +82,9 @@ def add_skeletons(
 @contextmanager
 def _written_or_gone(output: Path) -> Iterator[RecordingWriter]:
     """Write a recording in a block; where that fails, nothing of it stays."""
+    opened = RecordingWriter(output)
     try:
-        with RecordingWriter(output) as writer:
+        with opened as writer:
             yield writer
     except InhandError:
         output.with_name(output.name + PART_SUFFIX).unlink(missing_ok=True)

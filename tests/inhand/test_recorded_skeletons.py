@@ -98,3 +98,11 @@ def test_what_a_recording_lacks_is_said_in_one_line(
     with pytest.raises((RecordingError, InhandError), match=line):
         add_skeletons(path, tmp_path / "out.mcap", network)
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_file_that_another_writes_stays(tmp_path: Path) -> None:
+    path, part = recorded(tmp_path / "walk.mcap"), tmp_path / "out.mcap.part"
+    part.write_bytes(b"being recorded")
+    with pytest.raises(RecordingError):
+        add_skeletons(path, tmp_path / "out.mcap", network)
+    assert part.read_bytes() == b"being recorded"
