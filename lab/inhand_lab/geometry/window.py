@@ -22,6 +22,11 @@ class Window:
     columns: slice
     intrinsics: Intrinsics
 
+    @property
+    def area(self) -> tuple[int, int, int, int]:
+        """Top, bottom, left and right; bottom and right are not in it."""
+        return self.rows.start, self.rows.stop, self.columns.start, self.columns.stop
+
     def cut(self, canvas: Canvas) -> Canvas:
         """This part of a canvas: a view, which shares its pixels."""
         area = self.rows, self.columns

@@ -108,7 +108,8 @@ class _Part:
 
     def swept(self) -> Singles:
         """Places (N, 3) at which the vertices of moving faces begin and end."""
-        corners = np.unique(self.faces[self.moves])
+        corners = np.zeros(len(self.vertices), bool)
+        corners[self.faces[self.moves]] = True
         middle, half = self.vertices[corners], 0.5 * self.travel[corners]
         return np.concatenate([middle - half, middle + half])
 

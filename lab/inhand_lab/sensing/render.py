@@ -24,11 +24,13 @@ class Drawing:
     """A frame as a perfect sensor would see it.
 
     ``visible_fraction`` is the share of the object's pixels that nothing hides, 0 where the object
-    is out of the image; the canvas's labels are ROOM, PERSON and OBJECT.
+    is out of the image; the canvas's labels are ROOM, PERSON and OBJECT. Outside the window
+    ``drawn`` the canvas is the room alone.
     """
 
     canvas: Canvas
     visible_fraction: float
+    drawn: Window
 
     @property
     def object_mask(self) -> Flags:
@@ -46,11 +48,12 @@ def draw_room(intrinsics: Intrinsics, camera_from_world: Transform, room: Surfac
 def draw_frame(scene: MovingScene, frame: int) -> Drawing:
     """Draw a frame of person and object before the room."""
     canvas = scene.room.copy()
-    placed = scene.object(frame)
-    _draw_surface(canvas, scene.intrinsics, scene.person(frame), PERSON)
+    person, placed = scene.person(frame), scene.object(frame)
+    _draw_surface(canvas, scene.intrinsics, person, PERSON)
     _draw_surface(canvas, scene.intrinsics, placed, OBJECT)
     window = window_around(scene.intrinsics, placed.vertices)
-    return Drawing(canvas, _share_seen(window.cut(canvas), window, placed))
+    drawn = window_around(scene.intrinsics, np.concatenate([person.vertices, placed.vertices]))
+    return Drawing(canvas, _share_seen(window.cut(canvas), window, placed), drawn)
 
 
 def visible_fraction(scene: MovingScene, frame: int) -> float:

@@ -13,10 +13,18 @@ from inhand_lab.geometry.canvas import Canvas
 from inhand_lab.motions.timeline import drift
 from inhand_lab.sensing.cameras import Camera
 from inhand_lab.sensing.depth_scene import DepthScene
+from inhand_lab.sensing.disparities import Area
 from inhand_lab.sensing.noise_fields import FIELD, Place, any_place, colour_noise
 from inhand_lab.sensing.noise_parameters import DEFAULT_NOISE, ColourNoise, NoiseParameters
 from inhand_lab.sensing.stereo import measure_stereo_depth
-from inhand_lab.sensing.structured_light import measure_structured_light_depth
+from inhand_lab.sensing.structured_light import (
+    StillRoom,
+    measure_structured_light_depth,
+    read_still_room,
+)
+
+GREEN_ROWS, BLUE_ROWS = 331, 662
+"""Rows of the field of noise between what red is given and what green and blue are."""
 
 
 def brightness(
@@ -34,12 +42,15 @@ class FrameConditions:
     """What one frame is sensed under.
 
     ``gains`` (3,) brighten the colours; ``unseen`` is the label of what depth does not see, 0 if
-    it sees all; ``lasting`` is where the noise that stays from frame to frame is looked up.
+    it sees all; ``lasting`` is where the noise that stays from frame to frame is looked up. Outside
+    the area ``drawn`` the frame is the ``still`` room, where these are given.
     """
 
     gains: Array = field(default_factory=lambda: np.ones(3))
     unseen: int = 0
     lasting: Place = (0, 0)
+    still: StillRoom | None = None
+    drawn: Area | None = None
 
 
 def sense(
@@ -54,7 +65,28 @@ def sense(
     fresh = any_place(random)
     means, deviations = _levels(conditions.gains, noise.colour)
     colour = _sense_colour(canvas.colour, colour_noise(), means, deviations, *fresh)
-    scene = DepthScene(
+    scene = _scene(canvas, camera, conditions, fresh)
+    if camera.depth_from == "structured light":
+        depth = measure_structured_light_depth(
+            scene, noise.structured_light, conditions.still, conditions.drawn
+        )
+    else:
+        depth = measure_stereo_depth(scene, noise.stereo)
+    return np.asarray(colour), depth
+
+
+def read_still(
+    room: Canvas, camera: Camera, lasting: Place, noise: NoiseParameters = DEFAULT_NOISE
+) -> StillRoom | None:
+    """Read a still room once for all frames; None of stereo, which keeps nothing of it."""
+    if camera.depth_from != "structured light":
+        return None
+    scene = _scene(room, camera, FrameConditions(lasting=lasting), (0, 0))
+    return read_still_room(scene, noise.structured_light)
+
+
+def _scene(canvas: Canvas, camera: Camera, conditions: FrameConditions, fresh: Place) -> DepthScene:
+    return DepthScene(
         canvas.colour,
         canvas.inverse_depth,
         canvas.labels,
@@ -63,11 +95,6 @@ def sense(
         conditions.lasting,
         fresh,
     )
-    if camera.depth_from == "structured light":
-        depth = measure_structured_light_depth(scene, noise.structured_light)
-    else:
-        depth = measure_stereo_depth(scene, noise.stereo)
-    return np.asarray(colour), depth
 
 
 def _levels(gains: Array, noise: ColourNoise) -> tuple[Singles, Singles]:
@@ -80,12 +107,40 @@ def _levels(gains: Array, noise: ColourNoise) -> tuple[Singles, Singles]:
 @njit(cache=True, nogil=True)
 def _sense_colour(colour, unit_noise, means, deviations, row, column):  # type: ignore[no-untyped-def]
     height, width, _ = colour.shape
-    noisy = np.empty_like(colour)
+    noisy, levels = np.empty_like(colour), np.empty(3 * width, np.float32)
     for v in range(height):
-        for u in range(width):
-            for channel in range(3):
-                value = colour[v, u, channel]
-                at = (v + row + 331 * channel) & (FIELD - 1), (u + column) & (FIELD - 1)
-                level = means[value, channel] + deviations[value, channel] * unit_noise[at]
-                noisy[v, u, channel] = np.uint8(min(max(level, np.float32(0)), np.float32(255)))
+        u = 0
+        # The field repeats, so that a row is one stretch of it or several.
+        while u < width:
+            first = (u + column) & (FIELD - 1)
+            until = min(u + FIELD - first, width)
+            after = first + until - u
+            _sense_stretch(
+                colour[v, u:until].ravel(),
+                unit_noise[(v + row) & (FIELD - 1), first:after],
+                unit_noise[(v + row + GREEN_ROWS) & (FIELD - 1), first:after],
+                unit_noise[(v + row + BLUE_ROWS) & (FIELD - 1), first:after],
+                means,
+                deviations,
+                levels,
+                noisy[v, u:until].ravel(),
+            )
+            u = until
     return noisy
+
+
+@njit(cache=True, nogil=True)
+def _sense_stretch(colour, red, green, blue, means, deviations, levels, noisy):  # type: ignore[no-untyped-def]
+    """Sense N pixels by the noise (N,) of each colour; ``colour`` and ``noisy`` are (3 N,)."""
+    for u in range(len(red)):
+        r, g, b = colour[3 * u], colour[3 * u + 1], colour[3 * u + 2]
+        levels[3 * u] = means[r, 0] + deviations[r, 0] * red[u]
+        levels[3 * u + 1] = means[g, 1] + deviations[g, 1] * green[u]
+        levels[3 * u + 2] = means[b, 2] + deviations[b, 2] * blue[u]
+    least, most = np.float32(0), np.float32(255)
+    # A loop of its own, for without look-ups it is done for several levels at once.
+    for index in range(len(colour)):
+        level = levels[index]
+        level = level if level > least else least
+        level = level if level < most else most
+        noisy[index] = np.uint8(np.int32(level))

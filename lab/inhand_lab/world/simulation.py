@@ -26,7 +26,7 @@ from inhand_lab.people.person_surface import build_person_surface
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.sensing.motion_blur import blurred, surfaces_in_motion
 from inhand_lab.sensing.moving_scene import MovingScene
-from inhand_lab.sensing.noise_fields import any_place
+from inhand_lab.sensing.noise_fields import Place, any_place
 from inhand_lab.sensing.render import (
     OBJECT,
     Drawing,
@@ -35,8 +35,9 @@ from inhand_lab.sensing.render import (
     object_surface,
     visible_fraction,
 )
-from inhand_lab.sensing.sensor import FrameConditions, brightness, sense
+from inhand_lab.sensing.sensor import FrameConditions, brightness, read_still, sense
 from inhand_lab.sensing.skeleton_noise import SkeletonReading, read_skeleton
+from inhand_lab.sensing.structured_light import StillRoom
 from inhand_lab.world.enactment import Enactment
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.random_streams import random_stream
@@ -149,7 +150,9 @@ class Simulation:
         conditions = FrameConditions(
             self._gains[frame],
             0 if self.object_model.returns_depth else OBJECT,
-            any_place(self._random("sensor")),
+            self._lasting,
+            self._still,
+            drawing.drawn.area,
         )
         random = self._random("pixels", self.performance, frame)
         canvas = replace(drawing.canvas, colour=colour)
@@ -164,6 +167,14 @@ class Simulation:
     def _gains(self) -> Array:
         times = np.arange(self.frames) / self.frame_rate
         return brightness(times, self._random("brightness", self.performance))
+
+    @cached_property
+    def _lasting(self) -> Place:
+        return any_place(self._random("sensor"))
+
+    @cached_property
+    def _still(self) -> StillRoom | None:
+        return read_still(self._scene.room, self.camera, self._lasting)
 
     @cached_property
     def _scene(self) -> MovingScene:

@@ -6,7 +6,10 @@ from inhand_lab.sensing.cameras import KINECT
 from inhand_lab.sensing.depth_scene import DepthScene, fields_for
 from inhand_lab.sensing.noise_fields import FIELD
 from inhand_lab.sensing.noise_parameters import DEFAULT_NOISE, StructuredLightNoise
-from inhand_lab.sensing.structured_light import measure_structured_light_depth
+from inhand_lab.sensing.structured_light import (
+    measure_structured_light_depth,
+    read_still_room,
+)
 from walls import depth_of, wall
 
 
@@ -39,6 +42,32 @@ def test_depth_is_what_the_plain_definition_says() -> None:
     depth = measure_structured_light_depth(scene, noise)
     assert (depth == 0).mean() > 0.02
     np.testing.assert_array_equal(depth, _plain(scene, noise))
+
+
+@pytest.mark.parametrize("drawn", [(100, 300, 200, 330), (0, 480, 0, 640), (0, 9, 630, 640)])
+def test_a_frame_before_a_still_room_is_measured_as_one_that_is_read_anew(
+    drawn: tuple[int, int, int, int],
+) -> None:
+    noise = DEFAULT_NOISE.structured_light
+    random = np.random.default_rng(4)
+    room, canvas = wall(4.0, KINECT), wall(4.0, KINECT)
+    room.inverse_depth[50:450, 400:480] = 1.0 / 2.0
+    top, bottom, left, right = drawn
+    nearer = 1.0 / random.uniform(0.3, 2.0, (bottom - top, right - left))
+    canvas.inverse_depth[:] = room.inverse_depth
+    canvas.inverse_depth[top:bottom, left:right] = nearer
+
+    def scene(inverse_depth: np.ndarray, unseen: int, fresh: tuple[int, int]) -> DepthScene:
+        return DepthScene(
+            canvas.colour, inverse_depth, canvas.labels, 525.0, unseen, (1000, 77), fresh
+        )
+
+    still = read_still_room(scene(room.inverse_depth, 0, (0, 0)), noise)
+    frame = scene(canvas.inverse_depth, 3, (31, 1011))
+    np.testing.assert_array_equal(
+        measure_structured_light_depth(frame, noise, still, drawn),
+        measure_structured_light_depth(frame, noise),
+    )
 
 
 def _plain(scene: DepthScene, noise: StructuredLightNoise) -> np.ndarray:
