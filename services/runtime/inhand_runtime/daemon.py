@@ -20,7 +20,7 @@ from inhand_runtime.errors import InhandError
 from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import UNBOUNDED, Inbox, Received
 from inhand_runtime.logs import configure_logs
-from inhand_runtime.memory import give_memory_back
+from inhand_runtime.memory import give_libraries_back, give_memory_back
 from inhand_runtime.session import (
     Publisher,
     Session,
@@ -209,6 +209,8 @@ def _report(
             log.warning("no other process is connected yet; %s", _where_to_meet(settings))
         if reports % REPORTS_UNTIL_TIDY == REPORTS_UNTIL_STARTED:
             give_memory_back()
+        if reports == REPORTS_UNTIL_STARTED:
+            give_libraries_back()
     publisher.put(daemon.health.report())
 
 
