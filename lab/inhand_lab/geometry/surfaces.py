@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import trimesh
@@ -29,6 +30,16 @@ class Surface:
     normals: Array
     faces: NDArray[np.int32]
     colours: Singles
+
+    @cached_property
+    def corners(self) -> Singles:
+        """The vertices (V, 3) as they are drawn."""
+        return self.vertices.astype(np.float32)
+
+    @cached_property
+    def shades(self) -> Singles:
+        """Lit colours (V, 3) of a surface that is in the camera's frame."""
+        return lit(self.normals, self.colours)
 
     def moved(self, transform: Transform) -> Surface:
         """The surface under one rigid transform."""

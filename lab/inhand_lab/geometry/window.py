@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import ceil, floor
 
 import numpy as np
+from inhand_runtime.compiled import njit
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
 
@@ -38,18 +40,34 @@ def window_around(intrinsics: Intrinsics, points: Array) -> Window:
 
     It is the whole image where a point is too near to be projected.
     """
-    if points[:, 2].min() < NEAREST_PAINTED_M:
+    lens = intrinsics.fx, intrinsics.fy, intrinsics.cx, intrinsics.cy
+    nearest, first_u, last_u, first_v, last_v = _bounds(points, lens)
+    if nearest < NEAREST_PAINTED_M:
         return _window(intrinsics, 0, intrinsics.width, 0, intrinsics.height)
-    u = intrinsics.fx * points[:, 0] / points[:, 2] + intrinsics.cx
-    v = intrinsics.fy * points[:, 1] / points[:, 2] + intrinsics.cy
-    left, right = _span(u, intrinsics.width)
-    top, bottom = _span(v, intrinsics.height)
+    left, right = _span(first_u, last_u, intrinsics.width)
+    top, bottom = _span(first_v, last_v, intrinsics.height)
     return _window(intrinsics, left, right, top, bottom)
 
 
-def _span(pixels: Array, size: int) -> tuple[int, int]:
-    first = int(np.clip(np.floor(pixels.min()) - WINDOW_MARGIN, 0, size))
-    return first, int(np.clip(np.ceil(pixels.max()) + WINDOW_MARGIN + 1, first, size))
+@njit(cache=True, nogil=True)
+def _bounds(points, lens):  # type: ignore[no-untyped-def]
+    """Depth of the nearest point, first and last column, first and last row of all."""
+    fx, fy, cx, cy = lens
+    nearest, first_u, last_u, first_v, last_v = np.inf, np.inf, -np.inf, np.inf, -np.inf
+    for index in range(len(points)):
+        z = points[index, 2]
+        nearest = min(nearest, z)
+        if nearest < NEAREST_PAINTED_M:
+            break
+        u, v = fx * points[index, 0] / z + cx, fy * points[index, 1] / z + cy
+        first_u, last_u = min(first_u, u), max(last_u, u)
+        first_v, last_v = min(first_v, v), max(last_v, v)
+    return nearest, first_u, last_u, first_v, last_v
+
+
+def _span(least: float, most: float, size: int) -> tuple[int, int]:
+    first = min(max(floor(least) - WINDOW_MARGIN, 0), size)
+    return first, min(max(ceil(most) + WINDOW_MARGIN + 1, first), size)
 
 
 def _window(intrinsics: Intrinsics, left: int, right: int, top: int, bottom: int) -> Window:

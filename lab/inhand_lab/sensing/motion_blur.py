@@ -15,7 +15,7 @@ from inhand_tracker.geometry.camera import Intrinsics
 from numpy.typing import NDArray
 
 from inhand_lab.geometry.canvas import Canvas, draw_triangles
-from inhand_lab.geometry.surfaces import Surface, lit
+from inhand_lab.geometry.surfaces import Surface
 from inhand_lab.geometry.window import window_around
 from inhand_lab.sensing.moving_scene import MovingScene
 
@@ -99,10 +99,10 @@ class _Part:
     def of(cls, moving: Moving, way: Array) -> _Part:
         surface = moving.surface
         return cls(
-            surface.vertices.astype(np.float32),
+            surface.corners,
             moving.travel.astype(np.float32),
             surface.faces,
-            lit(surface.normals, surface.colours),
+            surface.shades,
             np.asarray((way >= SHARPNESS)[surface.faces].any(axis=1)),
         )
 

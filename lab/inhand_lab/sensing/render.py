@@ -9,7 +9,7 @@ from inhand_tracker.geometry.arrays import Flags
 from inhand_tracker.geometry.camera import Intrinsics
 
 from inhand_lab.geometry.canvas import Canvas, draw_triangles
-from inhand_lab.geometry.surfaces import Surface, lit, surface_of_mesh
+from inhand_lab.geometry.surfaces import Surface, surface_of_mesh
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.geometry.window import Window, window_around
 from inhand_lab.objects.model import ObjectModel
@@ -76,17 +76,16 @@ def _draw_surface(canvas: Canvas, intrinsics: Intrinsics, surface: Surface, labe
     draw_triangles(
         canvas,
         intrinsics,
-        surface.vertices.astype(np.float32),
+        surface.corners,
         surface.faces,
-        lit(surface.normals, surface.colours),
+        surface.shades,
         label,
     )
 
 
 def _draw_silhouette(canvas: Canvas, intrinsics: Intrinsics, surface: Surface, label: int) -> None:
     """Draw a surface without light, for what it hides and not for how it looks."""
-    vertices = surface.vertices.astype(np.float32)
-    draw_triangles(canvas, intrinsics, vertices, surface.faces, surface.colours, label)
+    draw_triangles(canvas, intrinsics, surface.corners, surface.faces, surface.colours, label)
 
 
 def _share_seen(canvas: Canvas, window: Window, placed: Surface) -> float:
