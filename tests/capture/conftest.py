@@ -5,19 +5,22 @@ from pathlib import Path
 
 import pytest
 
-PLUGIN = Path(__file__).parents[1] / "scenes" / "scripted_source.py"
+SCENES = Path(__file__).parents[1] / "scenes"
+PLUGINS = ("scripted_source.py", "stub_oak_source.py", "stub_oak.py")
 
 
 @pytest.fixture
 def plugin_folder(tmp_path: Path) -> Path:
-    """A folder for PYTHONPATH in which the source ``scripted`` is installed."""
+    """A folder for PYTHONPATH in which the sources of the tests are installed."""
     folder = tmp_path / "plugins"
     metadata = folder / "scripted-1.0.dist-info"
     metadata.mkdir(parents=True)
     (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: scripted\nVersion: 1.0\n")
     (metadata / "entry_points.txt").write_text(
         "[inhand.sources]\nscripted = scripted_source:ScriptedSource\n"
+        "stub_oak = stub_oak_source:StubOakSource\n"
         "unusable = package_that_nobody_has:Source\n"
     )
-    shutil.copy(PLUGIN, folder)
+    for plugin in PLUGINS:
+        shutil.copy(SCENES / plugin, folder)
     return folder

@@ -151,13 +151,13 @@ def test_a_signal_ends_a_source_that_hangs(rig: RunningRig, capture: Start) -> N
     [
         (
             "",
-            "[capture.capture]: no camera is configured: write [capture.front] with "
-            'source = "simulator", which needs none, or source = "replay" and the recording as '
-            "options.file",
+            '[capture.capture]: no camera is configured: write [capture.front] with source = "oak" '
+            'for a camera that `inhand capture --list` shows, source = "simulator", which needs '
+            'none, or source = "replay" and the recording as options.file',
         ),
         (
-            '[capture.front]\nsource = "oak"\n',
-            "setting capture.front.source: no source 'oak' is installed; there are: ",
+            '[capture.front]\nsource = "kinect"\n',
+            "setting capture.front.source: no source 'kinect' is installed; there are: ",
         ),
     ],
 )

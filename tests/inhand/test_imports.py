@@ -60,7 +60,7 @@ def _run(code: str, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
         (["status", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER, "numpy")),
         (["echo", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER, "numpy")),
         (["recorder", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER, "numpy", "rich")),
-        (["capture", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER, "rich")),
+        (["capture", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER, "rich", "depthai")),
         (["replay", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER)),
         (["tracker", "--help"], (*NEEDED_BY_NOBODY, "rich", "inhand_lab")),
         (["simulate", "--help"], ("matplotlib", "sklearn")),

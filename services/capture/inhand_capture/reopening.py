@@ -4,13 +4,22 @@ import contextlib
 import threading
 import time
 from collections.abc import Callable, Generator, Iterator
+from concurrent.futures import Future, wait
 
-from inhand_runtime.source import QUIET_S, Captured, Source, SourceError, SourceLostError
-from inhand_schemas.messages import CameraInfo
+from inhand_runtime.source import (
+    QUIET_S,
+    Captured,
+    Source,
+    SourceAbsentError,
+    SourceError,
+    SourceLostError,
+)
 
 FIRST_PAUSE_S = 0.5
 LONGEST_PAUSE_S = 10.0
 STOP_POLL_S = 0.05
+RESTARTS_WITHIN_S = 15.0
+"""Seconds after a loss in which a device that is absent is only restarting: no new error."""
 
 
 def growing_pauses() -> Iterator[float]:
@@ -26,22 +35,22 @@ def captures(
     wanted: Callable[[], bool],
     stop: threading.Event,
     *,
-    opened: Callable[[CameraInfo], None],
+    opened: Callable[[Source], None],
     lost: Callable[[SourceError], None],
     pauses: Callable[[], Iterator[float]] = growing_pauses,
 ) -> Iterator[Captured | None]:
     """A source's moments until it ends or ``stop`` is set, across losses of its device.
 
-    None comes while nothing happens, also while a lost source is waited for. ``opened`` is called
-    each time before the first moment, ``lost`` at each loss and each attempt that failed. Raises
-    SourceError when the source cannot be opened the first time, or cannot go on.
+    None comes while nothing happens, also while a source is opened or waited for. ``opened`` is
+    called each time before the first moment, ``lost`` at each loss and each attempt that failed.
+    Raises SourceError when the source cannot be opened the first time, or cannot go on.
     """
-    source: Source | None = open_source()
+    source = yield from _opened(open_source, stop)
     remaining = pauses()
     while source is not None:
         try:
             with _closed_on(stop, source):
-                opened(source.info)
+                opened(source)
                 for captured in source.captures(wanted):
                     if stop.is_set():
                         return
@@ -62,6 +71,7 @@ def _open_again(
     pauses: Iterator[float],
     lost: Callable[[SourceError], None],
 ) -> Generator[None, None, Source | None]:
+    restarts_until = time.monotonic() + RESTARTS_WITHIN_S
     for pause in pauses:
         end = time.monotonic() + pause
         while (rest := end - time.monotonic()) > 0.0:
@@ -69,10 +79,45 @@ def _open_again(
                 return None
             yield None
         try:
-            return open_source()
+            return (yield from _opened(open_source, stop))
+        except SourceAbsentError as error:
+            if time.monotonic() > restarts_until:
+                lost(error)
         except SourceError as error:
             lost(error)
     return None
+
+
+def _opened(
+    open_source: Callable[[], Source], stop: threading.Event
+) -> Generator[None, None, Source | None]:
+    """Open a source in a thread of its own, since a camera takes seconds; None when stopped.
+
+    What is opened after the stop is closed at once.
+    """
+    opening: Future[Source] = Future()
+
+    def run() -> None:
+        try:
+            opening.set_result(open_source())
+        except BaseException as error:  # noqa: BLE001 - it is raised again where it is waited for
+            opening.set_exception(error)
+
+    threading.Thread(target=run, name="open-source", daemon=True).start()
+    quiet_since = time.monotonic()
+    while not wait([opening], STOP_POLL_S).done:
+        if stop.is_set():
+            opening.add_done_callback(_close)
+            return None
+        if time.monotonic() - quiet_since > QUIET_S:
+            yield None
+            quiet_since = time.monotonic()
+    return opening.result()
+
+
+def _close(opening: Future[Source]) -> None:
+    if opening.exception() is None:
+        opening.result().close()
 
 
 @contextlib.contextmanager

@@ -12,12 +12,12 @@ from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.settings import Section, Settings
 from inhand_runtime.source import Captured, Source, SourceError, require_source, source_factory
-from inhand_schemas.messages import CameraInfo
 from inhand_schemas.topics import SKELETONS
 from pydantic import AfterValidator, Field, model_validator
 
 from inhand_capture.publishing import CameraPublisher
 from inhand_capture.reopening import captures
+from inhand_capture.watching import WatchedSource
 
 if TYPE_CHECKING:  # what estimates skeletons is loaded only where they are estimated
     from inhand_capture.estimation.stage import SkeletonStage
@@ -28,8 +28,9 @@ READER_POLL_S = 0.01
 READER_SETTLES_S = 0.25
 
 NO_CAMERA = (
-    'no camera is configured: write [capture.front] with source = "simulator", which needs none, '
-    'or source = "replay" and the recording as options.file'
+    'no camera is configured: write [capture.front] with source = "oak" for a camera that '
+    '`inhand capture --list` shows, source = "simulator", which needs none, or source = "replay" '
+    "and the recording as options.file"
 )
 
 
@@ -132,29 +133,27 @@ def _publish(
     stage: "SkeletonStage | None",
 ) -> None:
     camera = CameraPublisher(daemon, daemon.instance)
+    watched = WatchedSource(chosen.source, daemon.health)
 
     def wanted() -> bool:
         return camera.wants_pixels() or (stage is not None and camera.wants_skeletons())
 
-    def opened(info: CameraInfo) -> None:
+    def opened(source: Source) -> None:
         if stage is not None:
-            stage.introduce(info)
-        camera.introduce(info)
+            stage.introduce(source.info)
+        camera.introduce(source.info)
+        watched.opened(source)
         _wait_for_readers(camera, chosen.wait_for_reader_s, daemon)
 
-    def lost(error: SourceError) -> None:
-        daemon.health.state = "running"
-        daemon.health.trouble("source", f"source {chosen.source}: {error}")
-
-    for captured in captures(open_source, wanted, daemon.stop, opened=opened, lost=lost):
+    for captured in captures(open_source, wanted, daemon.stop, opened=opened, lost=watched.lost):
         daemon.health.came_round()
+        watched.look()
         if captured is not None:
             if stage is None:
                 camera.publish(captured)
             else:
                 _publish_to_estimate(camera, captured, stage)
-            daemon.health.state = "running"
-            daemon.health.well("source")
+            watched.captured()
             daemon.health.latency(captured.time_ns)
     if not daemon.stop.is_set():
         log.info("source %s has come to its end", chosen.source)

@@ -3,6 +3,7 @@
 EXTRAS = {
     "lab": ("faiss", "matplotlib", "scipy", "sklearn", "trimesh"),
     "pose": ("ai_edge_litert",),
+    "oak": ("depthai",),
 }
 """Names of the modules that come with each extra of ours (pyproject.toml) and not without it."""
 

@@ -6,6 +6,9 @@ A source is made by calling the entry point with the free-form table that the us
 So that what can be known is checked before a start, a source's class may have ``options_model``,
 a ``Section`` that checks that table (paths in it are ``FilePath``), and ``check_options``, called
 with the table as checked: it raises SourceError for what can never work, and opens no device.
+
+A source that knows how its device is may have ``troubles()``, which gives by name what is wrong
+though moments come. Capture asks once a second, and shows it in its health.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -38,6 +41,10 @@ class SourceError(Exception):
 
 class SourceLostError(SourceError):
     """A device that went away and may come back: capture opens the source again."""
+
+
+class SourceAbsentError(SourceLostError):
+    """A device that is not there, or not free: for seconds after a loss it is only restarting."""
 
 
 @dataclass(frozen=True)
