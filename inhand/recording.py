@@ -54,9 +54,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_skeleton_arguments(action: argparse.ArgumentParser) -> None:
     action.add_argument(
         "--network",
-        choices=NETWORKS,
+        type=lambda text: text if text in NETWORKS else Path(text),
         default=NETWORKS[0],
-        help=f"what finds people (default: {NETWORKS[0]})",
+        help=f"what finds people: {', '.join(NETWORKS)}, or an ONNX file (default: {NETWORKS[0]})",
     )
     action.add_argument(
         "--replace", action="store_true", help="in place of the skeletons that it has"

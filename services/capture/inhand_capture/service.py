@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError, SettingsError
-from inhand_runtime.settings import Section, Settings
+from inhand_runtime.settings import FilePath, Section, Settings
 from inhand_runtime.source import Captured, Source, SourceError, require_source, source_factory
 from inhand_schemas.topics import SKELETONS
 from pydantic import AfterValidator, Field, model_validator
@@ -54,7 +54,7 @@ class CaptureSettings(Section):
     options: dict[str, Any] = {}
     wait_for_reader_s: Annotated[float, Field(ge=0, le=3600)] = 2.0
     skeletons: Literal["source", "estimated"] = "source"
-    network: Literal["lite", "full", "heavy"] = "lite"
+    network: Literal["lite", "full", "heavy"] | FilePath = "lite"
 
     @model_validator(mode="before")
     @classmethod
@@ -89,7 +89,7 @@ def check(settings: Settings[CaptureSettings]) -> Mapping[str, Any]:
         try:
             require_network(chosen.network)
         except SettingsError as error:
-            raise origin.refusal("skeletons", str(error)) from None
+            raise origin.refusal("network", str(error)) from None
     return options
 
 

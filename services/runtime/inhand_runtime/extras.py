@@ -4,6 +4,7 @@ EXTRAS = {
     "lab": ("faiss", "matplotlib", "scipy", "sklearn", "trimesh"),
     "pose": ("ai_edge_litert",),
     "oak": ("depthai",),
+    "onnx": ("onnxruntime",),
 }
 """Names of the modules that come with each extra of ours (pyproject.toml) and not without it."""
 

@@ -30,6 +30,7 @@ def as_kinect(seen: Floats, states: States, parameters: LiftingParameters) -> tu
         derived[joint] = INFERRED
     trunk = float(np.linalg.norm(up))
     forwards = _forwards(seen, up)
+    joints[Joint.HEAD] += parameters.head_above * up
     for side in ("LEFT", "RIGHT"):
         shoulder, elbow, wrist, hand = (
             Joint[f"{name}_{side}"] for name in ("SHOULDER", "ELBOW", "WRIST", "HAND")
@@ -38,6 +39,7 @@ def as_kinect(seen: Floats, states: States, parameters: LiftingParameters) -> tu
         joints[shoulder] = shoulders + parameters.shoulders_aside * (seen[shoulder] - shoulders)
         joints[elbow] += parameters.elbow_along * (seen[elbow] - seen[shoulder])
         joints[ankle] += parameters.ankle_along * (seen[ankle] - seen[knee])
+        joints[foot] += parameters.foot_above * (seen[knee] - seen[ankle])
         if np.isnan(seen[hand, 0]) and states[wrist]:
             forearm = _unit(seen[wrist] - seen[elbow])
             joints[hand], derived[hand] = seen[wrist] + parameters.hand * trunk * forearm, INFERRED

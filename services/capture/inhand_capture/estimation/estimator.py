@@ -2,6 +2,7 @@
 
 import numpy as np
 from inhand_runtime.errors import InhandError
+from inhand_schemas.joints import PARENTS
 from inhand_schemas.messages import CameraInfo, JointState, Person
 from numpy.typing import NDArray
 
@@ -99,6 +100,7 @@ def person_message(number: int, joints: Floats, lifted: Lifted, visibilities: Fl
     """Make the message of one person's joints (20, 3) in space."""
     seen = visibilities.copy()
     seen[list(DERIVED)] = visibilities[list(TRUNK_ENDS)].min()
+    seen = np.where(seen > 0.0, seen, seen[list(PARENTS)])
     confidences = np.where(lifted.states == TRACKED, seen, 0.5 * seen)
     confidences = np.clip(np.where(lifted.states > 0, confidences, 0.0), 0.0, 1.0)
     return Person(

@@ -1,29 +1,60 @@
-"""Opens a pose network by its name in the settings."""
+"""Opens a pose network by its name, or by its file."""
 
 from importlib.util import find_spec
+from pathlib import Path
 
 from inhand_runtime.errors import SettingsError
 
 from inhand_capture.estimation.blazepose import BlazePose
+from inhand_capture.estimation.coco import CocoNetwork
 from inhand_capture.estimation.found_person import PoseNetwork
-from inhand_capture.estimation.weights import files_of, models_folder, require_weights
+from inhand_capture.estimation.weights import (
+    LANDMARKS,
+    WeightsError,
+    files_of,
+    models_folder,
+    require_weights,
+)
+
+SUFFIX = ".onnx"
 
 
-def require_network(name: str) -> None:
+def require_network(network: str | Path) -> None:
     """Check, without loading it, that a network can be opened.
 
-    Raises WeightsError where its weights are not there or not right, and SettingsError where what
-    runs it is not installed.
+    ``network`` is a name in ``LANDMARKS``, or an ONNX file. Raises WeightsError where its weights
+    are not there or not right, and SettingsError where what runs it is not installed, or where it
+    is neither.
     """
-    if find_spec("ai_edge_litert") is None:
-        raise SettingsError(
-            "skeletons from images need the extra 'pose': pip install \"inhand[pose]\""
-        )
-    for weights in files_of(name):
+    if isinstance(network, Path):
+        _require_file(network)
+        _require_installed("onnxruntime", "onnx")
+        return
+    _require_installed("ai_edge_litert", "pose")
+    for weights in files_of(network):
         require_weights(weights, models_folder())
 
 
-def open_network(name: str) -> PoseNetwork:
-    """Load a network; raises what ``require_network`` does."""
-    require_network(name)
-    return BlazePose(name, models_folder())
+def open_network(network: str | Path) -> PoseNetwork:
+    """Load a network; raises what ``require_network`` does, and WeightsError for a file that is
+    another network."""
+    require_network(network)
+    if isinstance(network, Path):
+        return CocoNetwork(network)
+    return BlazePose(network, models_folder())
+
+
+def _require_file(path: Path) -> None:
+    if path.suffix != SUFFIX:
+        raise SettingsError(
+            f"{str(path)!r} is no network: name one of {', '.join(LANDMARKS)}, or a file {SUFFIX}"
+        )
+    if not path.is_file():
+        raise WeightsError(f"there is no network at {path}: check the path")
+
+
+def _require_installed(module: str, extra: str) -> None:
+    if find_spec(module) is None:
+        raise SettingsError(
+            f'skeletons from images need the extra {extra!r}: pip install "inhand[{extra}]"'
+        )

@@ -38,6 +38,21 @@ DEFAULT_BLAZEPOSE = BlazePoseParameters()
 
 
 @dataclass(frozen=True)
+class CocoParameters:
+    """Decides whom of a network of COCO's key points is believed."""
+
+    person_score: float = 0.5
+    """Score from which a candidate is a person."""
+    same_person: float = 0.6
+    """Shared over joint area of two boxes from which they are one person found twice."""
+    most_people: int = 10
+    """Number of people that are taken at the most, the surest first."""
+
+
+DEFAULT_COCO = CocoParameters()
+
+
+@dataclass(frozen=True)
 class LiftingParameters:
     """Decides how joints in a picture get their places in space.
 
@@ -49,7 +64,7 @@ class LiftingParameters:
     window: float = 1.0
     """Radius of the disc in which a joint's depth is read, in radii of its limb."""
     smallest_window: float = 2.0
-    largest_window: float = 12.0
+    largest_window: float = 20.0
     """Bounds of that radius, pixels."""
     gap: float = 0.02
     """Gap between two surfaces' depths in a window, as a share of their distance."""
@@ -85,7 +100,7 @@ class LiftingParameters:
     elbow_radius_m: float = 0.04
     wrist_radius_m: float = 0.03
     hand_radius_m: float = 0.033
-    hip_radius_m: float = 0.105
+    hip_radius_m: float = 0.095
     knee_radius_m: float = 0.05
     ankle_radius_m: float = 0.05
     foot_radius_m: float = 0.03
@@ -120,6 +135,10 @@ class LiftingParameters:
     """Way of the elbow beyond the network's, in its upper arms."""
     ankle_along: float = 0.04
     """Way of the ankle beyond the network's, in its shanks."""
+    head_above: float = 0.035
+    """Way of the head's middle above that of the ears, in trunks."""
+    foot_above: float = 0.045
+    """Way of the foot above its tip, in shanks and along them."""
 
 
 DEFAULT_LIFTING = LiftingParameters()
