@@ -305,7 +305,7 @@ def test_one_sequence_is_too_few() -> None:
 def test_a_sequence_without_two_usable_frames_is_refused_by_name(usable: int) -> None:
     holed = sequence("anna", 6)
     holed.joints[usable:, 7] = np.nan
-    with pytest.raises(UnusableSequenceError, match=f"'anna' has {usable} frames"):
+    with pytest.raises(UnusableSequenceError, match=f"'anna' has {usable} frame"):
         learn([holed, sequence("p1", 5)], NORMAL)
 
 

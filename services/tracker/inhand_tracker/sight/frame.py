@@ -65,11 +65,10 @@ def prepare(
     first asked for.
     """
     camera, colour, depth = image.camera, image.colour, image.depth
-    if colour is not None:
-        camera = camera.scaled_to(colour.shape[1], colour.shape[0])
-    elif depth is not None:
-        camera = camera.scaled_to(depth.shape[1], depth.shape[0])
-    size = (camera.width, camera.height)
+    given = colour if colour is not None else depth
+    size = (camera.width, camera.height) if given is None else given.shape[1::-1]
+    if size != (camera.width, camera.height):
+        camera = camera.scaled_to(*size)
     if depth is not None and depth.shape[::-1] != size:
         depth = np.asarray(cv2.resize(depth, size, interpolation=cv2.INTER_NEAREST), np.float32)
     if region is not None:

@@ -42,7 +42,7 @@ class FusionParameters:
     """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
 
     # How an image is searched (search, posterior).
-    hypotheses: int = 150
+    hypotheses: int = 120
     """Number of hypotheses; cost grows with it (`inhand bench tracker`)."""
     fewest_hypotheses: int = 25
     """Number of hypotheses that are tried with however little effort."""
@@ -50,6 +50,8 @@ class FusionParameters:
     """Whether the best hypotheses are refined. False only to show what that is worth."""
     refined_hypotheses: int = 1
     """Number of hypotheses, best first, that are refined, beside the mean of each part believed."""
+    least_refined_weight: float = 0.02
+    """Weight of a part of the belief below which its mean is not refined."""
     image_temper: float = 0.4
     """Share of an image's log-likelihood that counts: one frame's errors are the next one's too."""
     refinement_temper: float = 0.1

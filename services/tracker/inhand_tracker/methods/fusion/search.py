@@ -114,14 +114,15 @@ class ImageSearch:
     def _starts(
         self, posterior: ImagePosterior, centres: Array, orientations: Array, scores: Array
     ) -> tuple[Array, Array]:
-        """Poses (S, 3), (S, 4) to refine: the mean of each part believed, and the likeliest of
+        """Poses (S, 3), (S, 4) to refine: the means of parts that are believed, and the likeliest of
         hypotheses (P, 3), (P, 4) by their scores (P,)."""
         means, turns = posterior.belief.means
+        believed = posterior.belief.weights >= posterior.parameters.least_refined_weight
         count = posterior.parameters.refined_hypotheses
         likeliest = np.argpartition(scores, -count)[-count:]
         return (
-            np.concatenate((means, centres[likeliest])),
-            np.concatenate((turns, orientations[likeliest])),
+            np.concatenate((means[believed], centres[likeliest])),
+            np.concatenate((turns[believed], orientations[likeliest])),
         )
 
     def _learn_colours(self, pose: PoseGaussian, frame: SightFrame, *, of_object: float) -> None:
