@@ -114,8 +114,8 @@ class ImageSearch:
     def _starts(
         self, posterior: ImagePosterior, centres: Array, orientations: Array, scores: Array
     ) -> tuple[Array, Array]:
-        """Poses (S, 3), (S, 4) to refine: the means of parts that are believed, and the likeliest of
-        hypotheses (P, 3), (P, 4) by their scores (P,)."""
+        """Poses (S, 3), (S, 4) to refine: the means of parts that are believed, and the likeliest
+        of hypotheses (P, 3), (P, 4) by their scores (P,)."""
         means, turns = posterior.belief.means
         believed = posterior.belief.weights >= posterior.parameters.least_refined_weight
         count = posterior.parameters.refined_hypotheses
