@@ -5,18 +5,23 @@ BIN := $(VENV)/bin
 CONTRIB := .venv-contrib
 ON_ALL_CORES := --numprocesses auto --dist loadgroup --no-loadscope-reorder
 
-.PHONY: help setup contrib demo test test-fast lint format clean
+.PHONY: help setup contrib demo demo-camera test test-fast lint format clean
 
 help:
-	@echo "make demo       from nothing to tracked, recorded object poses on this machine"
-	@echo "make test       every test, as CI runs them"
-	@echo "make test-fast  the tests without the long ones"
-	@echo "make lint       ruff, mypy and the import rules"
-	@echo "make contrib    OpenCV's contrib build in $(CONTRIB), for inhand recognise --contrib"
-	@echo "make setup      all that development needs, in $(VENV)"
+	@echo "make demo         from nothing to tracked, recorded object poses on this machine"
+	@echo "make demo-camera  the same as with a real camera: the person is found in the pictures"
+	@echo "make test         every test, as CI runs them"
+	@echo "make test-fast    the tests without the long ones"
+	@echo "make lint         ruff, mypy and the import rules"
+	@echo "make contrib      OpenCV's contrib build in $(CONTRIB), for inhand recognise --contrib"
+	@echo "make setup        all that development needs, in $(VENV)"
 
 demo: $(VENV)/run.stamp
 	$(BIN)/inhand demo
+
+demo-camera: $(VENV)/pose.stamp
+	$(BIN)/inhand models fetch
+	$(BIN)/inhand demo --camera-like
 
 test: setup
 	$(BIN)/pytest $(ON_ALL_CORES)
@@ -41,6 +46,10 @@ $(VENV)/run.stamp: pyproject.toml constraints.txt
 		{ echo "Inhand needs Python 3.11 or newer: make $(MAKECMDGOALS) PYTHON=python3.11"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[lab]'
+	@touch $@
+
+$(VENV)/pose.stamp: $(VENV)/run.stamp
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[lab,pose]'
 	@touch $@
 
 $(VENV)/dev.stamp: $(VENV)/run.stamp

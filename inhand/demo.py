@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from inhand_capture.estimation.networks import require_network
+from inhand_capture.estimation.weights import DEFAULT_NETWORK
 from inhand_lab.demonstration.parameters import DEFAULT_DEMONSTRATION
 from inhand_lab.demonstration.preparation import train_demonstration, write_rig_file
 from inhand_lab.demonstration.review import Review, review
@@ -42,6 +44,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seconds", type=float, default=DEFAULT_SECONDS, metavar="S", help="how long to track"
     )
+    parser.add_argument(
+        "--camera-like",
+        action="store_true",
+        help="as with a real camera: find the person in the pictures (`inhand models fetch` first)",
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
     parser.add_argument(
         "--folder", type=Path, default=Path("demo"), metavar="DIR", help="where to keep everything"
@@ -52,6 +59,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Exit code 1 when a frame was lost or the error is beyond the bound."""
     if not 1 <= arguments.seconds <= 3600:
         raise SettingsError("--seconds is 1 to 3600")
+    if arguments.camera_like:
+        require_network(DEFAULT_NETWORK)
     began = time.monotonic()
     console = Console()
     folder = arguments.folder / time.strftime("%Y%m%d_%H%M%S")
@@ -60,7 +69,12 @@ def run(arguments: argparse.Namespace) -> int:
         "simulating people to learn from", DEFAULT_DEMONSTRATION.trained_participants
     ) as advance:
         model, model_path = train_demonstration(folder, arguments.interaction, advance)
-    config = write_rig_file(folder.resolve(), arguments.interaction, model_path.resolve())
+    config = write_rig_file(
+        folder.resolve(),
+        arguments.interaction,
+        model_path.resolve(),
+        "estimated" if arguments.camera_like else "source",
+    )
     _run_rig(config, arguments.seconds)
     recording = _only_recording(folder / "recordings")
     seen = review(recording, model.shape.name, model.shape.marked_vertices)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fetched_weights import use_weights
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, load_dataset
 from inhand_lab.datasets.observations import observe
 from inhand_lab.datasets.recorded_frames import load_frames
@@ -168,6 +169,20 @@ def test_the_demonstration_tracks_a_stranger_and_loses_nothing(tmp_path: Path) -
     assert told["vertex_error_cm"] < 12.0
     assert Path(told["picture"]).stat().st_size > 10_000
     assert verify_recording(Path(told["recording"])) == []
+
+
+@pytest.mark.long
+def test_the_demonstration_finds_the_person_in_the_pictures_as_with_a_camera(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    use_weights(monkeypatch, "lite")
+    result = tmp_path / "demo.json"
+    arguments = ["--camera-like", "--folder", str(tmp_path / "demo"), "--json", str(result)]
+    assert main(["demo", *arguments]) == 0
+    told = json.loads(result.read_text())
+    assert all(topic["lost"] == 0 for topic in told["topics"].values())
+    assert 60 < told["topics"]["skeletons"]["published"] <= told["topics"]["rgbd"]["published"]
+    assert told["vertex_error_cm"] < 12.0
 
 
 def test_a_damaged_model_is_one_line_and_nothing_starts(

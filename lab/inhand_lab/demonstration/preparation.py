@@ -33,8 +33,9 @@ def train_demonstration(
     return model, path
 
 
-def write_rig_file(folder: Path, interaction: str, model: Path) -> Path:
-    """Write the settings of a rig with a simulated camera, on a free port of this machine."""
+def write_rig_file(folder: Path, interaction: str, model: Path, skeletons: str = "source") -> Path:
+    """Write the settings of a rig with a simulated camera, on a free port of this machine; its
+    ``skeletons`` are the source's, or estimated from its pictures."""
     path = folder / "rig.toml"
     lines = [
         'rig = "demo"',
@@ -44,6 +45,7 @@ def write_rig_file(folder: Path, interaction: str, model: Path) -> Path:
         'level = "warning"',
         "[capture.camera]",
         'source = "simulator"',
+        f'skeletons = "{skeletons}"',
         "wait_for_reader_s = 30",
         "[capture.camera.options]",
         f'interaction = "{interaction}"',

@@ -7,6 +7,7 @@ import pytest
 from inhand_capture.estimation.body_lengths import BodyLengths
 from inhand_capture.estimation.found_person import FoundPerson
 from inhand_capture.estimation.lifting import DepthPicture, Lifted, Lifter, lens_of
+from inhand_capture.estimation.limbs import LIMBS, TRUNK_ENDS
 from inhand_schemas.joints import Joint
 from numpy.typing import NDArray
 from posed_person import (
@@ -105,6 +106,20 @@ def test_the_trunk_s_joints_and_what_a_network_lacks_are_derived_and_inferred() 
     assert np.isfinite(found.joints).all()
     assert np.linalg.norm(found.joints[lacking] - truth[lacking], axis=1).max() < 0.12
     assert found.joints[Joint.SPINE, 1] < found.joints[Joint.HIP_CENTER, 1]
+
+
+def test_a_network_that_knows_the_trunk_alone_gives_no_limbs_and_a_derived_head() -> None:
+    truth = standing()
+    person = seen(truth, depths=False)
+    trunk = np.isin(np.arange(20), TRUNK_ENDS)
+    alone = np.where(trunk[:, None], person.pixels, np.nan)
+    found = lifted(replace(person, pixels=alone, visibilities=trunk.astype(float)), picture(truth))
+    assert found is not None
+    assert found.states[Joint.HEAD] == 1
+    assert np.linalg.norm(found.joints[Joint.HEAD] - truth[Joint.HEAD]) < 0.12
+    limbs = [joint for limb in LIMBS for joint in limb[1:]]
+    assert (found.states[limbs] == 0).all()
+    assert np.isnan(found.joints[limbs]).all()
 
 
 def test_ends_of_limbs_out_of_the_picture_are_missing() -> None:

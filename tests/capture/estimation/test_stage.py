@@ -13,6 +13,7 @@ from inhand_runtime.health import HealthBoard
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_runtime.source import Pixels
 from inhand_schemas.messages import Skeletons
+from msgspec import structs
 from numpy.typing import NDArray
 from posed_person import INFO, depth_of, seen, standing
 
@@ -115,6 +116,19 @@ def test_a_fault_of_the_program_ends_capture_and_is_not_swallowed(running: Stage
 
     with pytest.raises(InhandError, match="failed: something that nobody thought of"):
         offered_for_ever()
+
+
+def test_a_camera_that_comes_back_as_it_was_keeps_people_s_ids(running: Stage) -> None:
+    running.network.may.release(10)
+    running.stage.offer(0, 1_000_000_000, PIXELS)
+    running.came.acquire()
+    running.stage.introduce(structs.replace(INFO, sequence=3, time_ns=4))
+    running.stage.offer(1, 1_500_000_000, PIXELS)
+    running.came.acquire()
+    running.stage.introduce(structs.replace(INFO, fx=500.0, fy=500.0))
+    running.stage.offer(2, 9_000_000_000, PIXELS)
+    running.came.acquire()
+    assert [person.id for one in running.sent for person in one.people] == [0, 0, 0]
 
 
 def test_a_stage_ends_while_a_frame_waits() -> None:

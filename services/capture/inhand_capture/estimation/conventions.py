@@ -31,6 +31,8 @@ def as_kinect(seen: Floats, states: States, parameters: LiftingParameters) -> tu
     trunk = float(np.linalg.norm(up))
     forwards = _forwards(seen, up)
     joints[Joint.HEAD] += parameters.head_above * up
+    if np.isnan(seen[Joint.HEAD, 0]):
+        joints[Joint.HEAD], derived[Joint.HEAD] = hips + parameters.head * up, INFERRED
     for side in ("LEFT", "RIGHT"):
         shoulder, elbow, wrist, hand = (
             Joint[f"{name}_{side}"] for name in ("SHOULDER", "ELBOW", "WRIST", "HAND")

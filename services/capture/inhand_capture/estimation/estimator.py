@@ -1,5 +1,7 @@
 """Skeletons of the people in pictures with depth, one picture after the other."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from inhand_runtime.errors import InhandError
 from inhand_schemas.joints import PARENTS
@@ -9,9 +11,9 @@ from numpy.typing import NDArray
 from inhand_capture.estimation.body_lengths import BodyLengths
 from inhand_capture.estimation.found_person import Floats, FoundPerson, PoseNetwork
 from inhand_capture.estimation.kernels.depth_choice import TRACKED
-from inhand_capture.estimation.lifting import DepthPicture, Lens, Lifted, Lifter, lens_of
-from inhand_capture.estimation.limbs import DERIVED, TRUNK_ENDS
-from inhand_capture.estimation.parameters import DEFAULT_FOLLOWING, FollowingParameters
+from inhand_capture.estimation.lifting import DepthPicture, Lens, Lifted, Lifter, Surfaces, lens_of
+from inhand_capture.estimation.limbs import DERIVED, HANDS_AND_FEET, TRUNK_ENDS
+from inhand_capture.estimation.parameters import DEFAULT_FOLLOWING
 from inhand_capture.estimation.people import FollowedPerson, PeopleFollowed
 
 JOINT_STATES: tuple[JointState, ...] = ("missing", "inferred", "tracked")
@@ -28,18 +30,12 @@ class EstimationError(InhandError):
 class SkeletonEstimator:
     """Estimates skeletons of one camera: a network's joints, lifted, followed and smoothed."""
 
-    def __init__(
-        self,
-        network: PoseNetwork,
-        info: CameraInfo,
-        parameters: FollowingParameters = DEFAULT_FOLLOWING,
-    ) -> None:
+    def __init__(self, network: PoseNetwork, info: CameraInfo) -> None:
         self._network = network
         self._info = info
-        self._parameters = parameters
-        self._people = PeopleFollowed(parameters)
-        self._lifter: Lifter | None = None
-        self._size = (0, 0)
+        self._people = PeopleFollowed()
+        self._lifter = Lifter(lens_of(info, info.width, info.height))
+        self._size = (info.width, info.height)
         compile_lifting(lens_of(info, info.width, info.height))
 
     def estimate(
@@ -55,35 +51,51 @@ class SkeletonEstimator:
                 f"no skeletons without {what}: the camera gives none; turn its {what} on"
             )
         lifter = self._lifter_for(colour)
-        picture = DepthPicture(depth, self._info.depth_scale)
+        # Of what cannot be written, or has gaps, the compiled code would have to be compiled again.
+        picture = DepthPicture(np.require(depth, np.uint16, ["C", "W"]), self._info.depth_scale)
         found = [(one, lifter.read(one, picture)) for one in self._network.find(colour)]
-        near = [(one, surfaces) for one, surfaces in found if surfaces is not None]
-        matched = self._people.match([surfaces.middle for _, surfaces in near], time_ns)
-        people = []
-        for (one, surfaces), known in zip(near, matched, strict=True):
-            person = known or FollowedPerson(surfaces.middle, time_ns)
-            seconds = (time_ns - person.seen_ns) / 1e9
-            kept = person.sides.kept(one, seconds)
-            if kept is not one:
-                surfaces = lifter.read(kept, picture) or surfaces
-            lifted = lifter.lift(kept, surfaces, person.body, self._joints_before(person, seconds))
-            if lifted is not None:
-                number = self._people.see(person, surfaces.middle, lifted, time_ns)
-                joints = person.filter.smooth(lifted.joints, max(seconds, SHORTEST_S))
-                people.append(person_message(number, joints, lifted, kept.visibilities))
-        return tuple(people[:MOST_PEOPLE])
+        near = [_Seen(one, surfaces, picture) for one, surfaces in found if surfaces is not None]
+        matched = self._people.match([seen.surfaces.middle for seen in near], time_ns)
+        people = [
+            self._follow(seen, known or FollowedPerson(seen.surfaces.middle, time_ns), time_ns)
+            for seen, known in zip(near, matched, strict=True)
+        ]
+        return tuple(person for person in people if person is not None)[:MOST_PEOPLE]
+
+    def _follow(self, seen: "_Seen", person: FollowedPerson, time_ns: int) -> Person | None:
+        """Lift somebody by what is remembered of them; None for what is no person."""
+        seconds = (time_ns - person.seen_ns) / 1e9
+        kept, surfaces = person.sides.kept(seen.person, seconds), seen.surfaces
+        if kept is not seen.person:
+            surfaces = self._lifter.read(kept, seen.picture) or surfaces
+        lifted = self._lifter.lift(kept, surfaces, person.body, _joints_before(person, seconds))
+        if lifted is None:
+            return None
+        number = self._people.see(person, surfaces.middle, lifted, time_ns)
+        joints = person.filter.smooth(lifted.joints, max(seconds, SHORTEST_S))
+        return person_message(number, joints, lifted, kept.visibilities)
 
     def _lifter_for(self, colour: NDArray[np.uint8]) -> Lifter:
         height, width = colour.shape[:2]
-        if self._lifter is None or self._size != (width, height):
+        if self._size != (width, height):
             self._lifter = Lifter(lens_of(self._info, width, height))
             self._size = (width, height)
         return self._lifter
 
-    def _joints_before(self, person: FollowedPerson, seconds: float) -> Floats:
-        """Return the network's joints (20, 3) so many seconds before; NaN where that is long."""
-        recent = 0.0 < seconds <= self._parameters.remembered_s
-        return person.seen if recent else np.full_like(person.seen, np.nan)
+
+@dataclass(frozen=True)
+class _Seen:
+    """Somebody whom the network found, and what lies about their joints in the depth."""
+
+    person: FoundPerson
+    surfaces: Surfaces
+    picture: DepthPicture
+
+
+def _joints_before(person: FollowedPerson, seconds: float) -> Floats:
+    """Return the network's joints (20, 3) so many seconds before; NaN where that is long."""
+    recent = 0.0 < seconds <= DEFAULT_FOLLOWING.remembered_s
+    return person.seen if recent else np.full_like(person.seen, np.nan)
 
 
 def compile_lifting(lens: Lens) -> None:
@@ -100,7 +112,8 @@ def person_message(number: int, joints: Floats, lifted: Lifted, visibilities: Fl
     """Make the message of one person's joints (20, 3) in space."""
     seen = visibilities.copy()
     seen[list(DERIVED)] = visibilities[list(TRUNK_ENDS)].min()
-    seen = np.where(seen > 0.0, seen, seen[list(PARENTS)])
+    for joint in HANDS_AND_FEET:
+        seen[joint] = seen[joint] or seen[PARENTS[joint]]  # as sure as what it is derived from
     confidences = np.where(lifted.states == TRACKED, seen, 0.5 * seen)
     confidences = np.clip(np.where(lifted.states > 0, confidences, 0.0), 0.0, 1.0)
     return Person(

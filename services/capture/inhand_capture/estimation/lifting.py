@@ -156,6 +156,8 @@ class Lifter:
 
         behind_middle = np.nan_to_num(person.depths)
         for joint in (*TRUNK_ENDS, Joint.HEAD):
+            if np.isnan(rays[joint, 0]):
+                continue
             chain = np.array([Joint.HIP_CENTER, joint])
             choose(chain, surfaces.middle, behind_middle, _UNKNOWN)
         trunk = body.trunk if np.isfinite(body.trunk) else trunk_length(seen)
@@ -164,7 +166,8 @@ class Lifter:
         expected = np.where(np.isfinite(body.lengths), body.lengths, trunk * self._usual)
         for limb in LIMBS:
             known = limb[np.isfinite(rays[limb, 0])]
-            choose(known, seen[limb[0]], person.depths, expected)
+            if len(known) > 1:
+                choose(known, seen[limb[0]], person.depths, expected)
         self._doubt(person, states)
         joints, kinects = as_kinect(seen, states, self._parameters)
         joints[kinects == 0] = np.nan

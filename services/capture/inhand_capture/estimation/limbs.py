@@ -15,3 +15,5 @@ LIMBS = tuple(
     for names in (("SHOULDER", "ELBOW", "WRIST", "HAND"), ("HIP", "KNEE", "ANKLE", "FOOT"))
 )
 """Joints of arms and legs, each from the trunk outwards."""
+HANDS_AND_FEET = tuple(Joint(int(limb[-1])) for limb in LIMBS)
+"""The ends of limbs, which some networks do not know."""

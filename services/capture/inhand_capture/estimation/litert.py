@@ -1,6 +1,10 @@
 """Networks of LiteRT: a file of weights, called as a function of arrays."""
 
-from collections.abc import Mapping
+import os
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +14,9 @@ from inhand_runtime.extras import missing_extra
 from numpy.typing import NDArray
 
 from inhand_capture.estimation.weights import WeightsError
+
+STDERR = 2
+"""File descriptor of standard error."""
 
 Tensors = Mapping[str, NDArray[np.float32]]
 
@@ -28,8 +35,9 @@ class LiteRtNetwork:
         except ModuleNotFoundError as error:
             raise SettingsError(f"a network of LiteRT {missing_extra(error) or error}") from None
         try:
-            self._interpreter: Any = Interpreter(str(path), num_threads=1)
-            self._interpreter.allocate_tensors()
+            with _without_chatter():
+                self._interpreter: Any = Interpreter(str(path), num_threads=1)
+                self._interpreter.allocate_tensors()
         except (ValueError, RuntimeError) as error:
             raise WeightsError(f"{path} is no network of LiteRT: {error}") from None
         self._outputs = {
@@ -52,3 +60,27 @@ class LiteRtNetwork:
         return {
             name: self._interpreter.get_tensor(index)[0] for name, index in self._outputs.items()
         }
+
+
+CHATTER = b"INFO: "
+"""Beginning of the lines that LiteRT writes to standard error whatever it is told."""
+
+
+@contextmanager
+def _without_chatter() -> Iterator[None]:
+    """Keep what LiteRT says of itself out of standard error, which may be a log of JSON lines; all
+    else that is written there meanwhile is written after the block."""
+    sys.stderr.flush()
+    with tempfile.TemporaryFile() as meanwhile:
+        usual = os.dup(STDERR)
+        os.dup2(meanwhile.fileno(), STDERR)
+        try:
+            yield
+        finally:
+            sys.stderr.flush()
+            os.dup2(usual, STDERR)
+            os.close(usual)
+            meanwhile.seek(0)
+            for line in meanwhile:
+                if not line.startswith(CHATTER):
+                    os.write(STDERR, line)

@@ -135,6 +135,9 @@ class LiftingParameters:
     """Way of the elbow beyond the network's, in its upper arms."""
     ankle_along: float = 0.04
     """Way of the ankle beyond the network's, in its shanks."""
+    head: float = 1.45
+    """Place of the head on the line from the middle of the hips to that of the shoulders, for
+    networks that know no head."""
     head_above: float = 0.035
     """Way of the head's middle above that of the ears, in trunks."""
     foot_above: float = 0.045

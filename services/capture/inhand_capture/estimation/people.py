@@ -9,7 +9,7 @@ from inhand_capture.estimation.body_lengths import BodyLengths
 from inhand_capture.estimation.found_person import Floats
 from inhand_capture.estimation.lifting import Lifted
 from inhand_capture.estimation.one_euro import OneEuroFilter
-from inhand_capture.estimation.parameters import DEFAULT_FOLLOWING, FollowingParameters
+from inhand_capture.estimation.parameters import DEFAULT_FOLLOWING
 from inhand_capture.estimation.sides import Sides
 
 JOINTS = 20
@@ -34,14 +34,13 @@ class FollowedPerson:
 class PeopleFollowed:
     """Gives people in view ids that last as long as they stay, or come back at once."""
 
-    def __init__(self, parameters: FollowingParameters = DEFAULT_FOLLOWING) -> None:
-        self._parameters = parameters
+    def __init__(self) -> None:
         self._people: list[FollowedPerson] = []
         self._next_id = 0
 
     def match(self, middles: Sequence[Floats], time_ns: int) -> list[FollowedPerson | None]:
         """Return who is at each middle of hips (3,), nearest first; None for somebody new."""
-        forgotten_ns = self._parameters.forgotten_s * 1e9
+        forgotten_ns = DEFAULT_FOLLOWING.forgotten_s * 1e9
         self._people = [one for one in self._people if 0 <= time_ns - one.seen_ns <= forgotten_ns]
         distances = [
             (float(np.linalg.norm(middle - one.middle)), place, one)
@@ -68,6 +67,6 @@ class PeopleFollowed:
         return person.id
 
     def _reach(self, one: FollowedPerson, time_ns: int) -> float:
-        parameters = self._parameters
+        parameters = DEFAULT_FOLLOWING
         way = parameters.speed_m * (time_ns - one.seen_ns) / 1e9
         return min(parameters.reach_m + way, parameters.farthest_m)

@@ -13,6 +13,7 @@ from inhand_runtime.pixels import decode_colour, decode_depth
 from inhand_runtime.source import Pixels
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, Skeletons
+from msgspec import structs
 
 from inhand_capture.estimation.estimator import EstimationError, SkeletonEstimator
 
@@ -49,6 +50,7 @@ class SkeletonStage:
         self._publish = publish
         self._health = health
         self._key = key
+        self._info: CameraInfo | None = None
         self._estimator: SkeletonEstimator | None = None
         self._changed = threading.Condition()
         self._newest: Picture | None = None
@@ -72,8 +74,14 @@ class SkeletonStage:
         self._thread.join()
 
     def introduce(self, info: CameraInfo) -> None:
-        """Take how the camera sees, from now on; whoever was followed is followed no more."""
-        self._estimator = self._new_estimator(info)
+        """Take how the camera sees, from now on.
+
+        Where it sees as before, as after a loss of the device, people keep their ids.
+        """
+        info = structs.replace(info, sequence=0, time_ns=0)
+        if info != self._info:
+            self._info = info
+            self._estimator = self._new_estimator(info)
 
     def offer(self, sequence: int, time_ns: int, pixels: Pixels) -> None:
         """Let skeletons of a frame be estimated, if no newer one comes before.
