@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 SCENES = Path(__file__).parents[1] / "scenes"
-PLUGINS = ("scripted_source.py", "stub_oak_source.py", "stub_oak.py")
+PLUGINS = ("scripted_source.py", "stub_oak_source.py", "stub_oak.py", "secret_source.py")
 
 
 @pytest.fixture
@@ -19,6 +19,7 @@ def plugin_folder(tmp_path: Path) -> Path:
     (metadata / "entry_points.txt").write_text(
         "[inhand.sources]\nscripted = scripted_source:ScriptedSource\n"
         "stub_oak = stub_oak_source:StubOakSource\n"
+        "secret = secret_source:SecretSource\n"
         "unusable = package_that_nobody_has:Source\n"
     )
     for plugin in PLUGINS:

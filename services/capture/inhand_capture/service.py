@@ -17,6 +17,8 @@ from pydantic import AfterValidator, Field, model_validator
 
 from inhand_capture.publishing import CameraPublisher
 from inhand_capture.reopening import captures
+from inhand_capture.view.private_memory import forbid_core_dumps
+from inhand_capture.view.viewed_source import viewed
 from inhand_capture.watching import WatchedSource
 
 if TYPE_CHECKING:  # what estimates skeletons is loaded only where they are estimated
@@ -42,12 +44,28 @@ def _installed(source: str) -> str:
     return source
 
 
+def _corner(corner: tuple[float, float]) -> tuple[float, float]:
+    if not all(0.0 <= share <= 1.0 for share in corner):
+        raise ValueError(
+            f"{list(corner)} is no corner in the picture: write shares of its width and height, "
+            "(0, 0) at its upper left and (1, 1) at its lower right"
+        )
+    return corner
+
+
+Corner = Annotated[tuple[float, float], AfterValidator(_corner)]
+
+
 class CaptureSettings(Section):
     """``[capture.NAME]``: which source publishes as the camera ``NAME``.
 
     ``options`` is the source's own table. The source starts as soon as somebody listens, at the
     latest after ``wait_for_reader_s`` seconds. Its own skeletons are published, or, where they are
     "estimated", those that a ``network`` finds in its pictures.
+
+    ``rotate`` turns a camera's pictures clockwise, by degrees, so that people stand upright in
+    them. ``masks`` are polygons of the turned picture that are burned in before anything leaves
+    the process: lists of corners (x, y) as shares of its width and height.
     """
 
     source: Annotated[str, AfterValidator(_installed)]
@@ -55,6 +73,8 @@ class CaptureSettings(Section):
     wait_for_reader_s: Annotated[float, Field(ge=0, le=3600)] = 2.0
     skeletons: Literal["source", "estimated"] = "source"
     network: Literal["lite", "full", "heavy"] | FilePath = "lite"
+    rotate: Literal[0, 90, 180, 270] = 0
+    masks: tuple[Annotated[tuple[Corner, ...], Field(min_length=3)], ...] = ()
 
     @model_validator(mode="before")
     @classmethod
@@ -96,10 +116,17 @@ def check(settings: Settings[CaptureSettings]) -> Mapping[str, Any]:
 def run(settings: Settings[CaptureSettings]) -> None:
     """Publish until the source ends or a signal comes; raises SettingsError or InhandError."""
     chosen, options = settings.service, check(settings)
+    if chosen.masks:
+        forbid_core_dumps()
+
+    def open_source() -> Source:
+        source = source_factory(chosen.source)(options)
+        return viewed(source, chosen.rotate, chosen.masks)
+
     with running_daemon("capture", settings) as daemon:
         try:
             with _skeleton_stage(daemon, chosen) as stage:
-                _publish(daemon, chosen, lambda: source_factory(chosen.source)(options), stage)
+                _publish(daemon, chosen, open_source, stage)
         except SourceError as error:
             raise InhandError(f"source {chosen.source}: {error}") from error
 

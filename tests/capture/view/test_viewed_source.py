@@ -1,0 +1,119 @@
+"""Nothing of what a mask covers leaves a source."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+from inhand_capture.view.viewed_source import ViewedSource, viewed
+from inhand_runtime.pixels import encode_colour, encode_depth
+from inhand_runtime.source import Captured, Pixels
+from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage
+from msgspec.structs import replace
+from scripted_source import PERSON
+
+WIDTH, HEIGHT = 64, 48
+INFO = CameraInfo(sequence=0, time_ns=0, width=WIDTH, height=HEIGHT, fx=50, fy=50, cx=32, cy=24)
+SECRET = 201
+LEFT_HALF = ((0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (0.0, 1.0))
+"""Of the picture as published."""
+
+
+class Still:
+    """A source of one moment."""
+
+    info = INFO
+
+    def __init__(self, pixels: Pixels) -> None:
+        self.pixels = pixels
+
+    def captures(self, _wanted: Callable[[], bool]) -> Iterator[Captured | None]:
+        yield Captured(1, 0, lambda: self.pixels, (PERSON,))
+        yield None
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+def _secret_in(columns: slice, rows: slice) -> Pixels:
+    colour, depth = np.full((HEIGHT, WIDTH, 3), 30, np.uint8), np.full((24, 32), 900, np.uint16)
+    colour[rows, columns] = SECRET
+    depth[slice(rows.start // 2, rows.stop // 2), slice(columns.start // 2, columns.stop // 2)] = (
+        SECRET
+    )
+    return Pixels(colour, depth)
+
+
+# Where the left half of the turned picture lies in the source's.
+HALVES = {
+    0: (slice(0, 32), slice(0, 48)),
+    90: (slice(0, 64), slice(24, 48)),
+    180: (slice(32, 64), slice(0, 48)),
+    270: (slice(0, 64), slice(0, 24)),
+}
+
+
+def _encoded(pixels: Pixels) -> Pixels:
+    assert isinstance(pixels.colour, np.ndarray)
+    assert isinstance(pixels.depth, np.ndarray)
+    return Pixels(encode_colour(pixels.colour), encode_depth(pixels.depth))
+
+
+@pytest.mark.parametrize("degrees", HALVES)
+@pytest.mark.parametrize("encode", [lambda pixels: pixels, _encoded], ids=["raw", "encoded"])
+def test_no_masked_pixel_leaves_in_colour_or_depth(
+    degrees: int, encode: Callable[[Pixels], Pixels]
+) -> None:
+    secret = _secret_in(*HALVES[degrees])
+    source = viewed(Still(encode(secret)), degrees, [LEFT_HALF])
+    captured = next(iter(source.captures(lambda: True)))
+    assert captured is not None
+    assert captured.pixels is not None
+    seen = captured.pixels()
+    assert isinstance(seen.colour, np.ndarray)
+    assert isinstance(seen.depth, np.ndarray)
+    for picture in (seen.colour, seen.depth):
+        middle = picture.shape[1] // 2
+        assert not picture[:, :middle].any()
+        assert picture[:, -1].all()
+    assert seen.colour.max() < 60, "a trace of the secret's brightness"
+    assert SECRET not in seen.depth
+
+
+def test_the_sources_own_pixels_stay_as_they_are() -> None:
+    secret = _secret_in(*HALVES[0])
+    assert isinstance(secret.colour, np.ndarray)
+    before = secret.colour.copy()
+    captured = next(iter(viewed(Still(secret), 0, [LEFT_HALF]).captures(lambda: True)))
+    assert captured is not None
+    assert captured.pixels is not None
+    captured.pixels()
+    np.testing.assert_array_equal(secret.colour, before)
+
+
+def test_joints_in_a_mask_are_missing() -> None:
+    behind, beside = (-0.5, 0.0, 2.0), (0.5, 0.0, 2.0)
+    person = replace(PERSON, joints=(behind, beside) * 10)
+    still = Still(_secret_in(*HALVES[0]))
+    source = ViewedSource(still, 0, [LEFT_HALF])
+    seen = source._person(person)
+    assert seen.states == ("missing", "tracked") * 10
+    assert seen.joints == ((0.0, 0.0, 0.0), beside) * 10
+
+
+def test_a_picture_that_cannot_be_masked_is_left_out(caplog: pytest.LogCaptureFixture) -> None:
+    damaged = Pixels(ColourImage("jpeg", 64, 48, b"no"), DepthImage("z16-zstd", 64, 48, b"no"))
+    captured = next(iter(viewed(Still(damaged), 0, [LEFT_HALF]).captures(lambda: True)))
+    assert captured is not None
+    assert captured.pixels is not None
+    assert captured.pixels() == captured.pixels() == Pixels(None, None)
+    assert caplog.text.count("cannot be read, and so not be masked") == 1
+
+
+def test_a_source_with_nothing_to_turn_or_to_mask_is_itself() -> None:
+    still = Still(_encoded(_secret_in(*HALVES[0])))
+    assert viewed(still, 0, []) is still
+
+
+def test_a_turned_source_tells_how_the_turned_camera_sees() -> None:
+    info = viewed(Still(_secret_in(*HALVES[0])), 90, []).info
+    assert (info.width, info.height) == (HEIGHT, WIDTH)
