@@ -25,6 +25,8 @@ DAEMONS = {
 VERBS = {
     "demo": "from nothing to tracked, recorded poses on this machine",
     "up": "run every process that the config names, supervised",
+    "shutter": "close or open the cameras' shutters",
+    "control": "change a camera's exposure, focus or light while it runs",
     "replay": "publish a recording again",
     "simulate": "make a labelled dataset of simulated people",
     "import": "make a dataset of real data: utd-mhad, motion, ycb-video, bop",
@@ -37,6 +39,7 @@ VERBS = {
     "topics": "list what a running site publishes",
     "echo": "print messages",
     "rate": "measure rates, gaps and sizes",
+    "doctor": "say what must be mended on this host before a rig runs",
     "status": "list the live instances and their health",
 }
 """Verbs whose module has ``add_arguments(parser)`` and ``run(arguments) -> int``."""

@@ -10,20 +10,27 @@ from typing import Any, TypeVar
 
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.inbox import Inbox, Received
+from inhand_runtime.questions import ask
 from inhand_runtime.session import Session, open_session, subscribe, watch_instances
 from inhand_runtime.settings import load_rig_file
 from inhand_runtime.signals import set_on_signals
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import VERSION, Site, require_name
 from inhand_schemas.messages import Health
+from inhand_schemas.procedures import Procedure
 from inhand_schemas.topics import BULK, HEALTH, TOPICS, AnyTopic, topic_of
+from msgspec import Struct
 from rich.console import Console
 
 N = TypeVar("N", int, float)
+Q = TypeVar("Q", bound=Struct)
+R = TypeVar("R", bound=Struct)
 
 QUEUE_BYTES = 64 << 20
 QUEUE_SAMPLES = 10_000
 IDLE_S = 0.1
+ANSWER_S = 2.0
+"""Seconds in which an instance answers a request."""
 FILE_WIDTH = 200
 OTHER_VERSIONS = tuple(version for version in range(10) if version != VERSION)
 
@@ -79,6 +86,32 @@ class Look:
             if self._stop.is_set():
                 raise KeyboardInterrupt
             yield self._inbox.get(IDLE_S)
+
+    def ask(
+        self,
+        procedure: Procedure[Q, R],
+        request: Q,
+        complete: Callable[[list[R]], bool],
+        seconds: float,
+    ) -> list[R]:
+        """Every reply to a request, asked again until they are complete, or for ``seconds``.
+
+        A process that has just been connected does not hear the first time. Raises InhandError for
+        one that fails.
+        """
+        end = time.monotonic() + seconds
+        replies: list[R] = []
+        while True:
+            replies += [
+                procedure.reply(data)
+                for data in ask(
+                    self._session, procedure.key(self.site), procedure.encode(request), ANSWER_S
+                )
+            ]
+            if complete(replies) or time.monotonic() > end:
+                return replies
+            if self._stop.wait(IDLE_S):
+                raise KeyboardInterrupt
 
     def _skip(self, _key: str) -> None:
         self.skipped += 1

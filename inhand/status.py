@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise nothing_heard(look.site, arguments.seconds)
     if living:
         output().print(_table(living))
-    for line in (*left_unused(living), *late_lines(living)):
+    for line in (*closed_shutters(living), *left_unused(living), *late_lines(living)):
         print(line)
     for line in problems:
         print(f"WRONG: {line}")
@@ -100,7 +100,7 @@ def _table(living: dict[Instance, Heard | None]) -> Table:
         latency = health.latency_ms
         table.add_row(
             " ".join(instance),
-            health.state,
+            "shut" if health.shutter_closed else health.state,
             f"{health.uptime_s:.0f}",
             f"{health.resident_bytes / 1e6:.0f}",
             "" if latency is None else f"{latency.p50:.1f} / {latency.p99:.1f}",
@@ -117,6 +117,16 @@ def _unused(health: Health) -> dict[str, int]:
         for key, topic in health.topics.items()
         if topic.dropped or topic.refused or topic.malformed or topic.lost
     }
+
+
+def closed_shutters(living: dict[Instance, Heard | None]) -> list[str]:
+    """One line for each camera whose shutter is closed."""
+    return [
+        f"{' '.join(instance)}: the shutter is closed: no pictures and no skeletons until "
+        f"`inhand shutter open --camera {instance[1]}`"
+        for instance, heard in living.items()
+        if heard is not None and heard.health.shutter_closed
+    ]
 
 
 def late_lines(living: dict[Instance, Heard | None]) -> list[str]:

@@ -61,6 +61,12 @@ class Site:
         require_name("instance", instance)
         return f"{self._root}/@claim/{service}/{instance}"
 
+    def procedure_key(self, service: str, verb: str) -> str:
+        """The key on which all instances of a service can be asked; raises KeyFormatError."""
+        require_name("service", service)
+        require_name("verb", verb)
+        return f"{self._root}/@rpc/{service}/{verb}"
+
     def pattern_of_version(self, version: int) -> str:
         """All that another version of Inhand publishes for this rig, as a Zenoh key expression."""
         return f"{self.realm}/@v{version}/{self.rig}/*/*"

@@ -273,7 +273,8 @@ class Health(Message, frozen=True, kw_only=True):
     ``troubles`` is what is wrong now, ``last_error`` what went wrong last; ``loop_age_s`` is how
     long ago the instance's main loop last came round, in seconds. ``latency_ms`` is the age of what
     it has just published, or handled. ``effort`` is the share of its usual work that a tracker does
-    in a frame, so that frames do not come faster than they are tracked.
+    in a frame, so that frames do not come faster than they are tracked. While ``shutter_closed``
+    a camera captures nothing, because somebody wants it so; None where there is no shutter.
     """
 
     service: Name
@@ -287,6 +288,7 @@ class Health(Message, frozen=True, kw_only=True):
     troubles: Annotated[tuple[Text, ...], Meta(max_length=64)] = ()
     loop_age_s: NonNegative = 0.0
     effort: Fraction | None = None
+    shutter_closed: bool | None = None
 
     def __post_init__(self) -> None:
         _require_finite("time", (self.uptime_s, self.loop_age_s))

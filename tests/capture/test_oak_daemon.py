@@ -100,3 +100,20 @@ def test_a_camera_that_is_lost_comes_back_and_its_sequence_goes_on(
     assert _healths(health)[-1].state == "running"
     assert "no OAK camera is attached" not in daemon.stderr, "it was only restarting"
     assert daemon.stop() == 0
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("own_data")
+def test_what_was_changed_while_it_ran_survives_a_loss(
+    wire: Wire, rig: RunningRig, plugin_folder: Path, recording: Path
+) -> None:
+    heard = wire.hear(RGBD)
+    daemon = _start(rig, plugin_folder, recording, "play")
+    eventually("frames", lambda: len(heard) > 5)
+    changed = rig.done("control", "front", "exposure_us=8000", "iso=400", "--config", rig.config)
+    assert (changed.popen.returncode, changed.stdout) == (0, "front: done, until it ends\n")
+    daemon.said("changed while it runs: {'exposure_us': 8000, 'iso': 400}")
+    assert rig.done("shutter", "close", "--config", rig.config).popen.returncode == 0
+    assert rig.done("shutter", "open", "--config", rig.config).popen.returncode == 0
+    daemon.said("opened with exposure 8000")
+    assert daemon.stop() == 0

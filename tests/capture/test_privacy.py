@@ -54,12 +54,14 @@ def test_a_masked_pixel_is_in_no_message_log_or_crash_report(
     assert not list(Path.cwd().glob("core*"))
 
 
+@pytest.mark.long
 def test_a_process_with_masks_leaves_no_core_dump(rig: RunningRig) -> None:
     process = rig.python("-c", NO_DUMPS)
     assert process.wait() == 0
     assert process.stdout == "0 0\n"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("masks", "line"),
     [

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 from inhand_capture.reopening import captures, growing_pauses
-from inhand_runtime.source import Captured, SourceError
-from inhand_schemas.messages import CameraInfo
+from inhand_runtime.source import Captured, Source, SourceError
 from scripted_source import FIRST_NS, FRAME_NS, ScriptedSource, Step
 
 
@@ -18,7 +17,7 @@ class Capture:
         ScriptedSource.steps = list(script)
         ScriptedSource.published = 0
         self.stop = threading.Event()
-        self.opened: list[CameraInfo] = []
+        self.opened: list[Source] = []
         self.lost: list[str] = []
         self.pauses: list[int] = []
 
@@ -73,6 +72,65 @@ def test_pauses_double_up_to_ten_seconds() -> None:
 def test_a_source_that_cannot_be_opened_at_first_is_an_error() -> None:
     with pytest.raises(SourceError, match="no scripted camera is connected"):
         Capture("closed", 1).numbers()
+
+
+def test_a_device_that_is_absent_at_first_is_waited_for() -> None:
+    capture = Capture("absent", "absent", 2)
+    assert capture.numbers() == [0, 1]
+    assert capture.lost == ["the scripted camera is not plugged in"]
+
+
+def test_absence_just_after_a_loss_is_a_restart_and_no_new_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for patience_s, told in ((15.0, 0), (-1.0, 2)):
+        monkeypatch.setattr("inhand_capture.reopening.RESTARTS_WITHIN_S", patience_s)
+        capture = Capture(1, "lost", "absent", "absent", 1)
+        assert capture.numbers() == [0, 1]
+        assert capture.lost.count("the scripted camera is not plugged in") == told
+
+
+def test_while_a_source_opens_slowly_there_are_signs_of_life(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("inhand_capture.reopening.QUIET_S", 0.01)
+    monkeypatch.setattr("inhand_capture.reopening.STOP_POLL_S", 0.01)
+    capture = Capture(1)
+    may_open = threading.Event()
+
+    def slowly() -> ScriptedSource:
+        may_open.wait()
+        return ScriptedSource({})
+
+    running = captures(
+        slowly, lambda: True, capture.stop, opened=capture.opened.append, lost=capture.lost.append
+    )
+    assert [next(running), next(running)] == [None, None]
+    may_open.set()
+    assert any(captured is not None for captured in running)
+
+
+def test_what_opens_after_a_stop_is_closed_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("inhand_capture.reopening.ENDS_OPENING_S", 0.01)
+    capture = Capture(1)
+    may_open, closed = threading.Event(), threading.Event()
+
+    class Late(ScriptedSource):
+        def close(self) -> None:
+            closed.set()
+
+    def slowly() -> ScriptedSource:
+        may_open.wait()
+        return Late({})
+
+    capture.stop.set()
+    running = captures(
+        slowly, lambda: True, capture.stop, opened=capture.opened.append, lost=capture.lost.append
+    )
+    assert list(running) == []
+    may_open.set()
+    assert closed.wait(10)
+    assert capture.opened == []
 
 
 def test_a_broken_source_is_an_error() -> None:

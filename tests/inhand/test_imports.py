@@ -24,11 +24,11 @@ except SystemExit:
     pass
 print(json.dumps(sorted(sys.modules)))
 """
-WITHOUT_LAB = f"""
+WITHOUT_EXTRAS = f"""
 import sys
 class NotInstalled:
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in {EXTRAS["lab"]}:
+        if name.partition(".")[0] in {EXTRAS["lab"] + EXTRAS["oak"]}:
             raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
 sys.meta_path.insert(0, NotInstalled())
 """
@@ -80,7 +80,7 @@ def test_a_verb_loads_only_what_it_needs(arguments: list[str], unneeded: tuple[s
     "verb", ["demo", "simulate", "import", "train", "evaluate", "recognise", "bench"]
 )
 def test_a_verb_says_in_one_line_which_extra_it_needs(verb: str) -> None:
-    done = _run(WITHOUT_LAB + MAIN, verb, "--help")
+    done = _run(WITHOUT_EXTRAS + MAIN, verb, "--help")
     assert done.returncode == 2
     assert done.stderr == f"inhand {verb}: needs the extra 'lab': pip install \"inhand[lab]\"\n"
 
@@ -96,6 +96,12 @@ def test_a_verb_says_in_one_line_which_extra_it_needs(verb: str) -> None:
             'pip install "inhand[lab]"',
         ),
         (
+            "capture",
+            'source = "oak"',
+            "setting capture.it.source: source 'oak' needs the extra 'oak': "
+            'pip install "inhand[oak]"',
+        ),
+        (
             "tracker",
             f'model = "{MODEL}"\nmethod = "gd-hand"',
             "tracker: needs the extra 'lab': pip install \"inhand[lab]\"",
@@ -108,7 +114,7 @@ def test_a_daemon_says_before_it_starts_which_extra_its_settings_need(
     config = tmp_path / "rig.toml"
     config.write_text(f"[{service}.it]\n{table}\n")
     for more in ((), ("--check-config",)):
-        done = _run(WITHOUT_LAB + MAIN, service, "--config", config, *more)
+        done = _run(WITHOUT_EXTRAS + MAIN, service, "--config", config, *more)
         assert done.returncode == 2
         assert done.stderr.count("\n") == 1
         assert line in done.stderr
@@ -117,6 +123,6 @@ def test_a_daemon_says_before_it_starts_which_extra_its_settings_need(
 @pytest.mark.long
 def test_the_default_method_tracks_with_images_without_the_extra(tmp_path: Path) -> None:
     np.save(tmp_path / "joints.npy", STANDING)
-    done = _run(WITHOUT_LAB + TRACK, MODEL, tmp_path / "joints.npy")
+    done = _run(WITHOUT_EXTRAS + TRACK, MODEL, tmp_path / "joints.npy")
     assert done.returncode == 0, done.stderr
     assert done.stdout == "tracked\n"

@@ -102,6 +102,7 @@ EXAMPLES: tuple[Message, ...] = (
         troubles=("no camera info of kitchen yet",),
         loop_age_s=0.25,
         effort=0.75,
+        shutter_closed=True,
     ),
 )
 LATE = replace(
@@ -110,6 +111,7 @@ LATE = replace(
     topics={"inhand/@v1/rig/rgbd/kitchen": TopicHealth(received=360, late_ms=7.5)},
     effort=0.75,
 )
+SHUT = replace(LATE, service="capture", effort=None, shutter_closed=True)
 REFUSED = replace(LATE, topics={"(other keys)": TopicHealth(refused=12)})
 
 TRUTH = ObjectPose(
@@ -130,6 +132,7 @@ GOLDEN_MESSAGES: dict[str, Message] = {
     **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
     "Health.v1.late": LATE,
     "Health.v1.refused": REFUSED,
+    "Health.v1.shutter": SHUT,
     "ObjectPose.v1.truth": TRUTH,
 }
 """By the stem of their golden files: one of each type, and one more for fields it grew by."""

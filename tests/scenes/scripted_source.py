@@ -2,7 +2,7 @@
 
 ``script`` is a list: a number publishes so many moments, "lost" is a device that goes away,
 "broken" a fault for good, "hang" waits until closed. Each time the source is opened it goes on
-where it stopped; "closed" in the script makes that opening fail.
+where it stopped; "closed" and "absent" in the script make that opening fail.
 """
 
 import threading
@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from inhand_runtime.source import Captured, Pixels, SourceError, SourceLostError
+from inhand_runtime.source import Captured, Pixels, SourceAbsentError, SourceError, SourceLostError
 from inhand_schemas.messages import CameraInfo, ObjectPose, Person
 
 WIDTH, HEIGHT = 64, 48
@@ -34,6 +34,9 @@ class ScriptedSource:
         if not self.steps:
             ScriptedSource.steps = list(options["script"])
         self._closed = threading.Event()
+        if self.steps[0] == "absent":
+            self.steps.pop(0)
+            raise SourceAbsentError("the scripted camera is not plugged in")
         if self.steps[0] == "closed":
             self.steps.pop(0)
             raise SourceError("no scripted camera is connected")

@@ -16,6 +16,7 @@ import numpy as np
 import simplejpeg
 from inhand_capture.sources.oak.connection import Connection
 from inhand_capture.sources.oak.library import dai
+from inhand_capture.sources.oak.options import OakOptions
 from inhand_runtime.pixels import decode_colour, decode_depth
 from inhand_runtime.recording import read_recording
 from inhand_schemas.topics import RGBD
@@ -128,8 +129,10 @@ class StubCamera:
     focal: float = FOCAL
     period_s: float = 0.001
     troubles: dict[str, str] = field(default_factory=dict)
+    controls: list[tuple[OakOptions, list[str]]] = field(default_factory=list)
     died: str | None = None
     closed: int = 0
+    fails_to_close: bool = False
     sensors: SensorNodes | None = None
     ended: threading.Event = field(default_factory=threading.Event)
     on_connect: Callable[["StubCamera"], None] | None = None
@@ -151,6 +154,7 @@ class StubCamera:
             depth=sensors.depth,
             description="a stub of a camera",
             clock_ns=200_000,
+            control=lambda options, automatic: self.controls.append((options, list(automatic))),
             troubles=lambda: self.troubles,
             died=lambda: self.died,
             close=self._close,
@@ -171,3 +175,5 @@ class StubCamera:
         # A pipeline that is deleted while a node in Python still runs waits for it with the GIL.
         self.pipeline.wait()
         self.closed += 1
+        if self.fails_to_close:
+            raise RuntimeError("X_LINK_ERROR")

@@ -4,14 +4,18 @@
 "absent" is a camera that is not there, "play" goes on for ever.
 """
 
+import logging
 import threading
 from collections.abc import Mapping
 from typing import Any
 
+from inhand_capture.sources.oak.controls import CONTROLS
 from inhand_capture.sources.oak.source import OakSource
 from inhand_runtime.settings import FilePath, Section
 from inhand_runtime.source import SourceAbsentError
 from stub_oak import StubCamera, recorded_shots
+
+log = logging.getLogger(__name__)
 
 MOMENTS = 10
 PERIOD_S = 0.02
@@ -41,8 +45,9 @@ class StubOakSource(OakSource):
         camera.on_connect = lambda camera: threading.Thread(
             target=_expose, args=(camera, word), daemon=True
         ).start()
-        self.ended = camera.ended
-        super().__init__({"mjpeg": False}, camera.connect)
+        own = {name: value for name, value in options.items() if name in CONTROLS}
+        log.info("opened with exposure %s", own.get("exposure_us"))
+        super().__init__({"mjpeg": False, **own}, camera.connect)
 
 
 def _expose(camera: StubCamera, word: str) -> None:

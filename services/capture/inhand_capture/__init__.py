@@ -1,6 +1,8 @@
 """The capture daemon: a camera, a recording or a simulated world onto Inhand's keys.
 
 ``service.py`` runs it, ``publishing.py`` turns moments into messages, ``reopening.py`` opens a
-lost device again. ``replay.py`` is the source that plays a recording, whose messages
-``moments.py`` puts together again. ``estimation`` finds skeletons in pictures.
+lost device again, and ``watching.py`` says in the health how it is. ``view`` turns and masks what
+any source gives, ``estimation`` finds skeletons in pictures, and ``shutter.py`` stops everything.
+``sources/oak`` is the driver of a camera, ``sources/replay.py`` plays a recording, whose messages
+``moments.py`` puts together again.
 """

@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import Future, wait
+from typing import Protocol
 
 from inhand_runtime.source import (
     QUIET_S,
@@ -18,8 +19,20 @@ from inhand_runtime.source import (
 FIRST_PAUSE_S = 0.5
 LONGEST_PAUSE_S = 10.0
 STOP_POLL_S = 0.05
+ENDS_OPENING_S = 1.5
+"""Seconds in which an opening that is under way at a stop may end, to be closed in order."""
 RESTARTS_WITHIN_S = 15.0
 """Seconds after a loss in which a device that is absent is only restarting: no new error."""
+
+
+class Ending(Protocol):
+    """Tells when capturing has to end, as a threading.Event does."""
+
+    def is_set(self) -> bool:
+        """Whether it has to end."""
+
+    def wait(self, timeout: float) -> bool:
+        """Wait for the end, or for seconds; returns whether it has come."""
 
 
 def growing_pauses() -> Iterator[float]:
@@ -33,7 +46,7 @@ def growing_pauses() -> Iterator[float]:
 def captures(
     open_source: Callable[[], Source],
     wanted: Callable[[], bool],
-    stop: threading.Event,
+    stop: Ending,
     *,
     opened: Callable[[Source], None],
     lost: Callable[[SourceError], None],
@@ -43,10 +56,15 @@ def captures(
 
     None comes while nothing happens, also while a source is opened or waited for. ``opened`` is
     called each time before the first moment, ``lost`` at each loss and each attempt that failed.
-    Raises SourceError when the source cannot be opened the first time, or cannot go on.
+    Raises SourceError when the source cannot go on, or can never be opened; a device that is only
+    absent is waited for from the start.
     """
-    source = yield from _opened(open_source, stop)
     remaining = pauses()
+    try:
+        source = yield from _opened(open_source, stop)
+    except SourceLostError as error:
+        lost(error)
+        source = yield from _open_again(open_source, stop, remaining, lost)
     while source is not None:
         try:
             with _closed_on(stop, source):
@@ -67,7 +85,7 @@ def captures(
 
 def _open_again(
     open_source: Callable[[], Source],
-    stop: threading.Event,
+    stop: Ending,
     pauses: Iterator[float],
     lost: Callable[[SourceError], None],
 ) -> Generator[None, None, Source | None]:
@@ -89,11 +107,11 @@ def _open_again(
 
 
 def _opened(
-    open_source: Callable[[], Source], stop: threading.Event
+    open_source: Callable[[], Source], stop: Ending
 ) -> Generator[None, None, Source | None]:
     """Open a source in a thread of its own, since a camera takes seconds; None when stopped.
 
-    What is opened after the stop is closed at once.
+    What is opened after the stop is closed at once, if the process lives as long.
     """
     opening: Future[Source] = Future()
 
@@ -107,6 +125,7 @@ def _opened(
     quiet_since = time.monotonic()
     while not wait([opening], STOP_POLL_S).done:
         if stop.is_set():
+            wait([opening], ENDS_OPENING_S)
             opening.add_done_callback(_close)
             return None
         if time.monotonic() - quiet_since > QUIET_S:
@@ -121,7 +140,7 @@ def _close(opening: Future[Source]) -> None:
 
 
 @contextlib.contextmanager
-def _closed_on(stop: threading.Event, source: Source) -> Iterator[None]:
+def _closed_on(stop: Ending, source: Source) -> Iterator[None]:
     """Close the source at the end of the block, and at once when ``stop`` is set."""
     ended = threading.Event()
 

@@ -12,11 +12,26 @@ from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.settings import FilePath, Section, Settings
 from inhand_runtime.source import Captured, Source, SourceError, require_source, source_factory
+from inhand_schemas.procedures import (
+    CONTROL,
+    SHUTTER,
+    ControlReply,
+    ControlRequest,
+    ShutterReply,
+    ShutterRequest,
+)
 from inhand_schemas.topics import SKELETONS
 from pydantic import AfterValidator, Field, model_validator
 
 from inhand_capture.publishing import CameraPublisher
-from inhand_capture.reopening import captures
+from inhand_capture.reopening import Ending, captures
+from inhand_capture.shutter import (
+    EndOfCapture,
+    Shutter,
+    ShutteredOutlet,
+    ShutteredOutlets,
+    kept_shutter,
+)
 from inhand_capture.view.private_memory import forbid_core_dumps
 from inhand_capture.view.viewed_source import viewed
 from inhand_capture.watching import WatchedSource
@@ -28,6 +43,7 @@ log = logging.getLogger(__name__)
 
 READER_POLL_S = 0.01
 READER_SETTLES_S = 0.25
+SHUTTER_POLL_S = 0.05
 
 NO_CAMERA = (
     'no camera is configured: write [capture.front] with source = "oak" for a camera that '
@@ -119,14 +135,20 @@ def run(settings: Settings[CaptureSettings]) -> None:
     if chosen.masks:
         forbid_core_dumps()
 
+    changed: dict[str, Any] = {}
+
     def open_source() -> Source:
-        source = source_factory(chosen.source)(options)
+        source = source_factory(chosen.source)({**options, **changed})
         return viewed(source, chosen.rotate, chosen.masks)
 
+    shutter = kept_shutter(settings.site, settings.instance)
     with running_daemon("capture", settings) as daemon:
+        watched = WatchedSource(chosen.source, daemon.health)
+        _offer_shutter(daemon, shutter)
+        _offer_controls(daemon, watched, changed)
         try:
-            with _skeleton_stage(daemon, chosen) as stage:
-                _publish(daemon, chosen, open_source, stage)
+            with _skeleton_stage(daemon, chosen, shutter) as stage:
+                _publish(daemon, chosen, open_source, stage, shutter, watched)
         except SourceError as error:
             raise InhandError(f"source {chosen.source}: {error}") from error
 
@@ -135,8 +157,41 @@ def _nothing(_options: Mapping[str, Any]) -> None:
     """Stands for the check that a source does not have."""
 
 
+def _offer_shutter(daemon: Daemon, shutter: Shutter) -> None:
+    """Let the shutter be moved by whoever asks, and show in the health how it is."""
+
+    def move(request: ShutterRequest) -> ShutterReply | None:
+        if request.camera not in (None, daemon.instance):
+            return None
+        problem = shutter.move(closed=request.closed)
+        daemon.health.shutter_closed = request.closed
+        return ShutterReply(camera=daemon.instance, closed=request.closed, problem=problem)
+
+    daemon.health.shutter_closed = shutter.is_closed()
+    daemon.answer(SHUTTER, move)
+
+
+def _offer_controls(daemon: Daemon, watched: WatchedSource, changed: dict[str, Any]) -> None:
+    """Let options be changed by whoever asks; ``changed`` keeps them until the daemon ends."""
+
+    def change(request: ControlRequest) -> ControlReply | None:
+        if request.camera != daemon.instance:
+            return None
+        try:
+            watched.control(request.options)
+        except SourceError as error:
+            return ControlReply(camera=daemon.instance, problem=str(error))
+        changed.update(request.options)
+        log.info("changed while it runs: %s", request.options)
+        return ControlReply(camera=daemon.instance)
+
+    daemon.answer(CONTROL, change)
+
+
 @contextlib.contextmanager
-def _skeleton_stage(daemon: Daemon, chosen: CaptureSettings) -> Iterator["SkeletonStage | None"]:
+def _skeleton_stage(
+    daemon: Daemon, chosen: CaptureSettings, shutter: Shutter
+) -> Iterator["SkeletonStage | None"]:
     """Run what estimates skeletons during the block; None where the source has its own."""
     if chosen.skeletons == "source":
         yield None
@@ -147,8 +202,9 @@ def _skeleton_stage(daemon: Daemon, chosen: CaptureSettings) -> Iterator["Skelet
 
     network = open_network(chosen.network)
     outlet = daemon.publisher(SKELETONS, daemon.instance)
+    put = ShutteredOutlet(outlet, shutter).put
     with SkeletonStage(
-        lambda info: SkeletonEstimator(network, info), outlet.put, daemon.health, outlet.key
+        lambda info: SkeletonEstimator(network, info), put, daemon.health, outlet.key
     ) as stage:
         yield stage
 
@@ -158,9 +214,12 @@ def _publish(
     chosen: CaptureSettings,
     open_source: Callable[[], Source],
     stage: "SkeletonStage | None",
+    shutter: Shutter,
+    watched: WatchedSource,
 ) -> None:
-    camera = CameraPublisher(daemon, daemon.instance)
-    watched = WatchedSource(chosen.source, daemon.health)
+    """Publish while the shutter is open; return when the source ends, or a signal comes."""
+    camera = CameraPublisher(ShutteredOutlets(daemon, shutter), daemon.instance)
+    end = EndOfCapture(daemon.stop, shutter)
 
     def wanted() -> bool:
         return camera.wants_pixels() or (stage is not None and camera.wants_skeletons())
@@ -170,20 +229,34 @@ def _publish(
             stage.introduce(source.info)
         camera.introduce(source.info)
         watched.opened(source)
-        _wait_for_readers(camera, chosen.wait_for_reader_s, daemon)
+        _wait_for_readers(camera, chosen.wait_for_reader_s, daemon, end)
 
-    for captured in captures(open_source, wanted, daemon.stop, opened=opened, lost=watched.lost):
+    while not daemon.stop.is_set():
+        _wait_while_closed(daemon, shutter, watched)
+        closings = shutter.closings
+        for captured in captures(open_source, wanted, end, opened=opened, lost=watched.lost):
+            daemon.health.came_round()
+            watched.look()
+            if captured is not None:
+                if stage is None:
+                    camera.publish(captured)
+                else:
+                    _publish_to_estimate(camera, captured, stage)
+                watched.captured()
+                daemon.health.latency(captured.time_ns)
+        if not end.is_set() and shutter.closings == closings:
+            log.info("source %s has come to its end", chosen.source)
+            return
+
+
+def _wait_while_closed(daemon: Daemon, shutter: Shutter, watched: WatchedSource) -> None:
+    """Capture nothing until the shutter opens, or a signal comes."""
+    if not shutter.is_closed():
+        return
+    watched.shut()
+    log.info("the shutter is closed: nothing is captured until `inhand shutter open`")
+    while shutter.is_closed() and not daemon.stop.wait(SHUTTER_POLL_S):
         daemon.health.came_round()
-        watched.look()
-        if captured is not None:
-            if stage is None:
-                camera.publish(captured)
-            else:
-                _publish_to_estimate(camera, captured, stage)
-            watched.captured()
-            daemon.health.latency(captured.time_ns)
-    if not daemon.stop.is_set():
-        log.info("source %s has come to its end", chosen.source)
 
 
 def _publish_to_estimate(
@@ -200,11 +273,11 @@ def _publish_to_estimate(
         stage.offer(sequence, captured.time_ns, pixels())
 
 
-def _wait_for_readers(camera: CameraPublisher, seconds: float, daemon: Daemon) -> None:
+def _wait_for_readers(camera: CameraPublisher, seconds: float, daemon: Daemon, end: Ending) -> None:
     """Wait until somebody listens, and then for the rest of what that reader asks for."""
     deadline = time.monotonic() + seconds
-    while time.monotonic() < deadline and not daemon.stop.wait(READER_POLL_S):
+    while time.monotonic() < deadline and not end.wait(READER_POLL_S):
         daemon.health.came_round()
         if camera.has_readers():
-            daemon.stop.wait(READER_SETTLES_S)
+            end.wait(READER_SETTLES_S)
             return

@@ -3,9 +3,10 @@
 import logging
 import time
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from inhand_runtime.health import HealthBoard
-from inhand_runtime.source import Source, SourceError
+from inhand_runtime.source import Source, SourceError, control_source
 
 log = logging.getLogger(__name__)
 
@@ -48,6 +49,20 @@ class WatchedSource:
             log.warning("source %s is back; nothing was captured for %.1f s", self._name, gap_s)
             self._lost_at = None
         self._health.well("source")
+
+    def shut(self) -> None:
+        """Note that nothing is captured on purpose, which is no trouble."""
+        self._source = None
+        self._lost_at = None
+        self._show({})
+        self._health.well("source")
+        self._health.state = "running"
+
+    def control(self, options: Mapping[str, Any]) -> None:
+        """Change options of the source, from any thread; raises SourceError."""
+        if (source := self._source) is None:
+            raise SourceError("it is not open now: try again when it is back")
+        control_source(source, options)
 
     def look(self) -> None:
         """Ask the source once a second what is wrong with it, if it is one that knows."""

@@ -7,13 +7,15 @@ and the signal to stop; what a service does in between is its own.
 import contextlib
 import logging
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, TypeVar
 
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import Health, Message
+from inhand_schemas.procedures import Procedure
 from inhand_schemas.topics import HEALTH, AnyTopic, Topic
+from msgspec import Struct
 
 from inhand_runtime.claims import Elders, claimed_name
 from inhand_runtime.errors import InhandError
@@ -21,6 +23,7 @@ from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import UNBOUNDED, Inbox, Received
 from inhand_runtime.logs import configure_logs
 from inhand_runtime.memory import give_libraries_back, give_memory_back
+from inhand_runtime.questions import Question, answer
 from inhand_runtime.session import (
     Publisher,
     Session,
@@ -36,6 +39,8 @@ from inhand_runtime.signals import set_on_signals
 log = logging.getLogger(__name__)
 
 T = TypeVar("T", bound=Message)
+Q = TypeVar("Q", bound=Struct)
+R = TypeVar("R", bound=Struct)
 
 HEALTH_PERIOD_S = 1.0
 REPORTS_UNTIL_LONELY = 3
@@ -64,6 +69,7 @@ class Daemon:
         self._session = session
         self._subscriptions: list[Subscription] = []
         self._kept: list[Publisher[Any]] = []
+        self._questions: list[Question] = []
 
     def publisher(self, topic: Topic[T], name: str) -> Publisher[T]:
         """A counted publisher of this site; the last value of a kept topic is repeated."""
@@ -96,6 +102,18 @@ class Daemon:
         lane = self.inbox.lane(samples=samples, size=size, on_drop=self.health.overflowed)
         pattern = topic.pattern(self.site) if name is None else topic.key(self.site, name)
         self._subscriptions.append(subscribe(self._session, pattern, topic.delivery, lane.put))
+
+    def answer(self, procedure: Procedure[Q, R], on_request: Callable[[Q], R | None]) -> None:
+        """Answer a procedure's requests from now on, from Zenoh's threads.
+
+        ``on_request`` returns None for a request that is another instance's.
+        """
+
+        def receive(data: bytes) -> bytes | None:
+            reply = on_request(procedure.request(data))
+            return None if reply is None else procedure.encode(reply)
+
+        self._questions.append(answer(self._session, procedure.key(self.site), receive))
 
     def hear_namesakes(self, key: str) -> Subscription:
         """Note, as a trouble, that another process publishes on a key of this instance's own."""

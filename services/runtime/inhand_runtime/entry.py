@@ -2,7 +2,7 @@
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -21,15 +21,21 @@ def daemon_main(
     arguments: Sequence[str] | None = None,
     *,
     check: Callable[[Settings[S]], object] | None = None,
+    instead: Mapping[str, tuple[str, Callable[[], int]]] | None = None,
 ) -> int:
     """Run one daemon until it ends; returns its exit code, after one line about what failed.
 
     ``arguments`` are the process's own unless given. ``check`` is what ``run`` does first as well:
-    it raises SettingsError for all that can be known before a start. Wrong arguments end the
-    process with 2.
+    it raises SettingsError for all that can be known before a start. ``instead`` are options that
+    do something else and end: by their name what the help says, and what returns the exit code.
+    Wrong arguments end the process with 2.
     """
-    chosen = _parser(service).parse_args(arguments)
+    instead = instead or {}
+    chosen = _parser(service, instead).parse_args(arguments)
     try:
+        for name, (_, act) in instead.items():
+            if getattr(chosen, name):
+                return act()
         settings = load_settings(chosen.config, service, model, chosen.name)
         if chosen.check_config:
             if check is not None:
@@ -48,7 +54,9 @@ def daemon_main(
     return DONE
 
 
-def _parser(service: str) -> argparse.ArgumentParser:
+def _parser(
+    service: str, instead: Mapping[str, tuple[str, Callable[[], int]]]
+) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=f"inhand {service}", description=f"Run one {service} daemon until SIGTERM or Ctrl-C."
     )
@@ -57,4 +65,6 @@ def _parser(service: str) -> argparse.ArgumentParser:
     parser.add_argument(
         "--check-config", action="store_true", help="check the settings and start nothing"
     )
+    for name, (text, _) in instead.items():
+        parser.add_argument(f"--{name}", action="store_true", help=text)
     return parser

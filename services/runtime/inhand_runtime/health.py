@@ -42,6 +42,7 @@ class HealthBoard:
     ) -> None:
         self.state: ServiceState = "starting"
         self.effort: float | None = None
+        self.shutter_closed: bool | None = None
         self.service = service
         self._instance = instance
         self._now = now
@@ -212,6 +213,7 @@ class HealthBoard:
                 topics=topics,
                 latency_ms=self._current_latency(now),
                 effort=self.effort,
+                shutter_closed=self.shutter_closed,
                 last_error=self._last_error,
                 troubles=troubles,
                 loop_age_s=max(now - self._came_round, 0.0),

@@ -8,7 +8,9 @@ a ``Section`` that checks that table (paths in it are ``FilePath``), and ``check
 with the table as checked: it raises SourceError for what can never work, and opens no device.
 
 A source that knows how its device is may have ``troubles()``, which gives by name what is wrong
-though moments come. Capture asks once a second, and shows it in its health.
+though moments come. Capture asks once a second, and shows it in its health. One whose device can
+be changed while it runs may have ``control(options)``, called from any thread with some of its
+options, None for what shall be automatic; it raises SourceError for what cannot be changed so.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -44,7 +46,10 @@ class SourceLostError(SourceError):
 
 
 class SourceAbsentError(SourceLostError):
-    """A device that is not there, or not free: for seconds after a loss it is only restarting."""
+    """A device that is not there, not free or not allowed, which whoever uses it can mend.
+
+    Capture waits for it. For seconds after a loss it is only restarting.
+    """
 
 
 @dataclass(frozen=True)
@@ -86,6 +91,14 @@ class Source(Protocol):
 
     def close(self) -> None:
         """Release the device, from any thread and also twice; waiting ``captures`` end soon."""
+
+
+def control_source(source: Source, options: Mapping[str, Any]) -> None:
+    """Change options of a source that runs; raises SourceError where that cannot be done."""
+    control: Callable[[Mapping[str, Any]], None] | None = getattr(source, "control", None)
+    if control is None:
+        raise SourceError("nothing of this source can be changed while it runs")
+    control(options)
 
 
 SourceFactory = Callable[[Mapping[str, Any]], Source]

@@ -6,10 +6,10 @@ from inhand_capture.view.masks import in_blocks, mask_of
 SQUARE = ((0.25, 0.25), (0.75, 0.25), (0.75, 0.75), (0.25, 0.75))
 
 
-def test_a_polygon_covers_its_pixels_and_their_neighbours() -> None:
+def test_a_polygon_covers_its_pixels_and_those_of_its_edges() -> None:
     mask = mask_of([SQUARE], 16, 8)
     expected = np.zeros((8, 16), bool)
-    expected[1:7, 3:13] = True
+    expected[2:7, 4:13] = True
     np.testing.assert_array_equal(mask, expected)
 
 
@@ -32,8 +32,15 @@ def test_several_polygons_are_all_covered() -> None:
     right = ((0.9, 0), (1, 0), (1, 1), (0.9, 1))
     mask = mask_of([left, right], 100, 10)
     assert mask[:, :11].all()
-    assert mask[:, 89:].all()
-    assert not mask[:, 11:89].any()
+    assert mask[:, 90:].all()
+    assert not mask[:, 11:90].any()
+
+
+def test_a_polygon_thinner_than_a_pixel_covers_its_edges() -> None:
+    assert mask_of([((0.2, 0.5), (0.8, 0.5), (0.5, 0.5))], 10, 10)[5].tolist() == (
+        [False] * 2 + [True] * 7 + [False]
+    )
+    assert mask_of([((1, 1), (1, 1), (1, 1))], 10, 10)[9, 9]
 
 
 def test_no_polygon_masks_nothing() -> None:

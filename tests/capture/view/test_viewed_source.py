@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
-from inhand_capture.view.viewed_source import ViewedSource, viewed
+from inhand_capture.view.viewed_source import viewed
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_runtime.source import Captured, Pixels
-from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage
+from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, Person
 from msgspec.structs import replace
 from scripted_source import PERSON
 
@@ -23,11 +23,12 @@ class Still:
 
     info = INFO
 
-    def __init__(self, pixels: Pixels) -> None:
+    def __init__(self, pixels: Pixels, person: Person = PERSON) -> None:
         self.pixels = pixels
+        self.person = person
 
     def captures(self, _wanted: Callable[[], bool]) -> Iterator[Captured | None]:
-        yield Captured(1, 0, lambda: self.pixels, (PERSON,))
+        yield Captured(1, 0, lambda: self.pixels, (self.person,))
         yield None
 
     def close(self) -> None:
@@ -93,9 +94,11 @@ def test_the_sources_own_pixels_stay_as_they_are() -> None:
 def test_joints_in_a_mask_are_missing() -> None:
     behind, beside = (-0.5, 0.0, 2.0), (0.5, 0.0, 2.0)
     person = replace(PERSON, joints=(behind, beside) * 10)
-    still = Still(_secret_in(*HALVES[0]))
-    source = ViewedSource(still, 0, [LEFT_HALF])
-    seen = source._person(person)
+    source = viewed(Still(_secret_in(*HALVES[0]), person), 0, [LEFT_HALF])
+    captured = next(iter(source.captures(lambda: True)))
+    assert captured is not None
+    assert captured.people is not None
+    (seen,) = captured.people
     assert seen.states == ("missing", "tracked") * 10
     assert seen.joints == ((0.0, 0.0, 0.0), beside) * 10
 

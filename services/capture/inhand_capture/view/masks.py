@@ -1,6 +1,6 @@
 """Polygons that are burned into pictures."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,21 +8,24 @@ from numpy.typing import NDArray
 JPEG_BLOCK = 16
 """Pixels of the squares within which a JPEG mixes its pixels, colour at half the size included."""
 
-Polygon = tuple[tuple[float, float], ...]
-"""Corners as shares of the picture's width and height, (0, 0) at its upper left."""
+Corner = tuple[float, float]
+"""Shares of the picture's width and height, (0, 0) at its upper left."""
+Polygon = tuple[Corner, ...]
 Mask = NDArray[np.bool_]
 
 
 def mask_of(polygons: Sequence[Polygon], width: int, height: int) -> Mask:
-    """(H, W) whether a pixel lies in a polygon, or a neighbour of it does.
+    """(H, W) whether a pixel's centre lies in a polygon, or an edge passes through it.
 
-    A polygon that crosses itself covers all that it goes around. Neighbours count because an edge
-    may touch them.
+    A polygon that crosses itself covers all that it goes around, and one that is thinner than a
+    pixel the pixels of its edges.
     """
     mask = np.zeros((height, width), bool)
     for polygon in polygons:
         mask |= _winding(polygon, width, height) != 0
-    return _grown(mask)
+        for start, end in _edges(polygon):
+            mask[_pixels_between(start, end, width, height)] = True
+    return mask
 
 
 def in_blocks(mask: Mask, size: int = JPEG_BLOCK) -> Mask:
@@ -40,7 +43,7 @@ def _winding(polygon: Polygon, width: int, height: int) -> NDArray[np.int32]:
     x = (np.arange(width) + 0.5) / width
     y = ((np.arange(height) + 0.5) / height)[:, None]
     turns = np.zeros((height, width), np.int32)
-    for (x0, y0), (x1, y1) in zip(polygon, (*polygon[1:], polygon[0]), strict=True):
+    for (x0, y0), (x1, y1) in _edges(polygon):
         if y0 == y1:
             continue
         crosses = x0 + (y - y0) / (y1 - y0) * (x1 - x0) > x
@@ -49,12 +52,18 @@ def _winding(polygon: Polygon, width: int, height: int) -> NDArray[np.int32]:
     return turns
 
 
-def _grown(mask: Mask) -> Mask:
-    """Add each pixel's eight neighbours."""
-    height, width = mask.shape
-    padded = np.pad(mask, 1)
-    grown = np.zeros_like(mask)
-    for down in range(3):
-        for right in range(3):
-            grown |= padded[down : down + height, right : right + width]
-    return grown
+def _edges(polygon: Polygon) -> Iterator[tuple[Corner, Corner]]:
+    """Each corner with the next one."""
+    return zip(polygon, (*polygon[1:], polygon[0]), strict=True)
+
+
+def _pixels_between(
+    start: Corner, end: Corner, width: int, height: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows and columns of the pixels on a line, looked for at each half a pixel."""
+    size = np.array((width, height))
+    length = np.abs((np.array(end) - start) * size).max()
+    share = np.linspace(0.0, 1.0, 2 * int(np.ceil(length)) + 1)[:, None]
+    points = (start + share * (np.array(end) - start)) * size
+    columns, rows = np.minimum(points.astype(np.int64), size - 1).T
+    return rows, columns

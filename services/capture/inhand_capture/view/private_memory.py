@@ -1,8 +1,11 @@
 """Keeps a process's memory out of core dumps."""
 
 import ctypes
+import os
 import resource
 import sys
+
+from inhand_runtime.errors import InhandError
 
 _PR_SET_DUMPABLE = 4
 
@@ -10,10 +13,13 @@ _PR_SET_DUMPABLE = 4
 def forbid_core_dumps() -> None:
     """Let the system write no image of this process's memory when it crashes, nor another read it.
 
-    Raises OSError when the system refuses.
+    Raises InhandError when the system refuses.
     """
     _, hard = resource.getrlimit(resource.RLIMIT_CORE)
     resource.setrlimit(resource.RLIMIT_CORE, (0, hard))
     if sys.platform == "linux":  # where dumps go to a program, no limit holds
         if ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_DUMPABLE, 0, 0, 0, 0) != 0:
-            raise OSError(ctypes.get_errno(), "core dumps cannot be switched off")
+            raise InhandError(
+                "core dumps, which would hold what masks cover, cannot be switched off "
+                f"({os.strerror(ctypes.get_errno())}): run it where prctl is allowed"
+            )

@@ -4,10 +4,10 @@ import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from inhand_runtime.pixels import decode_colour, decode_depth
-from inhand_runtime.source import Captured, Pixels, Source, SourceError
+from inhand_runtime.source import Captured, Pixels, Source, SourceError, control_source
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, JointState, Person, Vector3
 from msgspec.structs import replace as replace_struct
@@ -70,6 +70,10 @@ class ViewedSource:
         """What the source says of its device."""
         troubles: Mapping[str, str] = getattr(self._source, "troubles", dict)()
         return troubles
+
+    def control(self, options: Mapping[str, Any]) -> None:
+        """Change options of the source; raises SourceError."""
+        control_source(self._source, options)
 
     def close(self) -> None:
         """Close the source."""

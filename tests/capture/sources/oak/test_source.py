@@ -121,6 +121,30 @@ def test_a_slow_reader_gets_the_newest_moment(open_: Open) -> None:
     assert _number(next(moments)) == (59, 59)
 
 
+def test_a_reader_that_misses_many_frames_is_told(
+    monkeypatch: pytest.MonkeyPatch, open_: Open
+) -> None:
+    monkeypatch.setattr(source_module, "OAK", replace(source_module.OAK, condition_s=0.0))
+    camera = StubCamera()
+    source = open_(camera)
+    moments = _moments(source)
+    for number in range(1, 10):
+        camera.send(number)
+        next(moments)
+    assert source.troubles() == {}
+    for number in range(20, 100, 10):
+        camera.send(number)
+        next(moments)
+    assert "only 8 of the camera's last 81 frames" in source.troubles()["pace"]
+
+
+def test_a_device_that_cannot_be_closed_in_order_is_closed_all_the_same(open_: Open) -> None:
+    camera = StubCamera(fails_to_close=True)
+    source = open_(camera)
+    source.close()
+    assert camera.closed == 1
+
+
 def test_a_break_in_mid_stream_is_a_loss_with_its_reason(open_: Open) -> None:
     camera = StubCamera(died="the camera's firmware crashed")
     source = open_(camera)
@@ -218,6 +242,35 @@ def test_a_device_says_what_is_wrong_with_it_though_frames_come(open_: Open) -> 
     camera = StubCamera(troubles={"heat": "it is hot"})
     source = open_(camera)
     assert source.troubles() == {"heat": "it is hot"}
+
+
+def test_exposure_and_light_can_be_changed_while_it_runs(open_: Open) -> None:
+    camera = StubCamera()
+    source = open_(camera, focus=100)
+    source.control({"exposure_us": 8000, "iso": 400})
+    source.control({"focus": None, "ir_dots": 0.5})
+    (first, made_automatic), (second, automatic) = camera.controls
+    assert (made_automatic, automatic) == ([], ["focus"])
+    assert (first.exposure_us, first.iso, first.focus, first.ir_dots) == (8000, 400, 100, 0.0)
+    assert (second.exposure_us, second.iso, second.focus, second.ir_dots) == (8000, 400, None, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        ({"size": 1}, "size cannot be changed while it runs; what can: exposure_us, iso"),
+        ({"exposure_us": 8000}, "exposure_us and iso are set together"),
+        ({"focus": 256}, "options.focus"),
+    ],
+)
+def test_what_cannot_be_changed_so_is_told(
+    open_: Open, options: dict[str, object], line: str
+) -> None:
+    camera = StubCamera()
+    source = open_(camera)
+    with pytest.raises(SourceError, match=line):
+        source.control(options)
+    assert camera.controls == []
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,16 @@ def heat_trouble(celsius: float) -> str | None:
     )
 
 
+def pace_trouble(given: int, missed: int) -> str | None:
+    """Say that too many of the device's frames are missing; None when few are."""
+    if missed <= OAK.most_missed * (given + missed):
+        return None
+    return (
+        f"only {given} of the camera's last {given + missed} frames came through: this host or the "
+        "link is too slow; lower options.frame_rate or options.size"
+    )
+
+
 def bytes_per_second(options: OakOptions) -> float:
     """What colour and depth take of the link."""
     width, height = options.pixels

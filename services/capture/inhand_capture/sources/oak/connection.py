@@ -1,13 +1,14 @@
 """An opened device and its graph: the only place that makes nodes of the device itself."""
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from functools import partial
 
 from inhand_runtime.source import SourceAbsentError, SourceError
 
 from inhand_capture.sources.oak.condition import heat_trouble, link_trouble
-from inhand_capture.sources.oak.controls import set_controls, set_infrared
+from inhand_capture.sources.oak.controls import set_automatic, set_controls, set_infrared
 from inhand_capture.sources.oak.devices import IN_USE, NETWORK, UDEV_MEND, attached_cameras, choose
 from inhand_capture.sources.oak.library import dai
 from inhand_capture.sources.oak.options import OakOptions
@@ -29,6 +30,9 @@ class Connection:
     description: str
     clock_ns: int
     """Error with which frames are stamped by the host's clock, nanoseconds."""
+    control: Callable[[OakOptions, Collection[str]], None]
+    """Sets exposure, focus, white balance and light, and what is named automatic; raises
+    SourceError."""
     troubles: Callable[[], dict[str, str]]
     died: Callable[[], str | None]
     close: Callable[[], None]
@@ -37,8 +41,8 @@ class Connection:
 def connect(options: OakOptions) -> Connection:
     """Open the device that the settings mean.
 
-    Raises SourceAbsentError when it is not there, and SourceError when it cannot be opened, or
-    cannot do what the settings ask for.
+    Raises SourceAbsentError when it is not there, not free or not allowed, and SourceError when it
+    cannot be opened otherwise, or cannot do what the settings ask for.
     """
     info = choose(attached_cameras(), options)
     device = _open(info)
@@ -56,7 +60,7 @@ def opening_error(info: "dai.DeviceInfo", error: Exception) -> SourceError:
     """Translate what depthai said when it could not open a device."""
     text, who = str(error), f"the camera {info.getDeviceId() or info.name}"
     if "INSUFFICIENT_PERMISSIONS" in text:
-        return SourceError(f"{who} cannot open: this user may not open it: {UDEV_MEND}")
+        return SourceAbsentError(f"{who} cannot open: this user may not open it: {UDEV_MEND}")
     if "ALREADY_IN_USE" in text or "in use" in text:
         return SourceAbsentError(f"{who} cannot open: {IN_USE}")
     if "NOT_FOUND" in text or "Cannot find any device" in text or "No available" in text:
@@ -85,12 +89,14 @@ def _build(device: "dai.Device", options: OakOptions) -> Connection:
     depth = pipeline.create(dai.node.Depth).build(dai.node.Depth.Algorithm.AUTO, fps=rate)
     depth.setAlignTo(picture)
     set_infrared(device, options)
+    controls = camera.inputControl.createInputQueue()
     return Connection(
         pipeline=pipeline,
         colour=_compressed(pipeline, picture, rate) if options.mjpeg else picture,
         depth=depth.depth,
         description=_description(device),
         clock_ns=(OAK.network_clock_ns if device.getProtocol() in NETWORK else OAK.usb_clock_ns),
+        control=partial(_control, device, controls),
         troubles=lambda: _troubles(device, options),
         died=lambda: _died(device),
         close=device.close,
@@ -119,6 +125,22 @@ def _description(device: "dai.Device") -> str:
     if bootloader is not None:
         parts.append(f"bootloader {bootloader.toString()}")
     return ", ".join(parts)
+
+
+def _control(
+    device: "dai.Device",
+    controls: "dai.InputQueue",
+    options: OakOptions,
+    automatic: Collection[str],
+) -> None:
+    control = dai.CameraControl()
+    set_controls(control, options)
+    set_automatic(control, automatic)
+    try:
+        controls.send(control)
+        set_infrared(device, options)
+    except RuntimeError as error:
+        raise SourceError(f"the camera does not take it: {error}") from error
 
 
 def _troubles(device: "dai.Device", options: OakOptions) -> dict[str, str]:

@@ -66,21 +66,21 @@ def attached(info: "dai.DeviceInfo", *, free: bool) -> Attached:
 def choose(cameras: Sequence[Attached], options: OakOptions) -> "dai.DeviceInfo":
     """Return the device that the settings mean.
 
-    Raises SourceAbsentError when it is not there or not free, and SourceError when it may not be
-    opened, or it takes a setting to say which is meant.
+    Raises SourceAbsentError when it is not there, not free or not allowed, and SourceError when it
+    takes a setting to say which is meant.
     """
     meant = [camera for camera in cameras if _is_meant(camera, options)]
     if not meant and options.ip is not None:
         return dai.DeviceInfo(options.ip)  # in another network no search finds it
     if not meant:
-        raise SourceAbsentError(_nobody(cameras, options))
+        raise SourceAbsentError(_nobody_meant(cameras, options))
     if len(meant) > 1:
         serials = ", ".join(camera.serial for camera in meant)
         raise SourceError(f"several cameras are attached: set options.serial to one of: {serials}")
     camera = meant[0]
     if camera.unusable is not None:
-        text = f"the camera {camera.serial} at {camera.place} cannot open: {camera.unusable}"
-        raise SourceError(text) if camera.forbidden else SourceAbsentError(text)
+        who = f"the camera {camera.serial} at {camera.place}"
+        raise SourceAbsentError(f"{who} cannot open: {camera.unusable}")
     return camera.info
 
 
@@ -94,9 +94,14 @@ def _is_meant(camera: Attached, options: OakOptions) -> bool:
     return True
 
 
-def _nobody(cameras: Sequence[Attached], options: OakOptions) -> str:
+def nobody() -> str:
+    """The line for a host without any camera."""
+    return "no OAK camera is attached: plug it in, or check its cable and power"
+
+
+def _nobody_meant(cameras: Sequence[Attached], options: OakOptions) -> str:
     if not cameras:
-        return "no OAK camera is attached: plug it in, or check its cable and power"
+        return nobody()
     wish = next(
         f"{name} {value}"
         for name in ("serial", "usb_port")

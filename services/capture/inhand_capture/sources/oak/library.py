@@ -10,6 +10,8 @@ import os
 os.environ["DEPTHAI_TELEMETRY"] = "0"
 os.environ["DEPTHAI_CRASHDUMP"] = "0"
 os.environ["DEPTHAI_DISABLE_CRASHDUMP_COLLECTION"] = "1"
+# Nor does it look into the network for models, unless somebody wants it.
+os.environ.setdefault("DEPTHAI_ZOO_INTERNET_CHECK", "0")
 for recording in ("DEPTHAI_RECORD", "DEPTHAI_REPLAY"):
     os.environ.pop(recording, None)
 # What it warns of at its import and at each look for devices is said by health, once.

@@ -45,6 +45,8 @@ class OakParameters:
     (luxonis/depthai-ros issue 768)."""
     usb2_bytes_per_second: float = 30e6
     """What USB 2 carries in practice; its 480 Mbit/s are 60 MB/s before all overhead."""
+    most_missed: float = 0.1
+    """Share of the device's frames that may be missing before it is said that they are."""
     jpeg_bytes_per_pixel: float = 0.2
     """Bytes of a pixel in a JPEG of the quality below: 0.17 for a smoothed random picture."""
     jpeg_quality: int = 90

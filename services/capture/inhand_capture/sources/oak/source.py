@@ -14,7 +14,9 @@ from inhand_schemas.messages import CameraInfo
 from pydantic import ValidationError
 
 from inhand_capture.sources.oak.clock import epoch_offset
+from inhand_capture.sources.oak.condition import pace_trouble
 from inhand_capture.sources.oak.connection import Connection, connect
+from inhand_capture.sources.oak.controls import CONTROLS
 from inhand_capture.sources.oak.images import Frame, camera_info, frame_of, pixels_of
 from inhand_capture.sources.oak.library import dai
 from inhand_capture.sources.oak.options import OakOptions
@@ -39,8 +41,10 @@ class OakSource:
         self._closed = threading.Event()
         self._closing = threading.Lock()
         self._released = False
-        self._asked = 0.0
+        self._asked = float("-inf")
         self._troubles: Mapping[str, str] = {}
+        self._number: int | None = None
+        self._given = self._missed = 0
         self._connection = connect(self._options)
         try:
             self._start()
@@ -85,6 +89,26 @@ class OakSource:
             self._troubles = self._ask()
         return self._troubles
 
+    def control(self, options: Mapping[str, Any]) -> None:
+        """Change exposure, focus, white balance or light; None makes one automatic.
+
+        Raises SourceError for what cannot be changed while it runs, or has no such value.
+        """
+        if fixed := sorted(options.keys() - set(CONTROLS)):
+            raise SourceError(
+                f"{', '.join(fixed)} cannot be changed while it runs; what can: "
+                + ", ".join(CONTROLS)
+            )
+        changed = {**self._options.model_dump(exclude_unset=True), **options}
+        try:
+            checked = OakOptions(**changed)
+        except ValidationError as error:
+            raise SourceError(explain(error, None, ("options",), OakOptions)) from None
+        self._connection.control(
+            checked, [name for name, value in options.items() if value is None]
+        )
+        self._options = checked
+
     def close(self) -> None:
         """Release the device, which then restarts by itself within seconds."""
         self._closed.set()
@@ -92,8 +116,11 @@ class OakSource:
             if self._released:
                 return
             self._released = True
-            self._connection.pipeline.stop()
-            self._connection.close()
+            for release in (self._connection.pipeline.stop, self._connection.close):
+                try:
+                    release()
+                except RuntimeError as error:  # a device that is gone cannot be closed in order
+                    log.warning("closing the camera: %s", error)
 
     def _start(self) -> None:
         queue: dict[str, Any] = {"maxSize": OAK.queued_frames, "blocking": False}
@@ -133,6 +160,10 @@ class OakSource:
         return pair
 
     def _captured(self, pair: Pair[Frame, Frame]) -> Captured:
+        number = pair.colour.number
+        self._missed += 0 if self._number is None else max(number - self._number - 1, 0)
+        self._given += 1
+        self._number = number
         offset_ns, reading_ns = epoch_offset()
         return Captured(
             time_ns=pair.colour.host_ns + offset_ns,
@@ -153,6 +184,10 @@ class OakSource:
 
     def _ask(self) -> dict[str, str]:
         try:
-            return self._connection.troubles()
+            troubles = dict(self._connection.troubles())
         except RuntimeError as error:
-            return {"condition": f"the camera does not say how it is: {error}"}
+            troubles = {"condition": f"the camera does not say how it is: {error}"}
+        if (slow := pace_trouble(self._given, self._missed)) is not None:
+            troubles["pace"] = slow
+        self._given = self._missed = 0
+        return troubles

@@ -1,0 +1,79 @@
+"""``inhand control``: change settings of a camera while it runs, such as exposure_us=8000 iso=400.
+
+They hold until the daemon ends; what shall stay is written into the settings file.
+"""
+
+import argparse
+from pathlib import Path
+
+from inhand_runtime.errors import InhandError
+from inhand_runtime.exit_codes import DONE
+from inhand_schemas.errors import KeyFormatError
+from inhand_schemas.keys import require_name
+from inhand_schemas.procedures import CONTROL, ControlReply, ControlRequest
+
+from inhand.looking import open_look, positive_number
+
+SECONDS = 3.0
+AUTOMATIC = "auto"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The verb's arguments."""
+    parser.add_argument("camera", type=_name, help="the camera's name")
+    parser.add_argument(
+        "settings",
+        nargs="+",
+        type=_setting,
+        metavar="OPTION=VALUE",
+        help=f"an option of its source, and a number or {AUTOMATIC}",
+    )
+    parser.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
+    parser.add_argument(
+        "--seconds",
+        type=positive_number,
+        default=SECONDS,
+        metavar="S",
+        help=f"how long to wait for an answer (default: {SECONDS:g})",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Ask the camera; raises InhandError when it does not answer, or cannot do it."""
+    request = ControlRequest(camera=arguments.camera, options=dict(arguments.settings))
+
+    def complete(replies: list[ControlReply]) -> bool:
+        return bool(replies)
+
+    with open_look(arguments.config) as look:
+        replies = look.ask(CONTROL, request, complete, arguments.seconds)
+    if not replies:
+        raise InhandError(
+            f"{arguments.camera} does not answer: it does not run, or cannot be reached from here"
+        )
+    if (problem := replies[-1].problem) is not None:
+        raise InhandError(f"{arguments.camera}: {problem}")
+    print(f"{arguments.camera}: done, until it ends")
+    return DONE
+
+
+def _name(text: str) -> str:
+    try:
+        require_name("camera", text)
+    except KeyFormatError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return text
+
+
+def _setting(text: str) -> tuple[str, int | float | None]:
+    name, equals, value = text.partition("=")
+    if not name or not equals:
+        raise argparse.ArgumentTypeError(f"write OPTION=VALUE, not {text!r}")
+    if value == AUTOMATIC:
+        return name, None
+    for kind in (int, float):
+        try:
+            return name, kind(value)
+        except ValueError:
+            continue
+    raise argparse.ArgumentTypeError(f"{value!r} is neither a number nor {AUTOMATIC}")

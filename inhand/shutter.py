@@ -1,0 +1,89 @@
+"""``inhand shutter``: close or open the shutter of a rig's cameras.
+
+While it is closed no picture and no skeleton leaves the cameras, also after a restart.
+"""
+
+import argparse
+from pathlib import Path
+
+from inhand_capture.shutter import ShutterFile
+from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.exit_codes import DONE, FAILED
+from inhand_runtime.settings import RigFile, load_rig_file
+from inhand_runtime.settings_errors import suggestion
+from inhand_schemas.keys import Site
+from inhand_schemas.procedures import SHUTTER, ShutterReply, ShutterRequest
+
+from inhand.looking import nothing_heard, open_look, positive_number
+
+SECONDS = 3.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The verb's arguments."""
+    parser.add_argument("move", choices=("close", "open"), help="what to do with the shutter")
+    parser.add_argument("--camera", help="of this camera only (default: of all)")
+    parser.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
+    parser.add_argument(
+        "--seconds",
+        type=positive_number,
+        default=SECONDS,
+        metavar="S",
+        help=f"how long to wait for cameras to answer (default: {SECONDS:g})",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Ask all cameras, or one; exit code 1 unless each one that is meant has done it for good."""
+    rig_file = load_rig_file(arguments.config)
+    closed: bool = arguments.move == "close"
+    expected = _expected(rig_file, arguments.camera)
+    request = ShutterRequest(closed=closed, camera=arguments.camera)
+
+    def complete(replies: list[ShutterReply]) -> bool:
+        answered = {reply.camera for reply in replies}
+        return bool(expected) and answered.issuperset(expected)
+
+    with open_look(arguments.config) as look:
+        answers = look.ask(SHUTTER, request, complete, arguments.seconds)
+        replies = {reply.camera: reply for reply in answers}
+        if not replies and not expected:
+            raise nothing_heard(look.site, arguments.seconds)
+    problems = _report(replies)
+    for camera in expected:
+        if camera not in replies:
+            problems.append(_unreached(look.site, camera, closed=closed))
+    for line in problems:
+        print(f"WRONG: {line}")
+    return FAILED if problems else DONE
+
+
+def _expected(rig_file: RigFile, camera: str | None) -> tuple[str, ...]:
+    """Names of the cameras that must answer; raises SettingsError for one that is not there."""
+    if camera is None:
+        return tuple(rig_file.capture)
+    if rig_file.capture and camera not in rig_file.capture:
+        raise SettingsError(
+            f"there is no table [capture.{camera}]" + suggestion(camera, sorted(rig_file.capture))
+        )
+    return (camera,)
+
+
+def _report(replies: dict[str, ShutterReply]) -> list[str]:
+    """Print how each shutter is, and return what is wrong."""
+    for camera, reply in sorted(replies.items()):
+        print(f"{camera}: {'closed' if reply.closed else 'open'}")
+    return [
+        f"{camera}: {reply.problem}" for camera, reply in sorted(replies.items()) if reply.problem
+    ]
+
+
+def _unreached(site: Site, camera: str, *, closed: bool) -> str:
+    """Leave word for a camera of this host that does not answer; return the line about it."""
+    word = "closed" if closed else "open"
+    line = f"{camera} does not answer: it does not run, or cannot be reached from here. "
+    try:
+        ShutterFile(site, camera).write(closed=closed)
+    except OSError as error:
+        raise InhandError(line + f"Nor can it be noted for its start: {error}") from None
+    return line + f"Where it runs on this host and as this user, it will start with it {word}"

@@ -1,0 +1,89 @@
+"""Procedures: what instances of a service can be asked to do, with request and reply in one object.
+
+A request goes to all instances of the service; each that it concerns replies for itself.
+"""
+
+from dataclasses import dataclass
+from typing import Annotated, Generic, TypeVar
+
+import msgspec
+from msgspec import Meta, Struct
+
+from inhand_schemas.errors import MessageError
+from inhand_schemas.keys import Site
+from inhand_schemas.messages import Name, Text
+
+Q = TypeVar("Q", bound=Struct)
+R = TypeVar("R", bound=Struct)
+
+_encoder = msgspec.msgpack.Encoder()
+
+
+class ShutterRequest(Struct, frozen=True, kw_only=True):
+    """Close or open the shutter of one camera, or of all."""
+
+    closed: bool
+    camera: Name | None = None
+
+
+class ShutterReply(Struct, frozen=True, kw_only=True):
+    """How a camera's shutter is from now on; ``problem`` is why it will not stay so."""
+
+    camera: Name
+    closed: bool
+    problem: Text | None = None
+
+
+class ControlRequest(Struct, frozen=True, kw_only=True):
+    """Change settings of a camera that runs, by the names of its source's options; nil makes one
+    automatic."""
+
+    camera: Name
+    options: Annotated[dict[Name, int | float | None], Meta(max_length=64)]
+
+
+class ControlReply(Struct, frozen=True, kw_only=True):
+    """That a camera has done so, or why it has not."""
+
+    camera: Name
+    problem: Text | None = None
+
+
+@dataclass(frozen=True)
+class Procedure(Generic[Q, R]):
+    """One verb of a service, ``{realm}/@v1/{rig}/@rpc/{service}/{verb}``."""
+
+    service: str
+    verb: str
+    request_type: type[Q]
+    reply_type: type[R]
+
+    def key(self, site: Site) -> str:
+        """The key that all instances of the service answer on."""
+        return site.procedure_key(self.service, self.verb)
+
+    def encode(self, message: Q | R) -> bytes:
+        """A request or reply as MessagePack."""
+        return _encoder.encode(message)
+
+    def request(self, data: bytes) -> Q:
+        """Decode a request; raises MessageError."""
+        return _decoded(data, self.request_type)
+
+    def reply(self, data: bytes) -> R:
+        """Decode a reply; raises MessageError."""
+        return _decoded(data, self.reply_type)
+
+
+S = TypeVar("S", bound=Struct)
+
+
+def _decoded(data: bytes, kind: type[S]) -> S:
+    try:
+        return msgspec.msgpack.decode(data, type=kind)
+    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
+        raise MessageError(f"no valid {kind.__name__}: {error}") from None
+
+
+SHUTTER = Procedure("capture", "shutter", ShutterRequest, ShutterReply)
+CONTROL = Procedure("capture", "control", ControlRequest, ControlReply)
