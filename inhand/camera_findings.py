@@ -103,9 +103,9 @@ def oak_findings(tables: Mapping[str, Mapping[str, object]]) -> Iterator[Finding
             if IN_USE in str(error):
                 yield Finding(f"{what}: it is in use, by this rig if it runs")
             else:
-                yield Finding(f"{what}: {error}", "attach it, or correct its options")
+                yield Finding(f"{what} cannot be opened", str(error))
         except SourceError as error:
-            yield Finding(f"{what}: {error}", "see the line itself")
+            yield Finding(f"{what} cannot be opened", str(error))
         else:
             yield Finding(f"{what}: {chosen.getDeviceId() or chosen.name} is there")
 

@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
 def all_findings(rig_file: RigFile, config: Path | None) -> Iterator[Finding]:
     """Look at everything, in the order in which it is needed."""
     yield version_finding()
-    yield clock_finding()
+    yield clock_finding(shared=bool(rig_file.zenoh.connect or rig_file.zenoh.listen))
     yield memory_finding({service: len(getattr(rig_file, service)) for service in SERVICES})
     yield from settings_findings(rig_file, config)
     for recorder in rig_file.recorder.values():

@@ -47,13 +47,15 @@ def memory_finding(instances: Mapping[str, int], available: int | None = None) -
     )
 
 
-def clock_finding(status: int | None = None, year: int | None = None) -> Finding:
-    """Whether the clock is set, and followed by the system's time service."""
+def clock_finding(*, shared: bool, status: int | None = None, year: int | None = None) -> Finding:
+    """Whether the clock is set, and, where the rig is ``shared`` with other hosts, kept right."""
     status = _clock_status() if status is None else status
     if (time.gmtime().tm_year if year is None else year) < LEAST_YEAR:
         return Finding("clock: it has never been set", "set it, and let a time service keep it")
     if status is None:
         return Finding("clock: this system does not say whether anything keeps it right")
+    if status & STA_UNSYNC and not shared:
+        return Finding("clock: nothing keeps it right, which a rig of one host can do without")
     if status & STA_UNSYNC:
         return Finding(
             "clock: nothing keeps it right, so that times of other hosts do not fit",

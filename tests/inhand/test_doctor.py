@@ -32,13 +32,15 @@ def test_memory_is_enough_for_what_the_settings_name_or_must_be_mended() -> None
 
 
 def test_a_clock_that_nothing_keeps_right_must_be_mended() -> None:
-    assert clock_finding(0, 2026).mend is None
-    assert _is_wrong(clock_finding(STA_UNSYNC, 2026), "nothing keeps it right")
-    assert _is_wrong(clock_finding(0, 1970), "never been set")
+    assert clock_finding(shared=True, status=0, year=2026).mend is None
+    unkept = clock_finding(shared=True, status=STA_UNSYNC, year=2026)
+    assert _is_wrong(unkept, "nothing keeps it right")
+    assert clock_finding(shared=False, status=STA_UNSYNC, year=2026).mend is None
+    assert _is_wrong(clock_finding(shared=False, status=0, year=1970), "never been set")
 
 
 def test_the_clock_of_this_host_can_be_asked() -> None:
-    assert clock_finding().what.startswith("clock: ")
+    assert clock_finding(shared=True).what.startswith("clock: ")
 
 
 def test_a_full_disk_must_be_mended(tmp_path: Path) -> None:
@@ -115,10 +117,11 @@ def test_a_udev_rule_for_cameras_is_found(tmp_path: Path) -> None:
 def test_a_rig_that_can_start_passes_and_one_that_cannot_is_told_why(rig: RunningRig) -> None:
     found = rig.folder / "found.json"
     rig.configure('[recorder.disk]\nfolder = "recordings"\n')
-    rig.done("doctor", "--config", rig.config, "--json", found)
+    sound = rig.done("doctor", "--config", rig.config, "--json", found)
     findings = {one["what"]: one["mend"] for one in json.loads(found.read_text())["findings"]}
     assert findings["recorder disk: its settings are valid, and it can start"] is None
     assert any(what.startswith("disk: ") for what in findings)
+    assert sound.popen.returncode == any(findings.values())
 
     rig.configure('[capture.front]\nsource = "oak"\n[capture.front.options]\nserial = 5\n')
     done = rig.done("doctor", "--config", rig.config)
@@ -128,4 +131,5 @@ def test_a_rig_that_can_start_passes_and_one_that_cannot_is_told_why(rig: Runnin
     rig.configure('[capture.front]\nsource = "oak"\n')
     done = rig.done("doctor", "--config", rig.config)
     assert done.popen.returncode == 1
-    assert "WRONG  camera of [capture.front]: no OAK camera is attached" in done.stdout
+    wrong = "WRONG  camera of [capture.front] cannot be opened: no OAK camera is attached"
+    assert wrong in done.stdout
