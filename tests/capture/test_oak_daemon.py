@@ -12,16 +12,16 @@ from inhand_schemas.keys import Site
 from inhand_schemas.messages import Health, RgbdFrame
 from inhand_schemas.topics import HEALTH, INFO, RGBD
 from running_rig import Process, RunningRig, eventually
-from stub_oak import shots
+from stub_oak import Shots
 from wire import Wire
 
 
 @pytest.fixture
 def recording(tmp_path: Path) -> Path:
-    """Two hundred pictures that tell their number, recorded."""
+    """Sixty pictures that show their number, recorded."""
     path = tmp_path / "shots.mcap"
     with RecordingWriter(path) as writer:
-        for number, (colour, depth) in enumerate(shots(200)):
+        for number, (colour, depth) in enumerate(Shots(60)):
             frame = RgbdFrame(
                 sequence=number,
                 time_ns=1_600_000_000_000_000_000 + number * 33_000_000,

@@ -26,14 +26,23 @@ FOCAL = 500.0
 Shot = tuple[NDArray[np.uint8], NDArray[np.uint16]]
 
 
-def shots(count: int, width: int = 640, height: int = 480) -> list[Shot]:
-    """Pictures that tell their number: depth is 1000 + n, and colour's red is n."""
-    colour = np.zeros((height, width, 3), np.uint8)
-    made = []
-    for number in range(count):
+@dataclass(frozen=True)
+class Shots(Sequence[Shot]):
+    """Pictures that show their number, made when asked for: depth is 1000 + n, colour's red n."""
+
+    count: int
+    width: int = 640
+    height: int = 480
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, number):
+        if not 0 <= number < self.count:
+            raise IndexError(number)
+        colour = np.zeros((self.height, self.width, 3), np.uint8)
         colour[..., 0] = number
-        made.append((colour.copy(), np.full((height, width), 1000 + number, np.uint16)))
-    return made
+        return colour, np.full((self.height, self.width), 1000 + number, np.uint16)
 
 
 def recorded_shots(path: Path) -> list[Shot]:
@@ -123,7 +132,7 @@ class SensorNodes(dai.node.ThreadedHostNode):
 class StubCamera:
     """A camera whose sensors the test commands; each ``connect`` opens it anew."""
 
-    shots: Sequence[Shot] = field(default_factory=lambda: shots(200))
+    shots: Sequence[Shot] = Shots(200)
     mjpeg: bool = False
     first: Sequence[Exposure] = (Exposure(0),)
     focal: float = FOCAL

@@ -14,12 +14,12 @@ from inhand_runtime.pixels import decode_colour
 from inhand_runtime.source import Captured, SourceError, SourceLostError
 from inhand_schemas.messages import ColourImage
 from running_rig import eventually
-from stub_oak import FOCAL, Exposure, StubCamera, shots
+from stub_oak import FOCAL, Exposure, Shots, StubCamera
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture
 def _impatient(monkeypatch: pytest.MonkeyPatch) -> None:
-    quick = replace(OAK, silence_s=0.4, first_pair_s=0.6, poll_s=0.05)
+    quick = replace(OAK, silence_s=1.0, first_pair_s=1.5)
     monkeypatch.setattr(source_module, "OAK", quick)
 
 
@@ -65,7 +65,7 @@ def test_each_moment_holds_colour_and_depth_of_one_exposure_and_its_true_time(op
 
 
 def test_intrinsics_are_those_of_the_published_picture(open_: Open) -> None:
-    source = open_(StubCamera(shots=shots(3, 1280, 720)), size="1280x720")
+    source = open_(StubCamera(shots=Shots(3, 1280, 720)), size="1280x720")
     info = source.info
     assert (info.width, info.height, info.fx, info.cx, info.cy) == (1280, 720, FOCAL, 640, 360)
     assert info.description == "a stub of a camera"
@@ -159,6 +159,7 @@ def test_a_break_in_mid_stream_is_a_loss_with_its_reason(open_: Open) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.usefixtures("_impatient")
 @pytest.mark.parametrize(
     ("alive", "line"),
     [
@@ -191,18 +192,20 @@ def test_silence_is_a_loss_though_nothing_was_raised(
 
 
 @pytest.mark.long
+@pytest.mark.usefixtures("_impatient")
 def test_a_reader_that_took_long_is_not_the_cameras_silence(open_: Open) -> None:
     camera = StubCamera()
     source = open_(camera)
     moments = _moments(source)
     camera.send(1)
     next(moments)
-    time.sleep(0.6)
+    time.sleep(1.2)
     camera.send(2)
     assert _number(next(moments)) == (2, 2)
 
 
 @pytest.mark.long
+@pytest.mark.usefixtures("_impatient")
 def test_a_camera_that_sends_nothing_at_first_is_closed_again(open_: Open) -> None:
     camera = StubCamera(first=())
     with pytest.raises(SourceLostError, match="no colour and no depth"):
@@ -216,7 +219,7 @@ def test_a_camera_that_sends_nothing_at_first_is_closed_again(open_: Open) -> No
         (StubCamera(focal=1.0), "the camera knows no intrinsics"),
         (StubCamera(focal=-FOCAL), "the camera knows no intrinsics"),
         (
-            StubCamera(shots=shots(1, 1280, 800)),
+            StubCamera(shots=Shots(1, 1280, 800)),
             "sends colour of 1280 × 800 where 640 × 480 was asked for",
         ),
     ],
