@@ -191,7 +191,7 @@ def test_echo_prints_messages_with_sizes_for_bytes(rig: RunningRig) -> None:
     assert looked.popen.returncode == 0, looked.stderr
     lines = [json.loads(line) for line in looked.stdout.splitlines()]
     assert [line["key"] for line in lines] == ["inhand/@v1/rig/rgbd/front"] * 3
-    assert lines[0]["message"]["colour"]["data"] == "<1234 bytes>"
+    assert lines[0]["message"]["colour"]["data"] == "<1,234 bytes>"
 
 
 @pytest.mark.long
