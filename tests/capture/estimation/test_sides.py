@@ -2,8 +2,10 @@
 
 import numpy as np
 from inhand_capture.estimation.found_person import FoundPerson
+from inhand_capture.estimation.lifting import Lifted
 from inhand_capture.estimation.sides import Sides
-from inhand_schemas.joints import MIRRORED_JOINTS
+from inhand_schemas.joints import MIRRORED_JOINTS, Joint
+from numpy.typing import NDArray
 from posed_person import pixels_of, seen, standing
 
 FRAME_S = 1.0 / 30.0
@@ -38,3 +40,39 @@ def test_somebody_who_turns_round_keeps_their_sides() -> None:
         person = seen(turned + there)
         np.testing.assert_array_equal(sides.kept(person, FRAME_S).pixels, person.pixels)
     assert pixels_of(turned + there)[4, 0] < pixels_of(standing())[4, 0]
+
+
+def as_lifted(joints: NDArray[np.float64]) -> Lifted:
+    states = np.where(np.isfinite(joints[:, 0]), 2, 0).astype(np.uint8)
+    return Lifted(joints, states, joints)
+
+
+def test_toes_that_point_backwards_say_that_left_is_right() -> None:
+    truth, order = standing(), np.array(MIRRORED_JOINTS)
+    assert not Sides().are_wrong(as_lifted(truth), 0.0)
+    sides = Sides()
+    assert sides.are_wrong(as_lifted(truth[order]), 0.0)
+    assert not sides.are_wrong(as_lifted(truth), FRAME_S)
+
+
+def test_one_frame_s_toes_do_not_contradict_many() -> None:
+    truth, order, sides = standing(), np.array(MIRRORED_JOINTS), Sides()
+    for _ in range(10):
+        assert not sides.are_wrong(as_lifted(truth), FRAME_S)
+    assert not sides.are_wrong(as_lifted(truth[order]), FRAME_S)
+    assert any(sides.are_wrong(as_lifted(truth[order]), FRAME_S) for _ in range(10))
+
+
+def test_a_network_that_goes_on_about_it_is_not_believed_against_the_toes() -> None:
+    sides, wrong = Sides(), exchanged(seen(standing()))
+    sides.kept(seen(standing()), FRAME_S)
+    for _ in range(60):
+        kept = sides.kept(wrong, FRAME_S)
+        assert not sides.are_wrong(as_lifted(standing()), FRAME_S)
+    np.testing.assert_array_equal(kept.pixels, seen(standing()).pixels)
+
+
+def test_toes_that_are_not_seen_say_nothing() -> None:
+    hidden = standing()[np.array(MIRRORED_JOINTS)]
+    hidden[[Joint.FOOT_LEFT, Joint.FOOT_RIGHT]] = np.nan
+    assert not Sides().are_wrong(as_lifted(hidden), 0.0)

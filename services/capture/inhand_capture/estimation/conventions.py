@@ -29,7 +29,7 @@ def as_kinect(seen: Floats, states: States, parameters: LiftingParameters) -> tu
         joints[joint] = hips + share * up
         derived[joint] = INFERRED
     trunk = float(np.linalg.norm(up))
-    forwards = _forwards(seen, up)
+    ahead = forwards(seen)
     joints[Joint.HEAD] += parameters.head_above * up
     if np.isnan(seen[Joint.HEAD, 0]):
         joints[Joint.HEAD], derived[Joint.HEAD] = hips + parameters.head * up, INFERRED
@@ -46,14 +46,16 @@ def as_kinect(seen: Floats, states: States, parameters: LiftingParameters) -> tu
             forearm = _unit(seen[wrist] - seen[elbow])
             joints[hand], derived[hand] = seen[wrist] + parameters.hand * trunk * forearm, INFERRED
         if np.isnan(seen[foot, 0]) and states[ankle]:
-            toes = parameters.foot * trunk * forwards
+            toes = parameters.foot * trunk * ahead
             joints[foot], derived[foot] = seen[ankle] + toes, INFERRED
     return joints, derived
 
 
-def _forwards(seen: Floats, up: Floats) -> Floats:
-    """Return the direction (3,) in which the hips face."""
-    return _unit(np.cross(seen[Joint.HIP_LEFT] - seen[Joint.HIP_RIGHT], up))
+def forwards(seen: Floats) -> Floats:
+    """Return the direction (3,) in which a body faces, by its hips and shoulders."""
+    shoulders, hips = (seen[list(pair)] for pair in (SHOULDERS, HIPS))
+    left = shoulders[0] - shoulders[1] + hips[0] - hips[1]
+    return _unit(np.cross(left, shoulders.mean(axis=0) - hips.mean(axis=0)))
 
 
 def _unit(vector: Floats) -> Floats:

@@ -65,15 +65,25 @@ class SkeletonEstimator:
     def _follow(self, seen: "_Seen", person: FollowedPerson, time_ns: int) -> Person | None:
         """Lift somebody by what is remembered of them; None for what is no person."""
         seconds = (time_ns - person.seen_ns) / 1e9
-        kept, surfaces = person.sides.kept(seen.person, seconds), seen.surfaces
-        if kept is not seen.person:
-            surfaces = self._lifter.read(kept, seen.picture) or surfaces
-        lifted = self._lifter.lift(kept, surfaces, person.body, _joints_before(person, seconds))
+        kept = person.sides.kept(seen.person, seconds)
+        lifted = self._lift(seen, kept, person, _joints_before(person, seconds))
+        if lifted is not None and person.sides.are_wrong(lifted, seconds):
+            kept = person.sides.exchanged(kept)
+            lifted = self._lift(seen, kept, person, np.full_like(person.seen, np.nan))
         if lifted is None:
             return None
-        number = self._people.see(person, surfaces.middle, lifted, time_ns)
+        number = self._people.see(person, seen.surfaces.middle, lifted, time_ns)
         joints = person.filter.smooth(lifted.joints, max(seconds, SHORTEST_S))
         return person_message(number, joints, lifted, kept.visibilities)
+
+    def _lift(
+        self, seen: "_Seen", kept: FoundPerson, person: FollowedPerson, before: Floats
+    ) -> Lifted | None:
+        """Lift somebody whose sides may be other than the network said."""
+        surfaces = seen.surfaces
+        if kept is not seen.person:
+            surfaces = self._lifter.read(kept, seen.picture) or surfaces
+        return self._lifter.lift(kept, surfaces, person.body, before)
 
     def _lifter_for(self, colour: NDArray[np.uint8]) -> Lifter:
         height, width = colour.shape[:2]

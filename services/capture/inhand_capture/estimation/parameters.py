@@ -168,7 +168,12 @@ class FollowingParameters:
     """Distance of joints from where they were with left and right exchanged, over that as they are,
     below which a network is taken to have exchanged them."""
     longest_exchange_s: float = 0.7
-    """Seconds after which a network that exchanges sides is believed."""
+    """Seconds after which a network that exchanges sides is believed, unless toes contradict it."""
+    toes_m: float = 0.03
+    """Distance of toes before ankles, or behind them, from which they say where a body faces,
+    metres."""
+    toes_s: float = 0.1
+    """Time constant of that distance's mean, seconds."""
 
     # How joints are smoothed (one_euro; Casiez et al. 2012).
     slowest_hz: float = 1.5
