@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
 from inhand_tracker.sight.colours import Colours
+from inhand_tracker.sight.frame import SightFrame
 from inhand_tracker.sight.refinement import Refined
 
 TRUE = PoseGaussian(
@@ -26,11 +27,13 @@ class GaussianSight:
     weighed: int = 0
     learned: list[np.ndarray] = field(default_factory=list)
     trusts: list[float] = field(default_factory=list)
+    frames: list[SightFrame] = field(default_factory=list)
 
     def start(self) -> Colours:
         return TRAINED
 
     def view(self, frame: Any, colours: Colours, joints: Any) -> "View":
+        self.frames.append(frame)
         return View(frame, colours)
 
     def compare_unseen(self, weighed: Any, view: "View", trust: float) -> "View":

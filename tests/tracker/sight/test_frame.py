@@ -1,11 +1,8 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.sight.frame import prepare
-from inhand_tracker.sight.parameters import DEFAULT_SIGHT
 
 CAMERA = Intrinsics(100.0, 110.0, 31.5, 23.5, 64, 48)
 POINT = np.array([0.05, 0.02, 1.0])
@@ -60,7 +57,7 @@ def test_depth_alone_keeps_its_size() -> None:
 def test_a_region_of_very_many_pixels_is_seen_in_fewer_that_show_the_same() -> None:
     region = (3.0, 2.0, 63.0, 45.0)
     whole = prepare(image(), region)
-    small = prepare(image(), region, replace(DEFAULT_SIGHT, most_pixels=300))
+    small = prepare(image(), region, most_pixels=300)
     assert (small.camera.width, small.camera.height) == (20, 14)
     np.testing.assert_allclose(
         3.0 * (small.camera.project(POINT) + 0.5), whole.camera.project(POINT) + 0.5

@@ -56,13 +56,15 @@ class SightFrame:
 
 
 def prepare(
-    image: Image, region: Region | None = None, parameters: SightParameters = DEFAULT_SIGHT
+    image: Image,
+    region: Region | None = None,
+    parameters: SightParameters = DEFAULT_SIGHT,
+    most_pixels: float = math.inf,
 ) -> SightFrame:
     """Cut the part within a region out of an image, or take all of it.
 
-    Depth of another size is brought to that of the colours. A part of very many pixels, where the
-    object is large or may be anywhere, is made smaller. Edges and bins are found when they are
-    first asked for.
+    Depth of another size is brought to that of the colours. Of a part of more than ``most_pixels``
+    several pixels become one. Edges and bins are found when they are first asked for.
     """
     camera, colour, depth = image.camera, image.colour, image.depth
     given = colour if colour is not None else depth
@@ -75,9 +77,9 @@ def prepare(
         camera, pixels = cut(camera, region)
         colour = None if colour is None else colour[pixels]
         depth = None if depth is None else depth[pixels]
-        step = math.ceil(math.sqrt(camera.width * camera.height / parameters.most_pixels))
-        if step > 1:
-            camera, colour, depth = _smaller(camera, colour, depth, step)
+    step = math.ceil(math.sqrt(camera.width * camera.height / most_pixels))
+    if step > 1:
+        camera, colour, depth = _smaller(camera, colour, depth, step)
     return SightFrame(
         camera,
         None if colour is None else np.ascontiguousarray(colour),

@@ -12,10 +12,6 @@ from dataclasses import dataclass
 class SightParameters:
     """How a frame is read, and how poses are weighed by it and refined."""
 
-    # How much of a frame is looked at (frame).
-    most_pixels: int = 60_000
-    """Number of pixels of a region above which several become one."""
-
     # How the terms of the likelihood count (sight).
     edges_weight: float = 4.5
     """Number of independent points that the edges along the outline are worth."""

@@ -118,3 +118,13 @@ def test_the_support_is_that_of_the_likeliest_pose_by_the_colours_of_training() 
 def test_the_same_seed_looks_at_the_same_hypotheses() -> None:
     first, second = (looked(GaussianSight(refines=False)) for _ in range(2))
     np.testing.assert_array_equal(first.centre, second.centre)
+
+
+@pytest.mark.parametrize(("radius_m", "coarse"), [(0.1, True), (0.6, False)])
+def test_where_an_object_may_be_anywhere_it_is_looked_for_coarsely_a_large_one_is_not(
+    radius_m: float, coarse: bool
+) -> None:
+    sight, parameters = GaussianSight(), replace(DEFAULT_FUSION, most_pixels=10_000)
+    sphere = BoundingSphere(np.zeros(3), radius_m)
+    ImageSearch(sight, sphere, parameters, seed=1).look(belief(TRUE.centre), BLANK, STANDING, 1.0)
+    assert (sight.frames[-1].camera.fx < CAMERA.fx) == coarse

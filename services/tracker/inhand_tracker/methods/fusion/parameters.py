@@ -64,6 +64,9 @@ class FusionParameters:
     smear. Decided on real bodies (`inhand simulate --bodies`), where a fast club misled."""
     region_margin: float = 1.3
     """Radius, in the object's radii, of what is prepared of an image around each hypothesis."""
+    most_pixels: int = 30_000
+    """Number of pixels of that part above which several become one, unless the object alone takes
+    up half of them: where it may be anywhere, a coarse look finds it."""
     same_mode_m: float = 0.01
     """Metres within which two refined poses are the same one, if they agree in rotation."""
     same_mode_rad: float = 0.1

@@ -10,7 +10,7 @@ import numpy as np
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
-from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.camera import NEAREST_M, Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, means_of
 from inhand_tracker.methods.fusion.parameters import FusionParameters
@@ -91,9 +91,17 @@ class ImageSearch:
             return None
         return left, top, right, bottom
 
+    def _own_pixels(self, guess: PoseGaussian, camera: Intrinsics) -> float:
+        """Number of pixels that would be prepared if the pose were known."""
+        reach = self._parameters.region_margin * self._sphere.radius
+        across = 2.0 * reach * camera.fx / max(float(guess.centre[2]), NEAREST_M)
+        return across * across
+
     def _open(self, guess: PoseGaussian, image: Image, region: Region, joints: Array) -> SightView:
         """Prepare a region of the image; in the first one the surroundings' colours are learned."""
-        frame = prepare(image, region, self._parameters.sight)
+        own_pixels = self._own_pixels(guess, image.camera)
+        most_pixels = max(self._parameters.most_pixels, 2.0 * own_pixels)
+        frame = prepare(image, region, self._parameters.sight, most_pixels)
         if self._found is None:
             self._learn_colours(guess, frame, of_object=0.0)
         return self._sight.view(frame, self._colours, joints)
