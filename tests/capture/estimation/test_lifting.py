@@ -82,6 +82,18 @@ def test_a_pixel_beside_a_thin_limb_does_not_put_the_joint_on_the_wall() -> None
     assert found.seen[Joint.WRIST_LEFT, 2] < truth[Joint.WRIST_LEFT, 2] + 0.15
 
 
+def test_a_hand_that_is_far_beyond_its_arm_is_missing() -> None:
+    truth = standing()
+    person = seen(truth)
+    away = person.pixels.copy()
+    away[[Joint.WRIST_LEFT, Joint.HAND_LEFT], 0] += 250.0
+    found = lifted(replace(person, pixels=away), picture(truth))
+    assert found is not None
+    assert (found.states[[Joint.WRIST_LEFT, Joint.HAND_LEFT]] == 0).all()
+    assert np.isnan(found.joints[[Joint.WRIST_LEFT, Joint.HAND_LEFT]]).all()
+    assert found.states[Joint.ELBOW_LEFT] == 2
+
+
 def test_holes_leave_joints_inferred_where_the_network_says() -> None:
     truth = standing()
     depth = depth_of(truth)

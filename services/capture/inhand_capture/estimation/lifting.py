@@ -169,6 +169,7 @@ class Lifter:
             if len(known) > 1:
                 choose(known, seen[limb[0]], person.depths, expected)
         self._doubt(person, states)
+        self._drop_wild(seen, states, expected)
         joints, kinects = as_kinect(seen, states, self._parameters)
         joints[kinects == 0] = np.nan
         return Lifted(joints, kinects, seen)
@@ -205,6 +206,14 @@ class Lifter:
         states[unseen & (states == TRACKED)] = INFERRED
         inside = (person.pixels >= 0) & (person.pixels < [self._lens.width, self._lens.height])
         states[OUTER] = np.where((inside.all(axis=1) | ~unseen)[OUTER], states[OUTER], 0)
+
+    def _drop_wild(self, seen: Floats, states: States, expected: Floats) -> None:
+        """Call joints (20,) missing that lie far beyond a limb's length, and all after them."""
+        for limb in LIMBS:
+            lengths = np.linalg.norm(seen[limb[1:]] - seen[limb[:-1]], axis=1)
+            wild = lengths > self._parameters.longest_ratio * expected[limb[1:]]
+            if wild.any():
+                states[limb[1 + int(np.argmax(wild)) :]] = 0
 
 
 def joint_radii(parameters: LiftingParameters) -> Floats:

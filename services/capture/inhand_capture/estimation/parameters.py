@@ -91,6 +91,9 @@ class LiftingParameters:
     """Bound of what a departure costs: a wild one tells no more than a large one."""
     hidden_cost: float = 5.0
     """Cost of taking a joint for hidden, in squared deviations."""
+    longest_ratio: float = 2.0
+    """Ratio of a part's length to the expected one from which its outer joint is missing: it is not
+    this person's, or not where the network says."""
     visible_from: float = 0.5
     """Visibility from which a measured joint is tracked; others are inferred."""
 
