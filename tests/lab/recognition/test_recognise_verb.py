@@ -184,5 +184,5 @@ def test_a_recogniser_is_trained_by_a_command(people: Dataset, tmp_path: Path) -
 
 def test_one_action_alone_cannot_be_recognised(people: Dataset, tmp_path: Path) -> None:
     lifted = replace(people, entries=people.entries[:5])
-    with pytest.raises(DatasetError, match="1 actions by 5 participants"):
+    with pytest.raises(DatasetError, match="1 action by 5 participants"):
         learn_cascade(lifted, lifted.entries, images=False)

@@ -98,9 +98,9 @@ class SightParameters:
     """Metres before and behind a limb within which a measured depth may be the limb's."""
 
     # How poses are refined (refinement, kernels/gather).
-    refinement_steps: int = 5
+    refinement_steps: int = 6
     """Number of Gauss-Newton steps."""
-    thin_steps: int = 3
+    thin_steps: int = 4
     """Number of steps, of those, that look at one point in ``thinning`` only."""
     last_reach: float = 0.12
     """Share of the first step's reach that is left for the last one."""
