@@ -4,7 +4,6 @@ They hold until the daemon ends; what shall stay is written into the settings fi
 """
 
 import argparse
-from pathlib import Path
 
 from inhand_runtime.errors import InhandError
 from inhand_runtime.exit_codes import DONE
@@ -12,7 +11,7 @@ from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import require_name
 from inhand_schemas.procedures import CONTROL, ControlReply, ControlRequest
 
-from inhand.looking import open_look, positive_number
+from inhand.looking import UNREACHED, add_looking_arguments, open_look
 
 SECONDS = 3.0
 AUTOMATIC = "auto"
@@ -28,14 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="OPTION=VALUE",
         help=f"an option of its source, and a number or {AUTOMATIC}",
     )
-    parser.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
-    parser.add_argument(
-        "--seconds",
-        type=positive_number,
-        default=SECONDS,
-        metavar="S",
-        help=f"how long to wait for an answer (default: {SECONDS:g})",
-    )
+    add_looking_arguments(parser, SECONDS, "to wait for an answer")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -48,9 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     with open_look(arguments.config) as look:
         replies = look.ask(CONTROL, request, complete, arguments.seconds)
     if not replies:
-        raise InhandError(
-            f"{arguments.camera} does not answer: it does not run, or cannot be reached from here"
-        )
+        raise InhandError(f"{arguments.camera} does not answer: {UNREACHED}")
     if (problem := replies[-1].problem) is not None:
         raise InhandError(f"{arguments.camera}: {problem}")
     print(f"{arguments.camera}: done, until it ends")

@@ -10,6 +10,7 @@ from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import Health
 
+from inhand.looking import UNREACHED
 from inhand.stopped import Instance, Stopped, stopped_lines
 
 SILENT_AFTER_S = 3.5
@@ -77,7 +78,7 @@ class Roll:
         silent = [instance for instance, heard in living.items() if not self._speaks(heard)]
         standing = stopped_lines(stopped, missing, silent)
         lines = [
-            f"{service} {name} is missing: it does not run, or cannot be reached from here"
+            f"{service} {name} is missing: {UNREACHED}"
             for service, name in sorted(missing - set(standing.values()))
         ]
         lines += standing

@@ -29,6 +29,8 @@ R = TypeVar("R", bound=Struct)
 QUEUE_BYTES = 64 << 20
 QUEUE_SAMPLES = 10_000
 IDLE_S = 0.1
+UNREACHED = "it does not run, or cannot be reached from here"
+"""Why an instance may be silent, as far as can be known from here."""
 ANSWER_S = 2.0
 """Seconds in which an instance answers a request."""
 FILE_WIDTH = 200
@@ -126,15 +128,17 @@ def open_look(config: Path | None) -> Iterator[Look]:
         yield Look(session, Site(rig_file.realm, rig_file.rig), stop)
 
 
-def add_looking_arguments(parser: argparse.ArgumentParser, seconds: float | None) -> None:
-    """``--config``, and ``--seconds`` with its default."""
+def add_looking_arguments(
+    parser: argparse.ArgumentParser, seconds: float | None, why: str = "to look"
+) -> None:
+    """``--config``, and ``--seconds`` with its default and what they are for."""
     parser.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
     parser.add_argument(
         "--seconds",
         type=positive_number,
         default=seconds,
         metavar="S",
-        help=f"how long to look (default: {seconds or 'until Ctrl-C'})",
+        help=f"how long {why} (default: {f'{seconds:g}' if seconds else 'until Ctrl-C'})",
     )
 
 

@@ -4,7 +4,6 @@ While it is closed no picture and no skeleton leaves the cameras, also after a r
 """
 
 import argparse
-from pathlib import Path
 
 from inhand_capture.shutter import ShutterFile
 from inhand_runtime.errors import InhandError, SettingsError
@@ -14,7 +13,7 @@ from inhand_runtime.settings_errors import suggestion
 from inhand_schemas.keys import Site
 from inhand_schemas.procedures import SHUTTER, ShutterReply, ShutterRequest
 
-from inhand.looking import nothing_heard, open_look, positive_number
+from inhand.looking import UNREACHED, add_looking_arguments, nothing_heard, open_look
 
 SECONDS = 3.0
 
@@ -23,14 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's arguments."""
     parser.add_argument("move", choices=("close", "open"), help="what to do with the shutter")
     parser.add_argument("--camera", help="of this camera only (default: of all)")
-    parser.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
-    parser.add_argument(
-        "--seconds",
-        type=positive_number,
-        default=SECONDS,
-        metavar="S",
-        help=f"how long to wait for cameras to answer (default: {SECONDS:g})",
-    )
+    add_looking_arguments(parser, SECONDS, "to wait for cameras to answer")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -81,7 +73,7 @@ def _report(replies: dict[str, ShutterReply]) -> list[str]:
 def _unreached(site: Site, camera: str, *, closed: bool) -> str:
     """Leave word for a camera of this host that does not answer; return the line about it."""
     word = "closed" if closed else "open"
-    line = f"{camera} does not answer: it does not run, or cannot be reached from here. "
+    line = f"{camera} does not answer: {UNREACHED}. "
     try:
         ShutterFile(site, camera).write(closed=closed)
     except OSError as error:

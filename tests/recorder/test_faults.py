@@ -10,7 +10,6 @@ from inhand_recorder.recovery import recover_recording
 from inhand_recorder.scanning import scan
 from inhand_recorder.verification import examine_recording, verify_recording
 from inhand_runtime.recording import RecordingWriter
-from mcap.writer import CompressionType, Writer
 from recordings import (
     FRAME_NS,
     POSE_KEY,
@@ -20,6 +19,7 @@ from recordings import (
     contents,
     damaged_copy,
     frame_messages,
+    write_without_checksums,
 )
 
 STREAMS = (RGBD_KEY, SKELETONS_KEY, POSE_KEY)
@@ -129,18 +129,7 @@ def test_what_no_checksum_covers_is_named_and_stays_so_in_what_was_recovered(
     tmp_path: Path,
 ) -> None:
     path = tmp_path / "old.mcap"
-    with path.open("wb") as file:
-        writer = Writer(file, compression=CompressionType.NONE)
-        writer.start(profile="inhand")
-        channel = writer.register_channel(POSE_KEY, "msgpack", 0)
-        for number in range(20):
-            payload = frame_messages(number, 1)[2][2]
-            writer.add_message(channel, START_NS + number, payload, START_NS, number)
-        writer.finish()
-    data = bytearray(path.read_bytes())
-    place = data.index(frame_messages(7, 1)[2][2])
-    data[place : place + 64] = bytes(64)
-    path.write_bytes(data)
+    write_without_checksums(path, damaged=7)
     report = recover_recording(path, tmp_path / "saved.mcap")
     kept = f"{POSE_KEY}: 19 messages, numbers 0-6, 8-19, received from"
     assert any(x.startswith(kept) and x.endswith("covers it, kept") for x in report.faults)

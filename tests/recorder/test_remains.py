@@ -17,7 +17,6 @@ from inhand_runtime.recording import (
     read_metadata,
     read_recording,
 )
-from mcap.writer import CompressionType, Writer
 from recordings import (
     POSE_KEY,
     RGBD_KEY,
@@ -26,6 +25,7 @@ from recordings import (
     damaged_copy,
     frame_messages,
     write_frame,
+    write_without_checksums,
 )
 
 
@@ -88,18 +88,7 @@ def test_a_flipped_bit_before_a_cut_is_left_out(whole: Path, tmp_path: Path) -> 
 
 def test_without_checksums_what_decodes_is_saved_and_told_as_unchecked(tmp_path: Path) -> None:
     path = tmp_path / "old.mcap"
-    with path.open("wb") as file:
-        writer = Writer(file, compression=CompressionType.NONE)
-        writer.start(profile="inhand")
-        channel = writer.register_channel(POSE_KEY, "msgpack", 0)
-        for number in range(20):
-            payload = frame_messages(number, 1)[2][2]
-            writer.add_message(channel, START_NS + number, payload, START_NS, number)
-        writer.finish()
-    data = bytearray(path.read_bytes())
-    place = data.index(frame_messages(7, 1)[2][2])
-    data[place : place + 64] = bytes(64)
-    path.write_bytes(data)
+    write_without_checksums(path, damaged=7)
     report = recover_recording(path, tmp_path / "saved.mcap")
     assert (report.messages, report.unchecked, report.undecodable) == (19, 19, 1)
 

@@ -6,9 +6,10 @@ from itertools import pairwise
 
 import numpy as np
 from inhand_capture.estimation.found_person import FoundPerson
-from inhand_capture.estimation.lifting import DepthPicture, Lens, joint_radii
+from inhand_capture.estimation.lifting import DepthPicture, joint_radii
 from inhand_capture.estimation.limbs import DERIVED, LIMBS
 from inhand_capture.estimation.parameters import DEFAULT_LIFTING
+from inhand_runtime.pinhole import Pinhole
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import CameraInfo
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 INFO = CameraInfo(
     sequence=0, time_ns=0, width=640, height=480, fx=525.0, fy=525.0, cx=319.5, cy=239.5
 )
-LENS = Lens(525.0, 525.0, 319.5, 239.5, 640, 480)
+LENS = Pinhole(525.0, 525.0, 319.5, 239.5, 640, 480)
 WALL_M = 3.5
 KNOWN = np.array([joint not in DERIVED for joint in Joint])
 

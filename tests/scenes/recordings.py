@@ -8,6 +8,7 @@ from inhand_runtime.recording import RecordedMessage, RecordingWriter, read_reco
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import ColourImage, Message, ObjectPose, RgbdFrame, Skeletons
 from inhand_schemas.topics import POSE, RGBD, SKELETONS
+from mcap.writer import CompressionType, Writer
 
 SITE = Site()
 START_NS = 1_700_000_000_000_000_000
@@ -85,3 +86,19 @@ def identity(message: RecordedMessage) -> tuple[str, bytes, int, int, int]:
         message.captured_ns,
         message.sequence,
     )
+
+
+def write_without_checksums(path: Path, *, damaged: int) -> None:
+    """Write 20 poses as a program without checksums does, and spoil one of them."""
+    with path.open("wb") as file:
+        writer = Writer(file, compression=CompressionType.NONE)
+        writer.start(profile="inhand")
+        channel = writer.register_channel(POSE_KEY, "msgpack", 0)
+        for number in range(20):
+            payload = frame_messages(number, 1)[2][2]
+            writer.add_message(channel, START_NS + number, payload, START_NS, number)
+        writer.finish()
+    data = bytearray(path.read_bytes())
+    place = data.index(frame_messages(damaged, 1)[2][2])
+    data[place : place + 64] = bytes(64)
+    path.write_bytes(data)

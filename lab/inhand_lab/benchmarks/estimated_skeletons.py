@@ -7,7 +7,8 @@ import numpy as np
 from inhand_capture.estimation.body_lengths import BodyLengths
 from inhand_capture.estimation.estimator import SkeletonEstimator
 from inhand_capture.estimation.found_person import FoundPerson, PoseNetwork
-from inhand_capture.estimation.lifting import DepthPicture, Lens, Lifter, lens_of
+from inhand_capture.estimation.lifting import DepthPicture, Lifter, lens_of
+from inhand_runtime.pinhole import Pinhole
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import Person
 from inhand_tracker.geometry.arrays import Array, Bytes
@@ -147,7 +148,7 @@ def _check_recording(
     tally.ids.append(len(ids))
 
 
-def _by_rules(person: FoundPerson, picture: DepthPicture, lens: Lens) -> dict[str, Array]:
+def _by_rules(person: FoundPerson, picture: DepthPicture, lens: Pinhole) -> dict[str, Array]:
     """Return one person's Kinect joints (20, 3) by each rule, as if it were the first frame."""
     placed = {name: kinect_joints(rule(person, picture, lens)) for name, rule in RULES.items()}
     lifter = Lifter(lens)

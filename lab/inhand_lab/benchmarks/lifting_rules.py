@@ -6,18 +6,19 @@ import numpy as np
 from inhand_capture.estimation.conventions import as_kinect
 from inhand_capture.estimation.found_person import FoundPerson
 from inhand_capture.estimation.kernels.depth_clusters import window_depths
-from inhand_capture.estimation.lifting import DepthPicture, Lens, joint_radii
+from inhand_capture.estimation.lifting import DepthPicture, joint_radii
 from inhand_capture.estimation.parameters import DEFAULT_LIFTING
+from inhand_runtime.pinhole import Pinhole
 from inhand_tracker.geometry.arrays import Array
 
 WINDOW_PX = 3.0
 """Radius of the window whose median is taken, pixels."""
 
-Rule = Callable[[FoundPerson, DepthPicture, Lens], Array]
+Rule = Callable[[FoundPerson, DepthPicture, Pinhole], Array]
 """Gives a network's joints (20, 3) in space, NaN where there is no depth."""
 
 
-def centre_pixel(person: FoundPerson, picture: DepthPicture, lens: Lens) -> Array:
+def centre_pixel(person: FoundPerson, picture: DepthPicture, lens: Pinhole) -> Array:
     """Take the depth of the joint's own pixel, and the limb's radius below it."""
     height, width = picture.depth.shape
     columns, rows = np.nan_to_num(np.round(person.pixels), nan=-1.0).astype(int).T
@@ -27,7 +28,7 @@ def centre_pixel(person: FoundPerson, picture: DepthPicture, lens: Lens) -> Arra
     return _placed(person, depths, lens)
 
 
-def window_median(person: FoundPerson, picture: DepthPicture, lens: Lens) -> Array:
+def window_median(person: FoundPerson, picture: DepthPicture, lens: Pinhole) -> Array:
     """Take the median depth of a window about the joint's pixel, and the limb's radius below it."""
     depths = np.full(len(person.pixels), np.nan)
     for joint, (x, y) in enumerate(person.pixels):
@@ -48,6 +49,6 @@ def kinect_joints(seen: Array) -> Array:
     return joints
 
 
-def _placed(person: FoundPerson, depths: Array, lens: Lens) -> Array:
+def _placed(person: FoundPerson, depths: Array, lens: Pinhole) -> Array:
     depths = np.where(depths > 0.0, depths + joint_radii(DEFAULT_LIFTING), np.nan)
     return np.column_stack((lens.rays(person.pixels) * depths[:, None], depths))

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 from inhand_capture.estimation.body_lengths import BodyLengths
 from inhand_capture.estimation.found_person import FoundPerson
-from inhand_capture.estimation.lifting import DepthPicture, Lens, Lifter
+from inhand_capture.estimation.lifting import DepthPicture, Lifter
 from inhand_capture.estimation.limbs import DERIVED
+from inhand_runtime.pinhole import Pinhole
 from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array
 
@@ -28,7 +29,7 @@ from inhand_lab.importers.utd_mhad import (
     read_trial,
 )
 
-LENS = Lens(FOCAL_LENGTH, FOCAL_LENGTH, WIDTH - 1 - MIRRORED_CX, CY, WIDTH, HEIGHT)
+LENS = Pinhole(FOCAL_LENGTH, FOCAL_LENGTH, WIDTH - 1 - MIRRORED_CX, CY, WIDTH, HEIGHT)
 OWN_RULE = "surfaces and lengths, followed"
 _KNOWN = np.array([joint not in DERIVED for joint in Joint])
 

@@ -26,6 +26,7 @@ from pydantic import AfterValidator, Field, model_validator
 from inhand_capture.publishing import CameraPublisher
 from inhand_capture.reopening import Ending, captures
 from inhand_capture.shutter import (
+    POLL_S,
     EndOfCapture,
     Shutter,
     ShutteredOutlet,
@@ -43,7 +44,6 @@ log = logging.getLogger(__name__)
 
 READER_POLL_S = 0.01
 READER_SETTLES_S = 0.25
-SHUTTER_POLL_S = 0.05
 
 NO_CAMERA = (
     'no camera is configured: write [capture.front] with source = "oak" for a camera that '
@@ -255,7 +255,7 @@ def _wait_while_closed(daemon: Daemon, shutter: Shutter, watched: WatchedSource)
         return
     watched.shut()
     log.info("the shutter is closed: nothing is captured until `inhand shutter open`")
-    while shutter.is_closed() and not daemon.stop.wait(SHUTTER_POLL_S):
+    while shutter.is_closed() and not daemon.stop.wait(POLL_S):
         daemon.health.came_round()
 
 

@@ -1,9 +1,8 @@
 """Where a process finds what was fetched for it, which it cannot make again by itself."""
 
-import os
 from pathlib import Path
 
-from inhand_runtime.cache_folder import home
+from inhand_runtime.own_folder import own_folder
 
 DATA_VARIABLE = "INHAND_DATA"
 
@@ -14,10 +13,4 @@ def data_folder() -> Path:
     It is ``INHAND_DATA``; else that which systemd gives a service (``StateDirectory=``); else
     ``inhand`` in the user's folder for data.
     """
-    if chosen := os.environ.get(DATA_VARIABLE):
-        return Path(chosen).absolute()
-    if given := os.environ.get("STATE_DIRECTORY"):
-        return Path(given.split(os.pathsep)[0])
-    if usual := os.environ.get("XDG_DATA_HOME"):
-        return Path(usual).absolute() / "inhand"
-    return home() / ".local/share/inhand"
+    return own_folder(DATA_VARIABLE, "STATE_DIRECTORY", "XDG_DATA_HOME", ".local/share")

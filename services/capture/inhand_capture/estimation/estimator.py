@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from inhand_runtime.errors import InhandError
+from inhand_runtime.pinhole import Pinhole
 from inhand_schemas.joints import PARENTS
 from inhand_schemas.messages import CameraInfo, JointState, Person
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from inhand_capture.estimation.body_lengths import BodyLengths
 from inhand_capture.estimation.found_person import Floats, FoundPerson, PoseNetwork
 from inhand_capture.estimation.kernels.depth_choice import TRACKED
-from inhand_capture.estimation.lifting import DepthPicture, Lens, Lifted, Lifter, Surfaces, lens_of
+from inhand_capture.estimation.lifting import DepthPicture, Lifted, Lifter, Surfaces, lens_of
 from inhand_capture.estimation.limbs import DERIVED, HANDS_AND_FEET, TRUNK_ENDS
 from inhand_capture.estimation.parameters import DEFAULT_FOLLOWING
 from inhand_capture.estimation.people import FollowedPerson, PeopleFollowed
@@ -108,7 +109,7 @@ def _joints_before(person: FollowedPerson, seconds: float) -> Floats:
     return person.seen if recent else np.full_like(person.seen, np.nan)
 
 
-def compile_lifting(lens: Lens) -> None:
+def compile_lifting(lens: Pinhole) -> None:
     """Compile, or load, what the first person would have to wait for: it lifts nobody's joints."""
     spread = np.random.default_rng(0).uniform(0.4, 0.6, size=(20, 2))
     nobody = FoundPerson(spread * [lens.width, lens.height], np.zeros(20), np.ones(20))

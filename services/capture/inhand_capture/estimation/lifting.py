@@ -9,12 +9,13 @@ taken is what fits the network's own depths, the person's lengths and the last f
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_runtime.pinhole import Pinhole
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import CameraInfo
 from numpy.typing import NDArray
 
 from inhand_capture.estimation.body_lengths import OUTER, BodyLengths, trunk_length, usual_lengths
-from inhand_capture.estimation.conventions import as_kinect
+from inhand_capture.estimation.conventions import States, as_kinect
 from inhand_capture.estimation.found_person import Floats, FoundPerson
 from inhand_capture.estimation.kernels.depth_choice import (
     INFERRED,
@@ -27,36 +28,11 @@ from inhand_capture.estimation.kernels.depth_clusters import surfaces_about
 from inhand_capture.estimation.limbs import HIPS, LIMBS, TRUNK_ENDS
 from inhand_capture.estimation.parameters import DEFAULT_LIFTING, LiftingParameters
 
-States = NDArray[np.uint8]
 
-
-@dataclass(frozen=True)
-class Lens:
-    """A camera's focal lengths and principal point in a picture of a size, pixels."""
-
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    width: int
-    height: int
-
-    def rays(self, pixels: Floats) -> Floats:
-        """Return the directions x, y of 1 metre of depth for pixels (N, 2)."""
-        return (pixels - [self.cx, self.cy]) / [self.fx, self.fy]
-
-
-def lens_of(info: CameraInfo, width: int, height: int) -> Lens:
+def lens_of(info: CameraInfo, width: int, height: int) -> Pinhole:
     """Return a camera's lens in a picture of that size."""
-    x, y = width / info.width, height / info.height
-    return Lens(
-        info.fx * x,
-        info.fy * y,
-        (info.cx + 0.5) * x - 0.5,
-        (info.cy + 0.5) * y - 0.5,
-        width,
-        height,
-    )
+    whole = Pinhole(info.fx, info.fy, info.cx, info.cy, info.width, info.height)
+    return whole.scaled_to(width, height)
 
 
 @dataclass(frozen=True)
@@ -96,7 +72,7 @@ class Surfaces:
 class Lifter:
     """Lifts the people of one camera."""
 
-    def __init__(self, lens: Lens, parameters: LiftingParameters = DEFAULT_LIFTING) -> None:
+    def __init__(self, lens: Pinhole, parameters: LiftingParameters = DEFAULT_LIFTING) -> None:
         self._lens = lens
         self._parameters = parameters
         self._radii = joint_radii(parameters)

@@ -1,10 +1,10 @@
 """The pinhole camera: projection of points to pixels and back."""
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from inhand_runtime.compiled import vectorised
+from inhand_runtime.pinhole import Pinhole
 from inhand_schemas.messages import CameraInfo
 
 from inhand_tracker.geometry.arrays import Array
@@ -13,28 +13,8 @@ NEAREST_M = 0.05
 """Metres before the camera within which a point is taken to have no pixel."""
 
 
-@dataclass(frozen=True)
-class Intrinsics:
-    """Projects as a camera does: focal lengths, principal point and image size in pixels."""
-
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    width: int
-    height: int
-
-    def scaled_to(self, width: int, height: int) -> "Intrinsics":
-        """Give the intrinsics of the same view in an image of another size."""
-        x, y = width / self.width, height / self.height
-        return Intrinsics(
-            self.fx * x,
-            self.fy * y,
-            (self.cx + 0.5) * x - 0.5,
-            (self.cy + 0.5) * y - 0.5,
-            width,
-            height,
-        )
+class Intrinsics(Pinhole):
+    """Projects as a camera does."""
 
     def project(self, points: Array) -> Array:
         """Project points (..., 3) in the camera frame to pixels (..., 2); NaN behind the camera."""
@@ -47,8 +27,7 @@ class Intrinsics:
 
     def unproject(self, pixels: Array, depths: Array) -> Array:
         """Find the points (N, 3) in the camera frame at pixels (N, 2) and depths (N,) in metres."""
-        across = (pixels - [self.cx, self.cy]) / [self.fx, self.fy]
-        return np.column_stack((across * depths[:, None], depths))
+        return np.column_stack((self.rays(pixels) * depths[:, None], depths))
 
 
 _PIXEL = np.zeros(2)
