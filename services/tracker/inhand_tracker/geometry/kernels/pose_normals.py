@@ -45,6 +45,17 @@ def set_deviated(
     set_quaternion(pose_rotation, product(turn, quaternion_in(rotation)))
 
 
+@njit(cache=True, nogil=True, inline="always")
+def _square_by(root: Array, deviation: Array) -> float:
+    """Find the squared Mahalanobis distance of a deviation (6,), which is used up, by the root
+    (6, 6) of a covariance."""
+    solve_lower(root, deviation)
+    square = 0.0
+    for axis in range(6):
+        square += deviation[axis] * deviation[axis]
+    return square
+
+
 @njit(cache=True, nogil=True)
 def draw(
     parts: Indices, centres: Array, rotations: Array, roots: Array, normals: Array
@@ -127,11 +138,7 @@ def square_distances(
     """Find the squared Mahalanobis distances of poses by roots (6, 6) of covariances."""
     deviation = np.empty(6)
     set_deviation(centre, rotation, pose_centre, pose_rotation, deviation)
-    solve_lower(root, deviation)
-    total = 0.0
-    for axis in range(6):
-        total += deviation[axis] * deviation[axis]
-    square[0] = total
+    square[0] = _square_by(root, deviation)
 
 
 @vectorised("(k),(k,v),(k,q),(k,s,s),(p,v),(p,q)->(k,p)")
@@ -156,11 +163,7 @@ def log_densities(
             set_deviation(
                 centres[part], rotations[part], pose_centres[pose], pose_rotations[pose], deviation
             )
-            solve_lower(root, deviation)
-            square = 0.0
-            for axis in range(6):
-                square += deviation[axis] * deviation[axis]
-            densities[part, pose] = scale - 0.5 * square
+            densities[part, pose] = scale - 0.5 * _square_by(root, deviation)
 
 
 @vectorised("(s,s),(v,v)->(s,s)")
