@@ -74,9 +74,7 @@ class Sight:
 
     def compile(self) -> None:
         """Compile all that a first frame would wait for: seconds, once an installation."""
-        camera = Intrinsics(50.0, 50.0, 15.5, 15.5, 32, 32)
-        image = Image(None, camera, np.ones((32, 32), np.float32), np.zeros((32, 32, 3), np.uint8))
-        frame = prepare(image, parameters=self._parameters)
+        frame = prepare(blank_image(), parameters=self._parameters)
         ahead, upright = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0, 0.0])
         colours = self.learn(Colours(), frame, ahead, upright, of_object=0.5, around=0.5)
         view = self.view(frame, colours, np.tile(ahead, (20, 1)))
@@ -186,6 +184,12 @@ class Sight:
             np.where(worse[:, None, None], 0.0, moved.information),
             np.where(worse, before, after),
         )
+
+
+def blank_image() -> Image:
+    """Give a small image of a wall at 1 m, for what compiles before a first frame comes."""
+    camera = Intrinsics(50.0, 50.0, 15.5, 15.5, 32, 32)
+    return Image(None, camera, np.ones((32, 32), np.float32), np.zeros((32, 32, 3), np.uint8))
 
 
 def _outlines(shape: ObjectShape, viewpoints: Viewpoints) -> Outlines:

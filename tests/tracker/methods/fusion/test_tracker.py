@@ -1,5 +1,8 @@
 """The fused tracker, frame by frame: what it forgets, keeps to itself, and withstands."""
 
+import os
+import subprocess
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -55,7 +58,43 @@ def errors(estimates: Sequence[Estimate], places: np.ndarray) -> np.ndarray:
     return np.linalg.norm([one.translation for one in estimates] - places, axis=1)
 
 
+FIRST_FRAME = """
+import sys
+from inhand_tracker.methods.fusion.tracker import FusionTracker
+from numba.core.dispatcher import Dispatcher
+from people import FRAME_NS, held, unseen_wave, wave_model
+from wedges import draw
+
+def compiled():
+    kernels = {id(one): one for name, module in list(sys.modules.items())
+               if name.startswith("inhand_")
+               for one in vars(module).values() if isinstance(one, Dispatcher)}
+    return sum(len(one.signatures) for one in kernels.values())
+
+joints = unseen_wave(2)
+places, turns = held(joints, seed=7)
+shown = [draw(*pose) for pose in zip(places, turns)]
+tracker = FusionTracker(wave_model())
+before = compiled()
+for number, image in enumerate(shown):
+    assert tracker.step(joints[number], number * FRAME_NS, image).state == "tracked"
+print(compiled() - before)
+"""
+
+
 # --- What it does
+
+
+@pytest.mark.long
+def test_a_first_frame_waits_for_nothing_to_be_compiled() -> None:
+    path = os.pathsep.join(sys.path)
+    done = subprocess.run(
+        [sys.executable, "-c", FIRST_FRAME],
+        env=os.environ | {"PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.stdout, done.returncode) == ("0\n", 0), done.stderr
 
 
 def test_the_object_is_where_the_hand_of_a_stranger_is() -> None:

@@ -23,8 +23,10 @@ from inhand_tracker.methods.fusion.belief import Belief, BodyExpectation, carry_
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
 from inhand_tracker.methods.fusion.search import ImageSearch
 from inhand_tracker.model.model import Model, ModelError
-from inhand_tracker.sight.sight import SIGHT_TERMS, Sight, SightTerm
+from inhand_tracker.sight.sight import SIGHT_TERMS, Sight, SightTerm, blank_image
 from inhand_tracker.sight.support import Support
+
+USUAL_HEIGHT_M = 1.7
 
 
 class FusionTracker(FollowingTracker):
@@ -61,7 +63,14 @@ class FusionTracker(FollowingTracker):
             )
             self._sight.compile()
         self._seed = seed
+        self._compile()
         self.restart()
+
+    def _compile(self) -> None:
+        """Compile what a first frame would wait for, by a frame of somebody usual 2 m ahead."""
+        pose = self._mapping.body_poses.mean(axis=0).reshape(20, 3)
+        joints = USUAL_HEIGHT_M * pose + np.array([0.0, 0.0, 2.0])
+        self.estimate_single_frame(joints, None if self._sight is None else blank_image())
 
     def _start(self, *, alone: bool) -> Follower:
         search = None
