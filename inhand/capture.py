@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from inhand_capture.service import CaptureSettings, check, run
+from inhand_capture.service import run
+from inhand_capture.settings import CaptureSettings, check
 from inhand_runtime.entry import daemon_main
 from inhand_runtime.exit_codes import DONE
 

@@ -1,9 +1,14 @@
-"""``inhand models``: get the weights of the networks that find people in images."""
+"""``inhand models``: get the weights of the networks that find people and faces in images."""
 
 import argparse
 
 from inhand_capture.estimation.fetching import fetch_network
-from inhand_capture.estimation.weights import DEFAULT_NETWORK, LANDMARKS, models_folder
+from inhand_capture.estimation.weights import (
+    DEFAULT_NETWORK,
+    FACES_NAME,
+    LANDMARKS,
+    models_folder,
+)
 from inhand_runtime.exit_codes import DONE
 
 
@@ -15,11 +20,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     fetch.add_argument(
         "network",
         nargs="?",
-        choices=tuple(LANDMARKS),
+        choices=(*LANDMARKS, FACES_NAME),
         default=DEFAULT_NETWORK,
         metavar="NETWORK",
-        help=f"one of {', '.join(LANDMARKS)} (default: {DEFAULT_NETWORK}); full needs pip alone, "
-        "the others npm too",
+        help=f"one of {', '.join(LANDMARKS)} (default: {DEFAULT_NETWORK}), which find people, or "
+        f"{FACES_NAME}, which finds faces to hide; full and {FACES_NAME} need pip alone, the "
+        "others npm too",
     )
 
 

@@ -6,8 +6,8 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 
-from inhand_capture.service import CaptureSettings
 from inhand_capture.service import run as run_capture
+from inhand_capture.settings import CaptureSettings
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.recording import RecordingError, read_recording
 from inhand_runtime.settings import Settings, load_rig_file

@@ -143,7 +143,7 @@ class RgbdFrame(Message, frozen=True, kw_only=True):
 
 
 class Preview(Message, frozen=True, kw_only=True):
-    """A small JPEG for far viewers."""
+    """A small JPEG for far viewers; ``sequence`` and ``time_ns`` are the source frame's."""
 
     width: Pixels
     height: Pixels

@@ -42,9 +42,9 @@ KEPT = Delivery("every", "drop", "normal", kept=True)
 class Topic(Generic[T]):
     """A stream: ``topic.key(site, name)``, ``topic.encode(message)``, ``topic.decode(bytes)``.
 
-    ``gaps_are_losses`` says that a key's messages are numbered one by one. Skeletons
-    and poses have the numbers of the frames that they are of, and who estimates them and is behind
-    leaves some out.
+    ``gaps_are_losses`` says that a key's messages are numbered one by one. Skeletons, poses and
+    previews have the numbers of the frames that they are of: who estimates and is behind leaves
+    some out, and previews are of few.
     """
 
     def __init__(
@@ -103,7 +103,7 @@ class Topic(Generic[T]):
 
 INFO = Topic("info", messages.CameraInfo, KEPT)
 RGBD = Topic("rgbd", messages.RgbdFrame, BULK)
-PREVIEW = Topic("preview", messages.Preview, BULK)
+PREVIEW = Topic("preview", messages.Preview, BULK, gaps_are_losses=False)
 SKELETONS = Topic("skeletons", messages.Skeletons, URGENT, gaps_are_losses=False)
 POSE = Topic("pose", messages.ObjectPose, URGENT, gaps_are_losses=False)
 EVENT = Topic("event", messages.Event, RELIABLE)

@@ -221,3 +221,19 @@ def test_estimated_skeletons_without_weights_are_refused_before_a_start(
     assert daemon.wait() == 1
     assert daemon.stderr.startswith(f"capture: there are no weights at {tmp_path}/models/pose_")
     assert daemon.stderr.endswith("fetch them with `inhand models fetch`\n")
+
+
+@pytest.mark.long
+def test_faces_cannot_be_hidden_without_weights(
+    rig: RunningRig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = use_weights(monkeypatch, "lite")
+    (tmp_path / "models").mkdir()
+    for file in folder.glob("pose_*"):
+        (tmp_path / "models" / file.name).symlink_to(file)
+    rig.configure('[capture.front]\nsource = "simulator"\nmask_faces = true\n')
+    command = ("-m", "inhand_capture", "--config", rig.config, "--check-config")
+    daemon = rig.python(*command, INHAND_DATA=str(tmp_path))
+    assert daemon.wait() == 1
+    assert daemon.stderr.startswith(f"capture: there are no weights at {tmp_path}/models/face_")
+    assert daemon.stderr.endswith("fetch them with `inhand models fetch faces`\n")

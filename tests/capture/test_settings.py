@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import inhand_capture.service as service
+import inhand_capture.settings as service
 import pytest
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import FilePath, Section, load_settings

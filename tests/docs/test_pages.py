@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from inhand_capture.service import CaptureSettings
+from inhand_capture.settings import CaptureSettings
 from inhand_recorder.service import RecorderSettings
 from inhand_tracker.settings import TrackerSettings
 from running_rig import ROOT, RunningRig

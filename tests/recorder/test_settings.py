@@ -32,3 +32,9 @@ def test_a_folder_that_cannot_be_is_refused(tmp_path: Path) -> None:
 def test_a_stream_that_is_not_there_is_told_with_what_was_meant(tmp_path: Path) -> None:
     with pytest.raises(SettingsError, match=r"there is no stream 'poses' \(did you mean pose\?\)"):
         loaded(tmp_path, 'streams = ["poses"]')
+
+
+def test_previews_are_recorded_only_where_somebody_asks(tmp_path: Path) -> None:
+    assert "preview" not in loaded(tmp_path, "").service.streams
+    asked = loaded(tmp_path, 'streams = ["preview"]').service.streams
+    assert asked == ("preview",)

@@ -16,18 +16,19 @@ from inhand_capture.estimation.weights import (
 from inhand_runtime.data_folder import DATA_VARIABLE
 
 
-def use_weights(monkeypatch: pytest.MonkeyPatch, network: str) -> Path:
-    """Let this test and its processes find the weights of a network; return their folder.
+def use_weights(monkeypatch: pytest.MonkeyPatch, *networks: str) -> Path:
+    """Let this test and its processes find the weights of networks; return their folder.
 
     Skips the test where they are neither here nor to be had.
     """
-    if not _are_in(network, models_folder()):
+    if not all(_are_in(network, models_folder()) for network in networks):
         data = Path(tempfile.gettempdir()) / f"inhand-test-data-{os.getuid()}"
         data.mkdir(exist_ok=True)
         with (data / "lock").open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             try:
-                fetch_network(network, data / "models", print)
+                for network in networks:
+                    fetch_network(network, data / "models", print)
             except WeightsError as error:
                 pytest.skip(str(error))
         monkeypatch.setenv(DATA_VARIABLE, str(data))

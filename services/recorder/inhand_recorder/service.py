@@ -14,7 +14,7 @@ from inhand_runtime.settings_errors import suggestion
 from inhand_runtime.wording import counted
 from inhand_runtime.writable import try_folder
 from inhand_schemas.errors import KeyFormatError, MessageError
-from inhand_schemas.topics import RGBD, TOPICS, topic_of
+from inhand_schemas.topics import PREVIEW, RGBD, TOPICS, topic_of
 from pydantic import AfterValidator, ByteSize, Field
 
 from inhand_recorder.clock import ClockWatch
@@ -63,12 +63,13 @@ class RecorderSettings(Section):
     A new file begins after ``split_bytes`` or ``split_seconds``; 0 means never. Without a word it
     is each hour, so that no file grows for ever, and what is copied or recovered is an hour at the
     most. What the disk cannot take at once waits in memory, ``queue_bytes`` at the most; then the
-    oldest is dropped and counted.
+    oldest is dropped and counted. Without a word all ``streams`` are recorded but previews, which
+    are made only while somebody listens, and show less than the frames do.
     """
 
     folder: FilePath = Field(default=Path("recordings"), validate_default=True)
     streams: Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_known_streams)] = (
-        tuple(TOPICS)
+        tuple(stream for stream in TOPICS if stream != PREVIEW.stream)
     )
     split_bytes: Annotated[ByteSize, Field(ge=0), AfterValidator(_zero_or_a_mebibyte)] = ByteSize(0)
     split_seconds: Annotated[

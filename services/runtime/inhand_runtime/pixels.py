@@ -28,6 +28,16 @@ def decode_colour(image: ColourImage) -> NDArray[np.uint8]:
     return _decode_jpeg(image, "RGB")
 
 
+def raw_colour(colour: NDArray[np.uint8] | ColourImage | None) -> NDArray[np.uint8] | None:
+    """(H, W, 3) RGB of what may be encoded already; raises MessageError when damaged."""
+    return decode_colour(colour) if isinstance(colour, ColourImage) else colour
+
+
+def raw_depth(depth: NDArray[np.uint16] | DepthImage | None) -> NDArray[np.uint16] | None:
+    """(H, W) depth units of what may be encoded already; raises MessageError when damaged."""
+    return decode_depth(depth) if isinstance(depth, DepthImage) else depth
+
+
 def decode_grey(image: ColourImage) -> NDArray[np.uint8]:
     """(H, W) luminance, cheaper than all of the colour; raises MessageError when damaged."""
     if image.codec == "rgb8":

@@ -1,10 +1,13 @@
 """Nothing of what a mask covers leaves a source."""
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 import pytest
-from inhand_capture.view.viewed_source import viewed
+from inhand_capture.faces.discs import Disc
+from inhand_capture.faces.finder import FacesFound
+from inhand_capture.view.viewed_source import FacelessPixels, viewed
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_runtime.source import Captured, Pixels
 from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, Person
@@ -120,3 +123,80 @@ def test_a_source_with_nothing_to_turn_or_to_mask_is_itself() -> None:
 def test_a_turned_source_tells_how_the_turned_camera_sees() -> None:
     info = viewed(Still(_secret_in(*HALVES[0])), 90, []).info
     assert (info.width, info.height) == (HEIGHT, WIDTH)
+
+
+class ToldFaces:
+    """Finds the faces that it is told of, in the picture as everybody sees it."""
+
+    def __init__(self, *discs: Disc) -> None:
+        self.discs = discs
+        self.looked = 0
+
+    def find(self, colour: Any, _time_ns: int, skeletons: Any, _info: Any) -> FacesFound:
+        self.looked += 1
+        self.skeletons = skeletons
+        return FacesFound(self.discs, colour.shape[:2], ())
+
+
+LEFT_FACE = Disc(12.0, 20.0, 11.0)
+"""Covers columns 4 to 20 and rows 12 to 28 of the picture as published."""
+FACES = {
+    0: (slice(4, 20), slice(12, 28)),
+    180: (slice(44, 60), slice(20, 36)),
+}
+
+
+@pytest.mark.parametrize("degrees", FACES)
+@pytest.mark.parametrize("encode", [lambda pixels: pixels, _encoded], ids=["raw", "encoded"])
+def test_a_face_leaves_in_neither_colour_nor_depth_and_is_there_for_who_looks_inside(
+    degrees: int, encode: Callable[[Pixels], Pixels]
+) -> None:
+    secret = _secret_in(*FACES[degrees])
+    faces: Any = ToldFaces(LEFT_FACE)
+    source = viewed(Still(encode(secret)), degrees, [], faces)
+    captured = next(iter(source.captures(lambda: True)))
+    assert captured is not None
+    assert captured.pixels is not None
+    seen = captured.pixels()
+    assert isinstance(seen, FacelessPixels)
+    assert isinstance(seen.colour, np.ndarray)
+    assert isinstance(seen.depth, np.ndarray)
+    assert seen.colour.max() < 60, "a trace of the face's brightness"
+    assert SECRET not in seen.depth
+    assert (seen.depth == 900).mean() > 0.7
+    assert isinstance(seen.whole.colour, np.ndarray)
+    assert isinstance(seen.whole.depth, np.ndarray)
+    assert seen.whole.colour.max() > 180
+    assert SECRET in seen.whole.depth
+
+
+def test_every_picture_is_looked_at_once_while_any_is_wanted() -> None:
+    faces: Any = ToldFaces()
+    source = viewed(Still(_secret_in(*HALVES[0])), 0, [], faces)
+    captured = next(iter(source.captures(lambda: True)))
+    assert faces.looked == 1
+    assert captured is not None
+    assert captured.pixels is not None
+    assert captured.pixels() is captured.pixels()
+    assert faces.looked == 1
+    next(iter(source.captures(lambda: False)))
+    assert faces.looked == 1
+
+
+def test_a_picture_without_colour_is_left_out_where_faces_are_hidden(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    faces: Any = ToldFaces()
+    blind = Pixels(None, _secret_in(*HALVES[0]).depth)
+    captured = next(iter(viewed(Still(blind), 0, [], faces).captures(lambda: True)))
+    assert captured is not None
+    assert captured.pixels is not None
+    assert captured.pixels() == Pixels(None, None)
+    assert faces.looked == 0
+    assert "has no colour, in which faces could be found" in caplog.text
+
+
+def test_skeletons_are_turned_for_who_looks_for_faces() -> None:
+    faces: Any = ToldFaces()
+    next(iter(viewed(Still(_secret_in(*HALVES[0])), 180, [], faces).captures(lambda: True)))
+    assert faces.skeletons[0].joints[0] == (-0.1, -0.2, 2.0)

@@ -1,5 +1,6 @@
 """Skeletons of the people in pictures with depth, one picture after the other."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,11 +41,16 @@ class SkeletonEstimator:
         compile_lifting(lens_of(info, info.width, info.height))
 
     def estimate(
-        self, colour: NDArray[np.uint8] | None, depth: NDArray[np.uint16] | None, time_ns: int
+        self,
+        colour: NDArray[np.uint8] | None,
+        depth: NDArray[np.uint16] | None,
+        time_ns: int,
+        people_found: Sequence[FoundPerson] | None = None,
     ) -> tuple[Person, ...]:
         """Estimate the people in a picture: colour (H, W, 3) RGB, depth (h, w) of the same view.
 
-        Raises EstimationError where one of them is missing.
+        ``people_found`` are those whom the network found in it, if it was asked already. Raises
+        EstimationError where colour or depth is missing.
         """
         if colour is None or depth is None:
             what = "colour" if colour is None else "depth"
@@ -54,7 +60,9 @@ class SkeletonEstimator:
         lifter = self._lifter_for(colour)
         # Of what cannot be written, or has gaps, the compiled code would have to be compiled again.
         picture = DepthPicture(np.require(depth, np.uint16, ["C", "W"]), self._info.depth_scale)
-        found = [(one, lifter.read(one, picture)) for one in self._network.find(colour)]
+        if people_found is None:
+            people_found = self._network.find(colour)
+        found = [(one, lifter.read(one, picture)) for one in people_found]
         near = [_Seen(one, surfaces, picture) for one, surfaces in found if surfaces is not None]
         matched = self._people.match([seen.surfaces.middle for seen in near], time_ns)
         people = [

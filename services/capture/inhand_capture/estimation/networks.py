@@ -17,6 +17,8 @@ from inhand_capture.estimation.weights import (
 )
 
 SUFFIX = ".onnx"
+NEED = "skeletons from images need"
+"""Beginning of what is said where the extra is not installed."""
 
 
 def require_network(network: str | Path) -> None:
@@ -28,9 +30,9 @@ def require_network(network: str | Path) -> None:
     """
     if isinstance(network, Path):
         _require_file(network)
-        _require_installed("onnxruntime", "onnx")
+        require_installed("onnxruntime", "onnx", NEED)
         return
-    _require_installed("ai_edge_litert", "pose")
+    require_installed("ai_edge_litert", "pose", NEED)
     for weights in files_of(network):
         require_weights(weights, models_folder())
 
@@ -53,8 +55,7 @@ def _require_file(path: Path) -> None:
         raise WeightsError(f"there is no network at {path}: check the path")
 
 
-def _require_installed(module: str, extra: str) -> None:
+def require_installed(module: str, extra: str, need: str) -> None:
+    """Raise SettingsError, which begins with what needs the extra, where it is not installed."""
     if find_spec(module) is None:
-        raise SettingsError(
-            f'skeletons from images need the extra {extra!r}: pip install "inhand[{extra}]"'
-        )
+        raise SettingsError(f'{need} the extra {extra!r}: pip install "inhand[{extra}]"')

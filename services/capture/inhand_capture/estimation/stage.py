@@ -2,20 +2,21 @@
 
 import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Self
 
 from inhand_runtime.errors import InhandError
 from inhand_runtime.health import HealthBoard
-from inhand_runtime.pixels import decode_colour, decode_depth
+from inhand_runtime.pixels import raw_colour, raw_depth
 from inhand_runtime.source import Pixels
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, Skeletons
+from inhand_schemas.messages import CameraInfo, Skeletons
 from msgspec import structs
 
 from inhand_capture.estimation.estimator import EstimationError, SkeletonEstimator
+from inhand_capture.estimation.found_person import FoundPerson
 
 log = logging.getLogger(__name__)
 
@@ -24,12 +25,16 @@ TROUBLE = "skeletons"
 
 @dataclass(frozen=True)
 class Picture:
-    """What skeletons are estimated of: a frame's pixels, its number, its time, and who sees it."""
+    """What skeletons are estimated of: a frame's pixels, its number, its time, and who sees it.
+
+    ``found`` are the people in it where they were looked for already.
+    """
 
     sequence: int
     time_ns: int
     pixels: Pixels
     estimator: SkeletonEstimator
+    found: Sequence[FoundPerson] | None
 
 
 class SkeletonStage:
@@ -83,10 +88,17 @@ class SkeletonStage:
             self._info = info
             self._estimator = self._new_estimator(info)
 
-    def offer(self, sequence: int, time_ns: int, pixels: Pixels) -> None:
+    def offer(
+        self,
+        sequence: int,
+        time_ns: int,
+        pixels: Pixels,
+        found: Sequence[FoundPerson] | None = None,
+    ) -> None:
         """Let skeletons of a frame be estimated, if no newer one comes before.
 
-        Raises InhandError when the thread has failed, which is a fault of the program.
+        ``found`` are the people in it, where they were looked for already. Raises InhandError when
+        the thread has failed, which is a fault of the program.
         """
         if self._estimator is None:
             raise InhandError("a frame came before the camera's info")
@@ -95,7 +107,7 @@ class SkeletonStage:
                 raise InhandError(f"estimating skeletons failed: {self._failure}")
             if self._newest is not None:
                 self._health.dropped(self._key)
-            self._newest = Picture(sequence, time_ns, pixels, self._estimator)
+            self._newest = Picture(sequence, time_ns, pixels, self._estimator, found)
             self._changed.notify()
 
     def _run(self) -> None:
@@ -118,15 +130,8 @@ class SkeletonStage:
         """Publish the skeletons of one frame; a frame that has none to give is a trouble."""
         pixels = picture.pixels
         try:
-            colour = (
-                decode_colour(pixels.colour)
-                if isinstance(pixels.colour, ColourImage)
-                else pixels.colour
-            )
-            depth = (
-                decode_depth(pixels.depth) if isinstance(pixels.depth, DepthImage) else pixels.depth
-            )
-            people = picture.estimator.estimate(colour, depth, picture.time_ns)
+            colour, depth = raw_colour(pixels.colour), raw_depth(pixels.depth)
+            people = picture.estimator.estimate(colour, depth, picture.time_ns, picture.found)
         except (EstimationError, MessageError) as error:
             self._health.trouble(TROUBLE, str(error))
             return

@@ -52,6 +52,12 @@ DETECTOR = WeightFile(
     WHEEL,
     "mediapipe/modules/pose_detection/pose_detection.tflite",
 )
+FACES = WeightFile(
+    "face_detection_full_range_sparse.tflite",
+    "2c3728e6da56f21e21a320433396fb06d40d9088f2247c05e5635a688d45dfe1",
+    WHEEL,
+    "mediapipe/modules/face_detection/face_detection_full_range_sparse.tflite",
+)
 LANDMARKS = {
     "lite": WeightFile(
         "pose_landmark_lite.tflite",
@@ -73,7 +79,9 @@ LANDMARKS = {
     ),
 }
 """The landmark networks by name, from the fastest to the most exact."""
-KNOWN = (DETECTOR, *LANDMARKS.values())
+KNOWN = (DETECTOR, FACES, *LANDMARKS.values())
+FACES_NAME = "faces"
+"""By this name the network that finds faces is fetched."""
 
 
 class WeightsError(InhandError):
@@ -86,8 +94,8 @@ def models_folder() -> Path:
 
 
 def files_of(network: str) -> tuple[WeightFile, ...]:
-    """Name the files of a network: the detector's and the landmarks'."""
-    return DETECTOR, LANDMARKS[network]
+    """Name the files of a network: the detector's and the landmarks', or the one for faces."""
+    return (FACES,) if network == FACES_NAME else (DETECTOR, LANDMARKS[network])
 
 
 def require_weights(weights: WeightFile, folder: Path) -> Path:
@@ -121,8 +129,8 @@ def fault_in(weights: WeightFile, data: bytes) -> str | None:
 
 def _wish(weights: WeightFile) -> str:
     """The argument of the verb that fetches a file, where it is not fetched without one."""
-    names = [name for name, landmarks in LANDMARKS.items() if landmarks == weights]
-    return f" {names[0]}" if names and names[0] != DEFAULT_NETWORK else ""
+    names = [name for name in (*LANDMARKS, FACES_NAME) if weights in files_of(name)]
+    return "" if DEFAULT_NETWORK in names else f" {names[0]}"
 
 
 DEFAULT_NETWORK = "lite"

@@ -3,7 +3,7 @@
 import tomllib
 
 import pytest
-from inhand_capture.service import CaptureSettings
+from inhand_capture.settings import CaptureSettings
 from inhand_capture.sources.oak.devices import attached
 from inhand_capture.sources.oak.library import dai
 from inhand_capture.sources.oak.listing import listing

@@ -1,0 +1,71 @@
+"""BlazeFace, for faces up to five metres away: where in a picture faces are (Bazarevsky et al.
+2019)."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inhand_capture.estimation.found_person import Floats
+from inhand_capture.estimation.litert import LiteRtNetwork
+from inhand_capture.estimation.regions import Region, crop
+from inhand_capture.faces.discs import Disc
+from inhand_capture.faces.parameters import DEFAULT_FACES, FaceParameters
+
+SIDE = 192
+CELLS = 48
+"""Cells along each side of the grid of anchors."""
+NUMBERS = 16
+"""Numbers of a candidate: the box's middle and size, and six points."""
+MOST_LOGIT = 100.0
+
+
+class FaceDetector:
+    """Looks for all faces in a region of a picture."""
+
+    def __init__(self, weights: Path, parameters: FaceParameters = DEFAULT_FACES) -> None:
+        """Load the network; raises WeightsError, or SettingsError where LiteRT is missing."""
+        count = CELLS * CELLS
+        self._network = LiteRtNetwork(
+            weights, SIDE, {"Identity": NUMBERS * count, "Identity_1": count}
+        )
+        ticks = (np.arange(CELLS) + 0.5) / CELLS
+        across, down = np.meshgrid(ticks, ticks)
+        self._anchors = np.stack([across.ravel(), down.ravel()], axis=1)
+        self._parameters = parameters
+
+    def find(self, picture: NDArray[np.uint8], view: Region) -> list[Disc]:
+        """Return what to hide of a picture (H, W, 3) RGB, looked at in one region of it."""
+        cut = crop(picture, view, SIDE, padded=True)
+        outputs = self._network(cut * np.float32(1.0 / 127.5) - np.float32(1.0))
+        logits = np.clip(outputs["Identity_1"][:, 0].astype(float), -MOST_LOGIT, MOST_LOGIT)
+        scores = 1.0 / (1.0 + np.exp(-logits))
+        good = np.flatnonzero(scores >= self._parameters.face_score)
+        boxes = outputs["Identity"][good, :4].astype(float)
+        boxes[:, :2] += self._anchors[good] * SIDE
+        chosen = _each_once(boxes, scores[good], self._parameters.same_face)
+        places = view.to_picture(boxes[chosen, :2], SIDE)
+        radii = self._parameters.face_radius * view.side / SIDE * boxes[chosen, 2:].max(axis=1)
+        return [
+            Disc(float(x), float(y), float(radius))
+            for (x, y), radius in zip(places, radii, strict=True)
+        ]
+
+
+def _each_once(boxes: Floats, scores: Floats, nearness: float) -> Sequence[int]:
+    """Return which of boxes (N, 4), middle and size, are the best of their face."""
+    chosen: list[int] = []
+    for one in np.argsort(-scores, kind="stable").tolist():
+        if all(_shared(boxes[one], boxes[other]) <= nearness for other in chosen):
+            chosen.append(one)
+    return chosen
+
+
+def _shared(one: Floats, other: Floats) -> float:
+    """Return the shared over the joint area of two boxes."""
+    low = np.maximum(one[:2] - 0.5 * one[2:], other[:2] - 0.5 * other[2:])
+    high = np.minimum(one[:2] + 0.5 * one[2:], other[:2] + 0.5 * other[2:])
+    shared = float(np.clip(high - low, 0.0, None).prod())
+    joint = float(one[2:].prod() + other[2:].prod()) - shared
+    return shared / max(joint, 1e-12)

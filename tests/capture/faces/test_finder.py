@@ -1,0 +1,85 @@
+"""The real networks on drawn people: what no told disc can show is whether faces are found."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from drawn_heads import head_pixels
+from fetched_weights import use_weights
+from inhand_capture.estimation.networks import open_network
+from inhand_capture.estimation.weights import FACES, WeightsError, models_folder
+from inhand_capture.faces.face_detector import FaceDetector
+from inhand_capture.faces.finder import FaceFinder, open_face_finder
+from inhand_lab.world.messages import camera_info
+from inhand_lab.world.simulation import Simulation, simulate
+from inhand_schemas.joints import Joint
+from numpy.typing import NDArray
+
+pytestmark = pytest.mark.long
+FRAME_NS = 33_333_333
+
+
+@pytest.fixture
+def finder(monkeypatch: pytest.MonkeyPatch) -> FaceFinder:
+    use_weights(monkeypatch, "lite", "faces")
+    return open_face_finder(open_network("lite"), trust_skeletons=False)
+
+
+@pytest.fixture(scope="module")
+def drinking() -> Simulation:
+    return simulate("drinkFromMug", 0, seed=3, frames=30)
+
+
+def _shown(finder: FaceFinder, simulation: Simulation, colour: NDArray[np.uint8], frame: int):  # type: ignore[no-untyped-def]
+    """What is hidden of a picture."""
+    info = camera_info(simulation.intrinsics, 30.0)
+    return finder.find(colour, frame * FRAME_NS, (), info).mask(*colour.shape[:2])
+
+
+@pytest.mark.parametrize("interaction", ["drinkFromMug", "putOnGlasses", "sweepFloor"])
+def test_no_pixel_of_a_drawn_head_is_shown_and_little_else_is_hidden(
+    finder: FaceFinder, interaction: str
+) -> None:
+    simulation = simulate(interaction, 2, seed=11, frames=60)
+    for frame in range(0, 60, 4):
+        mask = _shown(finder, simulation, simulation.render(frame).colour, frame)
+        assert not (head_pixels(simulation, frame) & ~mask).any()
+        assert mask.mean() < 0.1
+
+
+def test_two_people_s_heads_are_hidden(finder: FaceFinder, drinking: Simulation) -> None:
+    hips = drinking.true_joints_in_camera[0, Joint.HIP_CENTER]
+    middle = round(525.0 * hips[0] / hips[2] + 319.5)
+    columns = slice(middle - 150, middle + 150)
+    one, head = drinking.render(0).colour[:, columns], head_pixels(drinking, 0)[:, columns]
+    two = np.ascontiguousarray(np.concatenate([one, one[:, ::-1]], axis=1))
+    heads = np.concatenate([head, head[:, ::-1]], axis=1)
+    for number in range(3):
+        mask = _shown(finder, drinking, two, number)
+        assert not (heads & ~mask).any()
+
+
+def test_a_head_without_a_body_is_hidden(finder: FaceFinder, drinking: Simulation) -> None:
+    colour, head = drinking.render(0).colour, head_pixels(drinking, 0)
+    rows, columns = np.nonzero(head)
+    low, left = rows.max() + 8, columns.mean()
+    alone = np.full_like(colour, 110)
+    window = (slice(0, low), slice(round(left) - 45, round(left) + 45))
+    alone[window] = colour[window]
+    for number in range(3):
+        mask = _shown(finder, drinking, alone, number)
+    assert (head & ~mask).sum() < 0.1 * head.sum()
+
+
+def test_an_empty_room_is_shown(finder: FaceFinder, drinking: Simulation) -> None:
+    room = np.asarray(drinking._scene.room.colour, np.uint8)
+    for number in range(4):
+        assert not _shown(finder, drinking, room, number).any()
+
+
+def test_weights_of_another_network_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    folder: Path = use_weights(monkeypatch, "lite", "faces")
+    with pytest.raises(WeightsError, match="holds the weights of another network"):
+        FaceDetector(folder / "pose_landmark_lite.tflite")
+    assert folder == models_folder()
+    assert (folder / FACES.file).is_file()
