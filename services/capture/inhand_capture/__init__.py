@@ -1,8 +1,10 @@
 """The capture daemon: a camera, a recording or a simulated world onto Inhand's keys.
 
-``service.py`` runs it, ``publishing.py`` turns moments into messages, ``reopening.py`` opens a
-lost device again, and ``watching.py`` says in the health how it is. ``view`` turns and masks what
-any source gives, ``estimation`` finds skeletons in pictures, and ``shutter.py`` stops everything.
+``service.py`` runs it by its ``settings.py``, ``publishing.py`` turns moments into messages,
+``preview.py`` makes small ones for people who look, ``reopening.py`` opens a lost device again, and
+``watching.py`` says in the health how it is. ``view`` turns and masks what any source gives,
+``estimation`` finds skeletons in pictures, ``faces`` what to hide of them, and ``shutter.py`` stops
+everything.
 ``sources/oak`` is the driver of a camera, ``sources/replay.py`` plays a recording, whose messages
 ``moments.py`` puts together again.
 """
