@@ -26,7 +26,7 @@ Quaternion = tuple[float, float, float, float]
 Text = Annotated[str, Meta(max_length=4096)]
 
 ColourCodec = Literal["jpeg", "rgb8"]
-DepthCodec = Literal["z16", "z16-zstd"]
+DepthCodec = Literal["z16", "z16-zstd", "png16"]
 JointState = Literal["missing", "inferred", "tracked"]
 PoseState = Literal["tracked", "predicted", "lost"]
 Contact = Literal["resting", "right_hand", "left_hand", "both_hands", "worn"]
@@ -121,7 +121,8 @@ class ColourImage(Struct, frozen=True):
 
 
 class DepthImage(Struct, frozen=True):
-    """Depth pixels, little-endian unsigned 16-bit, 0 = not measured; plain or as Zstandard."""
+    """Depth pixels, unsigned 16-bit, 0 = not measured: ``z16`` is little-endian, ``z16-zstd`` the
+    same as Zstandard, and ``png16`` a PNG of one channel."""
 
     codec: DepthCodec
     width: Pixels

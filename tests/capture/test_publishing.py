@@ -1,11 +1,12 @@
 """Which messages a moment becomes."""
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 import pytest
-from inhand_capture.publishing import CameraPublisher
-from inhand_runtime.pixels import decode_depth
+from inhand_capture.publishing import CameraPublisher, encoded_depth
+from inhand_runtime.pixels import decode_depth, encode_depth
 from inhand_runtime.source import Captured, Pixels
 from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, Message, RgbdFrame
 from inhand_schemas.topics import AnyTopic
@@ -111,3 +112,21 @@ def test_every_introduction_is_sent_with_a_sequence_of_its_own() -> None:
     assert [message.sequence for _, message in outlets.sent] == [0, 1]
     assert outlets.sent[0][1].time_ns > FIRST_NS
     assert outlets.sent[1][1].time_ns == 77
+
+
+def test_depth_is_png_where_a_setting_asks_for_it_also_of_what_is_encoded_already() -> None:
+    depth = np.arange(64 * 48, dtype=np.uint16).reshape(48, 64)
+    for given in (depth, encode_depth(depth), encode_depth(depth, "png16")):
+        outlets = FakeOutlets({"rgbd"})
+        camera = CameraPublisher(outlets, "front", "png16")
+        camera.publish(Captured(1, 0, partial(Pixels, None, given), None))
+        frame = outlets.sent[0][1]
+        assert isinstance(frame, RgbdFrame)
+        assert frame.depth is not None
+        assert frame.depth.codec == "png16"
+        np.testing.assert_array_equal(decode_depth(frame.depth), depth)
+
+
+def test_damaged_depth_passes_as_it_is_for_its_readers_to_refuse() -> None:
+    damaged = DepthImage("z16-zstd", 64, 48, b"no depth")
+    assert encoded_depth(damaged, "png16") is damaged

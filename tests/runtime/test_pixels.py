@@ -13,7 +13,7 @@ from inhand_runtime.pixels import (
     encode_depth,
 )
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import ColourImage, DepthImage
+from inhand_schemas.messages import ColourImage, DepthCodec, DepthImage
 from inhand_tracker.geometry.arrays import Bytes
 from numpy.typing import NDArray
 
@@ -39,6 +39,18 @@ def test_depth_survives_without_loss(depth: NDArray[np.uint16]) -> None:
     decoded = decode_depth(image)
     assert decoded.dtype == np.uint16
     np.testing.assert_array_equal(decoded, depth)
+
+
+@pytest.mark.parametrize("codec", ["z16", "z16-zstd", "png16"])
+@pytest.mark.parametrize("width", [64, 31])
+def test_depth_survives_every_codec(
+    depth: NDArray[np.uint16], codec: DepthCodec, width: int
+) -> None:
+    image = encode_depth(depth[:, :width], codec)
+    assert (image.codec, image.width, image.height) == (codec, width, 48)
+    decoded = decode_depth(image)
+    assert decoded.dtype == np.uint16
+    np.testing.assert_array_equal(decoded, depth[:, :width])
 
 
 def test_plain_depth_is_read_too(depth: NDArray[np.uint16]) -> None:

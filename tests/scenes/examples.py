@@ -114,6 +114,19 @@ LATE = replace(
 SHUT = replace(LATE, service="capture", effort=None, shutter_closed=True)
 REFUSED = replace(LATE, topics={"(other keys)": TopicHealth(refused=12)})
 
+PNG = RgbdFrame(
+    sequence=11,
+    time_ns=TIME_NS,
+    depth=DepthImage(
+        "png16",
+        3,
+        2,
+        bytes.fromhex(
+            "89504e470d0a1a0a0000000d4948445200000003000000021000000000e88fe58500000015494441"
+            "54081d63000246160686ffff398f30b003000da802d8049bb0850000000049454e44ae426082"
+        ),
+    ),
+)
 TRUTH = ObjectPose(
     sequence=9,
     time_ns=TIME_NS,
@@ -134,5 +147,6 @@ GOLDEN_MESSAGES: dict[str, Message] = {
     "Health.v1.refused": REFUSED,
     "Health.v1.shutter": SHUT,
     "ObjectPose.v1.truth": TRUTH,
+    "RgbdFrame.v1.png": PNG,
 }
 """By the stem of their golden files: one of each type, and one more for fields it grew by."""

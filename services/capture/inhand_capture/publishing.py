@@ -3,11 +3,14 @@
 import time
 from typing import Protocol, TypeVar
 
-from inhand_runtime.pixels import encode_colour, encode_depth
+import numpy as np
+from inhand_runtime.pixels import decode_depth, encode_colour, encode_depth
 from inhand_runtime.source import Captured, Pixels
+from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import (
     CameraInfo,
     ColourImage,
+    DepthCodec,
     DepthImage,
     Message,
     ObjectPose,
@@ -16,6 +19,7 @@ from inhand_schemas.messages import (
 )
 from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS, Topic
 from msgspec.structs import replace
+from numpy.typing import NDArray
 
 T = TypeVar("T", bound=Message)
 T_contra = TypeVar("T_contra", bound=Message, contravariant=True)
@@ -41,7 +45,9 @@ class Outlets(Protocol):
 class CameraPublisher:
     """Publishes what one camera captures; what belongs together shares its sequence number."""
 
-    def __init__(self, outlets: Outlets, camera: str) -> None:
+    def __init__(self, outlets: Outlets, camera: str, depth_codec: DepthCodec = "z16-zstd") -> None:
+        """``depth_codec`` is how raw depth is encoded, and, where it is "png16", all depth."""
+        self._depth_codec = depth_codec
         self._outlets = outlets
         self._camera = camera
         self._info = outlets.publisher(INFO, camera)
@@ -81,7 +87,7 @@ class CameraPublisher:
         for label in captured.labels:
             self._publish_label(label, sequence, captured.time_ns)
         if captured.pixels is not None and self._rgbd.wanted():
-            self._rgbd.put(_rgbd_frame(captured, captured.pixels(), sequence))
+            self._rgbd.put(self._rgbd_frame(captured, captured.pixels(), sequence))
         return sequence
 
     def _publish_label(self, label: ObjectPose, sequence: int, time_ns: int) -> None:
@@ -91,17 +97,29 @@ class CameraPublisher:
         if outlet.wanted():
             outlet.put(replace(label, sequence=sequence, time_ns=time_ns, camera=self._camera))
 
+    def _rgbd_frame(self, captured: Captured, pixels: Pixels, sequence: int) -> RgbdFrame:
+        colour = pixels.colour
+        if colour is not None and not isinstance(colour, ColourImage):
+            colour = encode_colour(colour)
+        return RgbdFrame(
+            sequence=sequence,
+            time_ns=captured.time_ns,
+            time_uncertainty_ns=captured.time_uncertainty_ns,
+            colour=colour,
+            depth=None if pixels.depth is None else encoded_depth(pixels.depth, self._depth_codec),
+        )
 
-def _rgbd_frame(captured: Captured, pixels: Pixels, sequence: int) -> RgbdFrame:
-    colour, depth = pixels.colour, pixels.depth
-    if colour is not None and not isinstance(colour, ColourImage):
-        colour = encode_colour(colour)
-    if depth is not None and not isinstance(depth, DepthImage):
-        depth = encode_depth(depth)
-    return RgbdFrame(
-        sequence=sequence,
-        time_ns=captured.time_ns,
-        time_uncertainty_ns=captured.time_uncertainty_ns,
-        colour=colour,
-        depth=depth,
-    )
+
+def encoded_depth(depth: NDArray[np.uint16] | DepthImage, codec: DepthCodec) -> DepthImage:
+    """Encode depth. What is encoded already passes as it is, unless PNG is asked for.
+
+    So does what is damaged: its readers refuse and count it, as without this.
+    """
+    if not isinstance(depth, DepthImage):
+        return encode_depth(depth, codec)
+    if codec != "png16" or depth.codec == codec:
+        return depth
+    try:
+        return encode_depth(decode_depth(depth), codec)
+    except MessageError:
+        return depth

@@ -152,7 +152,7 @@ def _publish(
 ) -> None:
     """Publish while the shutter is open; return when the source ends, or a signal comes."""
     outlets = ShutteredOutlets(daemon, shutter)
-    camera = CameraPublisher(outlets, daemon.instance)
+    camera = CameraPublisher(outlets, daemon.instance, chosen.depth_codec)
     previews = Previews(outlets.publisher(PREVIEW, daemon.instance), daemon.health)
     end = EndOfCapture(daemon.stop, shutter)
 

@@ -46,6 +46,9 @@ class CaptureSettings(Section):
     them. ``masks`` are polygons of the turned picture that are burned in before anything leaves
     the process: lists of corners (x, y) as shares of its width and height. ``mask_faces`` burns in
     all faces that are found, too.
+
+    Depth is published as ``depth_codec`` says; what is encoded already stays as it is unless that
+    is "png16".
     """
 
     source: Annotated[str, AfterValidator(_installed)]
@@ -56,6 +59,7 @@ class CaptureSettings(Section):
     rotate: Literal[0, 90, 180, 270] = 0
     masks: tuple[Annotated[tuple[Corner, ...], Field(min_length=3)], ...] = ()
     mask_faces: bool = False
+    depth_codec: Literal["z16-zstd", "png16"] = "z16-zstd"
 
     def looks_for_people(self) -> bool:
         """Whether a network has to find people in the pictures."""

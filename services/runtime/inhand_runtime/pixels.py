@@ -4,9 +4,10 @@ import numpy as np
 import simplejpeg
 import zstandard
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import ColourImage, DepthImage
+from inhand_schemas.messages import ColourImage, DepthCodec, DepthImage
 from numpy.typing import NDArray
 
+from inhand_runtime.png_depth import decode_png, encode_png
 from inhand_runtime.wording import counted
 
 JPEG_QUALITY = 90
@@ -47,15 +48,21 @@ def decode_grey(image: ColourImage) -> NDArray[np.uint8]:
     return grey
 
 
-def encode_depth(depth: NDArray[np.uint16]) -> DepthImage:
+def encode_depth(depth: NDArray[np.uint16], codec: DepthCodec = "z16-zstd") -> DepthImage:
     """(H, W) depth units, without loss."""
     height, width = depth.shape
+    if codec == "png16":
+        return DepthImage(codec, width, height, encode_png(depth))
+    if codec == "z16":
+        return DepthImage(codec, width, height, depth.astype("<u2").tobytes())
     data = zstandard.ZstdCompressor(level=ZSTD_LEVEL).compress(depth.astype("<u2").tobytes())
     return DepthImage("z16-zstd", width, height, data)
 
 
 def decode_depth(image: DepthImage) -> NDArray[np.uint16]:
     """(H, W) depth units; raises MessageError when the bytes are damaged."""
+    if image.codec == "png16":
+        return decode_png(image.data, image.width, image.height)
     size = 2 * image.width * image.height
     data = image.data
     if image.codec == "z16-zstd":
