@@ -54,5 +54,11 @@ class DatasetParameters:
     held_label_m: float = 1.0
     """Distance in metres of an object from the nearest joint within which a unit is named."""
 
+    # Mirror images (facing).
+    backward_feet: float = -0.3
+    """Mean of where feet point, in the direction of the pelvis and in lengths of the feet, in the
+    median frame, below which the whole body is a mirror image. Of simulated people it is 0.56 or
+    more, of UTD-MHAD, whose feet are seen badly, between 0.0 and 0.72."""
+
 
 DEFAULT_DATASET = DatasetParameters()

@@ -42,7 +42,7 @@ def check_units(
     people = _BodiesWithLabels(owners, joints, _places(labels))
     with np.errstate(invalid="ignore", over="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of medians of nothing
-        height, far = _stature(part_lengths(joints)), people.distance_m()
+        height, far = measured_stature(part_lengths(joints)), people.distance_m()
         trunks = np.linalg.norm(np.diff(joints[:, _TRUNK], axis=1), axis=2).sum(axis=1)
     _check_stature(path, height, far)
     _check_frames(path, owners, trunks)
@@ -78,19 +78,28 @@ class _BodiesWithLabels:
         return f", and at somebody if they are in {unit}" if near else ""
 
 
-def _stature(lengths: Array) -> float:
-    """The stature by part lengths (N, 19), of trunk and legs, or of arms and neck without them."""
+def measured_stature(lengths: Array) -> float:
+    """Return the stature by part lengths (N, 19), of trunk and legs, or else of arms and neck."""
     typical = typical_lengths(lengths)
     whole = stature(typical)
     return whole if np.isfinite(whole) else seen_stature(typical, TRUNK)
 
 
-def _check_stature(path: Path, height: float, far: float) -> None:
-    smallest, tallest = DEFAULT_DATASET.smallest_stature_m, DEFAULT_DATASET.tallest_stature_m
-    if not np.isfinite(height) or smallest <= height <= tallest:
-        return
+def unit_of_stature(height: float) -> str | None:
+    """Name the unit in which people of that height are: metres, another, or None for no unit."""
+    if DEFAULT_DATASET.smallest_stature_m <= height <= DEFAULT_DATASET.tallest_stature_m:
+        return "metres"
     unit = min(UNITS_M, key=lambda name: _unlike_a_person(height * UNITS_M[name]))
-    named = f"in {unit}" if smallest <= height * UNITS_M[unit] <= tallest else "in another unit"
+    scaled = height * UNITS_M[unit]
+    fits = DEFAULT_DATASET.smallest_stature_m <= scaled <= DEFAULT_DATASET.tallest_stature_m
+    return unit if fits else None
+
+
+def _check_stature(path: Path, height: float, far: float) -> None:
+    unit = unit_of_stature(height)
+    if not np.isfinite(height) or unit == "metres":
+        return
+    named = "in another unit" if unit is None else f"in {unit}"
     what = "joints and labels" if far <= height else "joints"
     raise DatasetError(
         f"{path}: a person {_number(height)} m tall: {what} are {named}; write metres"

@@ -1,13 +1,36 @@
 """Makes messages of an import's arrays."""
 
 import numpy as np
-from inhand_schemas.messages import ObjectPose, Person, Skeletons
+from inhand_schemas.messages import CameraInfo, ObjectPose, Person, Skeletons
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.wire.poses import pose_message
 
 from inhand_lab.datasets.dataset import CAMERA
+from inhand_lab.importers.parameters import DEFAULT_IMPORT
 
 PERSON = 0
+
+
+def imagined_camera(time_ns: int, description: str, frame_rate: float | None = None) -> CameraInfo:
+    """Make the info of a camera that no file describes, and that gave no pixels.
+
+    ``frame_rate`` is in Hz; where it is not known it is a Kinect's.
+    """
+    width, height = DEFAULT_IMPORT.image_width, DEFAULT_IMPORT.image_height
+    return CameraInfo(
+        sequence=0,
+        time_ns=time_ns,
+        width=width,
+        height=height,
+        fx=DEFAULT_IMPORT.focal_length,
+        fy=DEFAULT_IMPORT.focal_length,
+        cx=(width - 1) / 2.0,
+        cy=(height - 1) / 2.0,
+        frame_rate=frame_rate or DEFAULT_IMPORT.frame_rate,
+        has_colour=False,
+        has_depth=False,
+        description=description,
+    )
 
 
 def imported_skeletons(sequence: int, time_ns: int, joints: Array) -> Skeletons:

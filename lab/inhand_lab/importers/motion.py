@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
-from inhand_schemas.messages import CameraInfo, Message
+from inhand_schemas.messages import Message
 from inhand_tracker.body.skeleton import Bases, has_pelvis, pelvis_basis
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
@@ -12,7 +12,12 @@ from inhand_tracker.shape.shape import ObjectShape
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
-from inhand_lab.importers.messages import PERSON, imported_label, imported_skeletons
+from inhand_lab.importers.messages import (
+    PERSON,
+    imagined_camera,
+    imported_label,
+    imported_skeletons,
+)
 from inhand_lab.importers.motion_archive import Motion, read_motion
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.shapes import shape_of_mesh, shape_of_points
@@ -68,32 +73,14 @@ def _messages(motion: Motion, timing: Timing) -> Iterator[Message]:
     world = world_in_camera(motion.joints)
     joints = world.origins + rotations.rotate(world.rotations, motion.joints)
     translations, orientations = world.to_camera(motion.translations, motion.orientations)
-    yield _imagined_camera(motion, timing)
+    where = f"imagined {DEFAULT_IMPORT.distance_m:g} m before the person of {motion.path.name}"
+    yield imagined_camera(timing.time_ns(0), where, timing.frame_rate)
     for sequence, frame in enumerate(range(0, len(joints), timing.step)):
         time_ns = timing.time_ns(sequence)
         yield imported_skeletons(sequence, time_ns, joints[frame])
         translation, orientation = translations[frame], orientations[frame]
         if np.isfinite(translation).all():
             yield imported_label(sequence, time_ns, motion.object, translation, orientation, PERSON)
-
-
-def _imagined_camera(motion: Motion, timing: Timing) -> CameraInfo:
-    width, height = DEFAULT_IMPORT.image_width, DEFAULT_IMPORT.image_height
-    return CameraInfo(
-        sequence=0,
-        time_ns=timing.time_ns(0),
-        width=width,
-        height=height,
-        fx=DEFAULT_IMPORT.focal_length,
-        fy=DEFAULT_IMPORT.focal_length,
-        cx=(width - 1) / 2.0,
-        cy=(height - 1) / 2.0,
-        frame_rate=timing.frame_rate,
-        has_colour=False,
-        has_depth=False,
-        description=f"imagined {DEFAULT_IMPORT.distance_m:g} m before the person of "
-        f"{motion.path.name}",
-    )
 
 
 def _shapes(motions: Sequence[Motion]) -> list[ObjectShape]:

@@ -30,6 +30,35 @@ class ImportParameters:
     unit_tolerance: float = 1e-3
     """Deviation from 1 up to which a quaternion counts as a unit, and a matrix as a rotation."""
 
+    # Skeletons of other conventions.
+    hip_centre_share: float = 0.147
+    """Share of the way from the middle of the hips to ShoulderCenter at which HipCenter lies: the
+    median of UTD-MHAD's Kinect (`pytest tests/lab/importers/test_joint_tables.py`)."""
+    spine_share: float = 0.287
+    """The share at which Spine lies, likewise."""
+    tracked_from: float = 0.3
+    """Confidence from which a joint counts as tracked where a format has confidences only: below it
+    networks of COCO's key points are usually not drawn."""
+    inferred_confidence: float = 0.5
+    """Confidence of a joint of which a format says no more than that it is inferred."""
+    closest_share: float = 0.75
+    """Time after a kept frame, in periods of the rate asked for, within which frames are left out:
+    all are kept of a recording at that rate whose times are a quarter of a period off."""
+    slowest_s: float = 2.0
+    """Time in seconds between frames, in the median, above which times are in another unit."""
+    farthest_m: float = 1e6
+    """Metres beyond which a joint is missing: joints in millimetres that are taken for metres are
+    nearer."""
+    nearest_body_m: float = 0.1
+    """Distance in metres of the hips from the camera, in the median, below which joints are
+    relative to the hips."""
+    farthest_aside: float = 10.0
+    """Number above which x or y is in pixels where no z is: neither in metres nor in millimetres is
+    anybody more to the side of a camera, and less before it."""
+    upright_share: float = 0.3
+    """Mean of where trunks point, upwards in the image and in lengths of the trunk, in the median,
+    below which it is warned of: people lie, or an axis is another."""
+
     # Shapes from what is measured of an object.
     thinnest_m: float = 0.01
     """Extent in metres below which points are made into a body of that thickness."""

@@ -43,30 +43,31 @@ def read_shown(paths: Iterable[Path], read: Callable[[Path], Recording]) -> list
     return recordings
 
 
-def find_files(sources: Iterable[Path], suffix: str) -> list[Path]:
-    """Return the sources, and for a folder its files with that suffix.
+def find_files(sources: Iterable[Path], *suffixes: str) -> list[Path]:
+    """Return the sources, and for a folder its files with one of the suffixes.
 
     Raises DatasetError for one that is missing or has another name, for a folder without any, and
     for two files of the same name, which would be the same recording.
     """
-    paths_by_name: dict[str, Path] = {}
+    paths_by_stem: dict[str, Path] = {}
     for source in sources:
-        for path in _files_of(source, suffix):
-            if paths_by_name.setdefault(path.name, path) != path:
+        for path in _files_of(source, suffixes):
+            if paths_by_stem.setdefault(path.stem, path) != path:
                 raise DatasetError(
-                    f"{paths_by_name[path.name]} and {path} would be the same recording: rename one"
+                    f"{paths_by_stem[path.stem]} and {path} would be the same recording: rename one"
                 )
-    return list(paths_by_name.values())
+    return list(paths_by_stem.values())
 
 
-def _files_of(source: Path, suffix: str) -> list[Path]:
+def _files_of(source: Path, suffixes: tuple[str, ...]) -> list[Path]:
+    wanted = " or ".join(f"*{suffix}" for suffix in suffixes)
     if source.is_dir():
-        files = sorted(source.glob(f"*{suffix}"))
+        files = sorted(path for path in source.iterdir() if path.name.endswith(suffixes))
         if not files:
-            raise DatasetError(f"{source} holds no *{suffix}: name the folder that does")
+            raise DatasetError(f"{source} holds no {wanted}: name the folder that does")
         return files
     if not source.is_file():
         raise DatasetError(f"{source} does not exist: check the path")
-    if not source.name.endswith(suffix):
-        raise DatasetError(f"{source} is not read by this import: name *{suffix} files")
+    if not source.name.endswith(suffixes):
+        raise DatasetError(f"{source} is not read by this import: name {wanted} files")
     return [source]

@@ -28,10 +28,6 @@ class TrainingParameters:
     has a stand-in: no body tracker loses a joint that is in view for as long."""
     clear_hand_share: float = 0.9
     """Share of frames in which an object is nearer to one hand from which it is that hand's."""
-    backward_feet: float = -0.3
-    """Mean of where feet point, in the direction of the pelvis and in lengths of the feet, in the
-    median frame, below which the whole body is a mirror image. Of simulated people it is 0.56 or
-    more, of UTD-MHAD, whose feet are seen badly, between 0.0 and 0.72."""
     fewest_compared: int = 3
     """Number of recordings from which on one can be unlike all others."""
     compared_frames: int = 500

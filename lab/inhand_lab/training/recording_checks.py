@@ -11,6 +11,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.mapping.learning import LabelledSequence
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
+from inhand_lab.datasets.facing import foot_directions, is_mirror_image, pointing_forwards
 from inhand_lab.training.absent_joints import absent_of
 from inhand_lab.training.parameters import DEFAULT_TRAINING
 
@@ -34,20 +35,8 @@ def check_facing(entry: DatasetEntry, joints: Array) -> None:
     They do however somebody walks, sits or is turned. Raises DatasetError where they point
     backwards in the median frame: left and right, or an axis, are exchanged.
     """
-    hips = joints[:, Joint.HIP_LEFT] - joints[:, Joint.HIP_RIGHT]
-    upwards = joints[:, Joint.SHOULDER_CENTER] - joints[:, Joint.HIP_CENTER]
-    soles = [joints[:, foot] - joints[:, foot - 1] for foot in (Joint.FOOT_LEFT, Joint.FOOT_RIGHT)]
-    feet = np.mean(soles, axis=0)
-    forwards = np.cross(hips, upwards)
-    seen = np.isfinite(feet).all(axis=1) & (np.linalg.norm(forwards, axis=1) > 0.0)
-    seen &= np.linalg.norm(feet, axis=1) > 0.0
-    if not seen.any():
-        return
-    feet, forwards = feet[seen], forwards[seen]
-    forwards /= np.linalg.norm(forwards, axis=1, keepdims=True)
-    length = np.median(np.linalg.norm(feet, axis=1))
-    pointing = np.sum(feet * forwards, axis=1) / length
-    if np.median(pointing) < DEFAULT_TRAINING.backward_feet:
+    pointing = pointing_forwards(joints, foot_directions(joints))
+    if is_mirror_image(pointing):
         raise DatasetError(
             f"{entry.file}: the whole body is a mirror image, its feet point backwards in "
             f"{_share(int((pointing < 0.0).sum()), len(pointing))}: left and right joints have "

@@ -1,10 +1,20 @@
 """What holds for the import of any format."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from bop_data import save_bop
 from foreign_data import only_entry, save_archive, save_trial, save_video
+from foreign_skeletons import (
+    azure_kinect_values,
+    coco_values,
+    ntu_text,
+    save_json,
+    save_npz,
+    save_text,
+    zed_values,
+)
 from inhand_lab.datasets.dataset import load_dataset
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.motion import import_motion
@@ -12,8 +22,21 @@ from inhand_runtime.errors import InhandError
 
 from inhand.__main__ import main
 
+SOURCES: dict[str, Callable[[Path], Path]] = {
+    "motion": lambda folder: save_archive(folder / "walk.npz"),
+    "utd-mhad": lambda folder: save_trial(folder, 2, 2),
+    "ycb-video": lambda folder: save_video(folder / "in"),
+    "bop": lambda folder: save_bop(folder / "in"),
+    "azure-kinect": lambda folder: save_json(folder / "walk.json", azure_kinect_values()),
+    "zed": lambda folder: save_json(folder / "walk.json", zed_values()),
+    "ntu": lambda folder: save_text(folder / "walk.skeleton", ntu_text()),
+    "coco": lambda folder: save_npz(folder / "walk.npz", coco_values()),
+}
+TIMED = ("azure-kinect", "zed", "coco")
+"""Formats whose frames tell their times, so that the dataset need not say their rate."""
 
-@pytest.mark.parametrize("name", ["motion", "utd-mhad", "ycb-video", "bop"])
+
+@pytest.mark.parametrize("name", SOURCES)
 class TestEveryImport:
     def test_a_source_that_is_missing_is_told_in_one_line(
         self, name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -32,12 +55,7 @@ class TestEveryImport:
     def test_a_folder_with_a_dataset_is_left_alone(
         self, name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
     ) -> None:
-        source = {
-            "motion": lambda: save_archive(tmp_path / "walk.npz"),
-            "utd-mhad": lambda: save_trial(tmp_path, 1, None),
-            "ycb-video": lambda: save_video(tmp_path / "in"),
-            "bop": lambda: save_bop(tmp_path / "in"),
-        }[name]()
+        source = SOURCES[name](tmp_path)
         DatasetWriter(tmp_path / "out").finish({})
         before = (tmp_path / "out" / "dataset.toml").read_bytes()
         assert main(["import", name, str(source), str(tmp_path / "out")]) == 1
@@ -45,15 +63,10 @@ class TestEveryImport:
         assert (tmp_path / "out" / "dataset.toml").read_bytes() == before
 
     def test_the_verb_makes_a_dataset_that_can_be_loaded(self, name: str, tmp_path: Path) -> None:
-        source = {
-            "motion": lambda: save_archive(tmp_path / "walk.npz"),
-            "utd-mhad": lambda: save_trial(tmp_path, 2, 2),
-            "ycb-video": lambda: save_video(tmp_path / "in"),
-            "bop": lambda: save_bop(tmp_path / "in"),
-        }[name]()
+        source = SOURCES[name](tmp_path)
         out = tmp_path / "out"
         assert main(["import", name, str(source), str(out), "--frame-rate", "15"]) == 0
-        assert only_entry(load_dataset(out)).frame_rate == 15.0
+        assert only_entry(load_dataset(out)).frame_rate == (None if name in TIMED else 15.0)
 
 
 def test_two_sources_of_one_name_are_refused(tmp_path: Path) -> None:
