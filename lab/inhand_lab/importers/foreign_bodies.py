@@ -64,12 +64,7 @@ class Bodies:
         places = np.full(len(self.times_ns), -1)
         places[frames] = np.arange(len(frames))
         chosen = places[self.frames] >= 0
-        joints = JointSets(
-            self.joints.places[chosen],
-            self.joints.states[chosen],
-            self.joints.confidences[chosen],
-        )
-        owners = places[self.frames[chosen]]
+        owners, joints = places[self.frames[chosen]], self.joints.chosen(chosen)
         return Bodies(self.path, self.times_ns[frames], owners, self.ids[chosen], joints)
 
 
@@ -95,11 +90,14 @@ def our_bodies(
         np.array([body.confidences for body in shown]),
     )
     joints = our_joints(table, theirs)
+    ours = np.asarray((joints.states != MISSING).any(axis=1))  # a nose alone is no joint of ours
+    if not ours.any():
+        raise NobodyError(f"{path} has no frame with a body")
     check_bodies(path, table, joints.places, forward_directions(table, theirs), mends)
     frames = np.array([body.frame for body in shown])
     numbers: dict[int, int] = {}
     ids = np.array([numbers.setdefault(body.id, len(numbers)) for body in shown])
-    return Bodies(path, times_ns, frames, ids, joints)
+    return Bodies(path, times_ns, frames[ours], ids[ours], joints.chosen(ours))
 
 
 def write_bodies(

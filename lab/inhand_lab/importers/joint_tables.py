@@ -70,6 +70,10 @@ class JointSets:
     states: States
     confidences: Array
 
+    def chosen(self, bodies: NDArray[np.bool_]) -> "JointSets":
+        """Return those of the bodies (N,) that are true."""
+        return JointSets(self.places[bodies], self.states[bodies], self.confidences[bodies])
+
 
 def at(name: str) -> Candidates:
     """The joint of that name, as it is."""

@@ -37,6 +37,15 @@ def test_several_people_are_told_apart_by_their_place_in_the_array(tmp_path: Pat
     assert [[person.id for person in one.people] for one in skeletons] == [[0, 1], [1], [0, 1]]
 
 
+def test_a_nose_alone_is_nobody(tmp_path: Path) -> None:
+    values = coco_values(3)
+    values["keypoints"][1, 1:] = np.nan
+    assert read_coco(save_npz(tmp_path / "a.npz", values)).frames.tolist() == [0, 2]
+    values["keypoints"][:, 1:] = np.nan
+    with pytest.raises(DatasetError, match="no frame with a body"):
+        read_coco(save_npz(tmp_path / "b.npz", values))
+
+
 def test_scores_say_what_is_tracked(tmp_path: Path) -> None:
     values = coco_values(2) | {"scores": np.full((2, 17), 0.9)}
     values["scores"][1, WRIST] = 0.1
