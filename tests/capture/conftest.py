@@ -6,7 +6,13 @@ from pathlib import Path
 import pytest
 
 SCENES = Path(__file__).parents[1] / "scenes"
-PLUGINS = ("scripted_source.py", "stub_oak_source.py", "stub_oak.py", "secret_source.py")
+PLUGINS = (
+    "scripted_source.py",
+    "stub_oak_source.py",
+    "stub_oak.py",
+    "secret_source.py",
+    "hanging_source.py",
+)
 
 
 @pytest.fixture
@@ -28,6 +34,7 @@ def plugin_folder(tmp_path: Path) -> Path:
         "[inhand.sources]\nscripted = scripted_source:ScriptedSource\n"
         "stub_oak = stub_oak_source:StubOakSource\n"
         "secret = secret_source:SecretSource\n"
+        "hanging = hanging_source:HangingSource\n"
         "unusable = package_that_nobody_has:Source\n"
     )
     for plugin in PLUGINS:
