@@ -30,6 +30,7 @@ VERBS = {
     "replay": "publish a recording again",
     "simulate": "make a labelled dataset of simulated people",
     "import": "make a dataset of real data: utd-mhad, motion, ycb-video, bop",
+    "object": "make a new object of a dataset, from a few measures: new",
     "train": "learn a model from a labelled dataset",
     "evaluate": "measure methods on people that were not trained on",
     "recognise": "measure tracking where the object is not given, and recognition alone",
@@ -45,7 +46,7 @@ VERBS = {
 """Verbs whose module has ``add_arguments(parser)`` and ``run(arguments) -> int``."""
 
 
-WRITTEN_FILES = ("json", "output", "sheet")
+WRITTEN_FILES = ("json", "output", "sheet", "picture")
 WRITTEN_FOLDERS = ("out", "report", "folder")
 """Names of the arguments that say where a verb writes."""
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import trimesh
 from inhand_tracker.geometry.arrays import Array, Bytes, Indices
 from inhand_tracker.shape.shape import Symmetry
+from trimesh import creation
 
 from inhand_lab.geometry.transforms import MIRROR, normalised
 
@@ -97,6 +99,14 @@ def tube(path: Array, radius: float) -> trimesh.Trimesh:
     faces += [(0, b + 1, b) for b in range(1, TUBE_SECTIONS - 1)]
     faces += [(last, last + b, last + b + 1) for b in range(1, TUBE_SECTIONS - 1)]
     return trimesh.Trimesh(rings.reshape(-1, 3), np.array(faces), process=False)
+
+
+def turned(outline: Sequence[tuple[float, float]], sections: int) -> trimesh.Trimesh:
+    """A surface of revolution about z of an outline of radii and heights in metres.
+
+    An outline that begins and ends on the axis, from below round the outside, makes a closed solid.
+    """
+    return creation.revolve(np.array(outline), sections=sections)
 
 
 def build_model(

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
 import trimesh
 from inhand_tracker.shape.shape import Symmetry
-from trimesh import creation
 
-from inhand_lab.objects.model import ObjectModel, build_model
+from inhand_lab.objects.model import ObjectModel, build_model, turned
 
 BOTTLE_HEIGHT = 0.215
 BOTTLE_RADIUS = 0.031
@@ -41,7 +39,6 @@ def vinegar_bottle() -> ObjectModel:
 
 def _turned(outline: tuple[tuple[float, float], ...]) -> trimesh.Trimesh:
     """A closed solid of revolution of an outline of radii and heights above the bottom."""
-    closed = [(0.0, outline[0][1]), *outline, (0.0, outline[-1][1])]
-    solid = creation.revolve(np.array(closed), sections=32)
+    solid = turned([(0.0, outline[0][1]), *outline, (0.0, outline[-1][1])], sections=32)
     solid.apply_translation([0.0, 0.0, -BOTTLE_HALF_HEIGHT])
     return solid
