@@ -1,18 +1,9 @@
-"""The scripted source as an installed plugin."""
+"""The sources of the tests as an installed plugin."""
 
-import shutil
 from pathlib import Path
 
 import pytest
-
-SCENES = Path(__file__).parents[1] / "scenes"
-PLUGINS = (
-    "scripted_source.py",
-    "stub_oak_source.py",
-    "stub_oak.py",
-    "secret_source.py",
-    "hanging_source.py",
-)
+from plugins import install_plugins
 
 
 @pytest.fixture
@@ -26,17 +17,4 @@ def own_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def plugin_folder(tmp_path: Path) -> Path:
     """A folder for PYTHONPATH in which the sources of the tests are installed."""
-    folder = tmp_path / "plugins"
-    metadata = folder / "scripted-1.0.dist-info"
-    metadata.mkdir(parents=True)
-    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: scripted\nVersion: 1.0\n")
-    (metadata / "entry_points.txt").write_text(
-        "[inhand.sources]\nscripted = scripted_source:ScriptedSource\n"
-        "stub_oak = stub_oak_source:StubOakSource\n"
-        "secret = secret_source:SecretSource\n"
-        "hanging = hanging_source:HangingSource\n"
-        "unusable = package_that_nobody_has:Source\n"
-    )
-    for plugin in PLUGINS:
-        shutil.copy(SCENES / plugin, folder)
-    return folder
+    return install_plugins(tmp_path / "plugins")

@@ -2,14 +2,16 @@
 
 ``python tests/scenes/hidden_faces.py``: of each interaction, pictures of which some of the head is
 shown, hair and ears included; the largest share of a head that is shown; what is hidden of the
-picture, where a head takes half a hundredth; and processor time of one core. In the last row
-somebody comes in from the side at 1 m/s: their head is shown until it is found.
+picture, where a head takes half a hundredth; and processor time of one core. The last rows are of
+somebody whom the picture's edge cuts in the middle, who stands in a tenth of the light, who is
+three times as far away, and who comes in from the side at 1 m/s.
 """
 
 import argparse
 import time
 from collections.abc import Iterator
 
+import cv2
 import numpy as np
 from drawn_heads import head_pixels
 from inhand_capture.estimation.networks import open_network
@@ -43,6 +45,31 @@ def coming_in(simulation: Simulation) -> Iterator[Shown]:
         there = np.zeros((height, width), bool)
         there[:, : width - away] = head[:, away:]
         yield moved, there
+
+
+def cut_in_the_middle(pictures: Iterator[Shown]) -> Iterator[Shown]:
+    """The right half of a head, at the left edge."""
+    middle = 0
+    for colour, head in pictures:
+        middle = middle or round(float(np.nonzero(head)[1].mean()))
+        yield np.ascontiguousarray(colour[:, middle:]), head[:, middle:]
+
+
+def in_the_dark(pictures: Iterator[Shown]) -> Iterator[Shown]:
+    """With a tenth of the light."""
+    for colour, head in pictures:
+        yield (colour // 10).astype(np.uint8), head
+
+
+def far_away(pictures: Iterator[Shown]) -> Iterator[Shown]:
+    """Three times as far, before an empty wall."""
+    for colour, head in pictures:
+        height, width = (size // 3 for size in head.shape)
+        away, there = np.full_like(colour, 110), np.zeros_like(head)
+        window = (slice(160, 160 + height), slice(200, 200 + width))
+        away[window] = cv2.resize(colour, (width, height), interpolation=cv2.INTER_AREA)
+        there[window] = head[1::3, 1::3][:height, :width]
+        yield away, there
 
 
 def row(name: str, simulation: Simulation, pictures: Iterator[Shown], step: int) -> str:
@@ -80,7 +107,14 @@ def main() -> None:
         simulation = simulate(name, chosen.participant, chosen.seed, frames=chosen.frames)
         pictures = performed(simulation, chosen.step)
         print(row(name, simulation, pictures, chosen.step), flush=True)
-    simulation = simulate("drinkFromMug", chosen.participant, chosen.seed, frames=30)
+    simulation = simulate("drinkFromMug", chosen.participant, chosen.seed, frames=chosen.frames)
+    for name, changed in (
+        ("cut in the middle", cut_in_the_middle),
+        ("in the dark", in_the_dark),
+        ("three times as far", far_away),
+    ):
+        pictures = changed(performed(simulation, chosen.step))
+        print(row(name, simulation, pictures, chosen.step), flush=True)
     print(row("who comes in", simulation, coming_in(simulation), 1))
 
 

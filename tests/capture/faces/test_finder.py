@@ -71,6 +71,35 @@ def test_a_head_without_a_body_is_hidden(finder: FaceFinder, drinking: Simulatio
     assert (head & ~mask).sum() < 0.1 * head.sum()
 
 
+@pytest.mark.parametrize("side", ["left", "right", "bottom"])
+def test_a_head_that_the_picture_s_edge_cuts_is_hidden(
+    finder: FaceFinder, drinking: Simulation, side: str
+) -> None:
+    rows, columns = np.nonzero(head_pixels(drinking, 0))
+    row, column = round(rows.mean()) + 10, round(columns.mean())
+    for frame in range(0, 16, 2):
+        colour, head = drinking.render(frame).colour, head_pixels(drinking, frame)
+        if side == "bottom":
+            rolled = np.roll(colour, 480 - row, axis=0)
+            rolled[: 480 - row] = 110
+            colour, head = rolled, np.roll(head, 480 - row, axis=0)
+            head[: 480 - row] = False
+        else:
+            kept = slice(column, None) if side == "left" else slice(0, column)
+            colour, head = np.ascontiguousarray(colour[:, kept]), head[:, kept]
+        mask = _shown(finder, drinking, colour, frame)
+        assert head.any()
+        assert frame < 4 or (head & ~mask).sum() <= 0.1 * head.sum()
+
+
+def test_a_face_in_the_dark_is_hidden(finder: FaceFinder, drinking: Simulation) -> None:
+    for frame in range(0, 16, 2):
+        dark = (drinking.render(frame).colour // 12).astype(np.uint8)
+        mask = _shown(finder, drinking, dark, frame)
+        head = head_pixels(drinking, frame)
+        assert frame < 4 or (head & ~mask).sum() <= 0.1 * head.sum()
+
+
 def test_an_empty_room_is_shown(finder: FaceFinder, drinking: Simulation) -> None:
     room = np.asarray(drinking._scene.room.colour, np.uint8)
     for number in range(4):

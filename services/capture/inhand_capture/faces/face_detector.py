@@ -4,12 +4,13 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from inhand_capture.estimation.found_person import Floats
 from inhand_capture.estimation.litert import LiteRtNetwork
-from inhand_capture.estimation.regions import Region, crop
+from inhand_capture.estimation.regions import Region
 from inhand_capture.faces.discs import Disc
 from inhand_capture.faces.parameters import DEFAULT_FACES, FaceParameters
 
@@ -36,9 +37,14 @@ class FaceDetector:
         self._parameters = parameters
 
     def find(self, picture: NDArray[np.uint8], view: Region) -> list[Disc]:
-        """Return what to hide of a picture (H, W, 3) RGB, looked at in one region of it."""
-        cut = crop(picture, view, SIDE, padded=True)
-        outputs = self._network(cut * np.float32(1.0 / 127.5) - np.float32(1.0))
+        """Return what to hide of a picture (H, W, 3) RGB, looked at in one region of it.
+
+        Beside the picture is its mirror image, which makes whole faces of those that an edge cuts.
+        """
+        cut = _mirrored_crop(picture, view)
+        gain = max(1.0, self._parameters.least_brightness / max(float(cut.mean()), 1.0))
+        lit = np.minimum(cut * np.float32(gain), np.float32(255.0))
+        outputs = self._network(lit * np.float32(1.0 / 127.5) - np.float32(1.0))
         logits = np.clip(outputs["Identity_1"][:, 0].astype(float), -MOST_LOGIT, MOST_LOGIT)
         scores = 1.0 / (1.0 + np.exp(-logits))
         good = np.flatnonzero(scores >= self._parameters.face_score)
@@ -47,10 +53,31 @@ class FaceDetector:
         chosen = _each_once(boxes, scores[good], self._parameters.same_face)
         places = view.to_picture(boxes[chosen, :2], SIDE)
         radii = self._parameters.face_radius * view.side / SIDE * boxes[chosen, 2:].max(axis=1)
+        height, width = picture.shape[:2]
         return [
-            Disc(float(x), float(y), float(radius))
-            for (x, y), radius in zip(places, radii, strict=True)
+            Disc(_mirrored_into(x, width), _mirrored_into(y, height), radius)
+            for (x, y), radius in zip(places.tolist(), radii.tolist(), strict=True)
         ]
+
+
+def _mirrored_crop(picture: NDArray[np.uint8], view: Region) -> NDArray[np.uint8]:
+    """Cut a region (SIDE, SIDE, 3) out of a picture that goes on as its mirror image."""
+    cut = cv2.warpAffine(
+        picture,
+        view.matrix(SIDE),
+        (SIDE, SIDE),
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+        borderMode=cv2.BORDER_REFLECT_101,
+    )
+    return np.asarray(cut, np.uint8)
+
+
+def _mirrored_into(place: float, size: int) -> float:
+    """Return where in a picture that is which a place beside it shows the mirror image of."""
+    last = size - 1.0
+    if place < 0.0:
+        return min(-place, last)
+    return max(2.0 * last - place, 0.0) if place > last else place
 
 
 def _each_once(boxes: Floats, scores: Floats, nearness: float) -> Sequence[int]:

@@ -73,10 +73,14 @@ class FaceFinder:
 
     def _views(self, width: int, height: int) -> list[Region]:
         """Return where to look for faces: in all of a picture, and closer in one of its ends by
-        turns."""
-        side = float(min(width, height))
-        first = self._pictures % 2 == 0
-        x, y = (0.5 * side, 0.5 * side) if first else (width - 0.5 * side, height - 0.5 * side)
+        turns, which reaches beyond the picture's edges."""
+        shorter = float(min(width, height))
+        beyond, beside = self._parameters.beyond * shorter, self._parameters.beside * shorter
+        side = shorter + 2.0 * beside
+        along = 0.5 * side - beyond
+        if self._pictures % 2:
+            along = max(width, height) - along
+        x, y = (along, 0.5 * height) if width >= height else (0.5 * width, along)
         return [whole_picture(width, height), Region(x, y, side)]
 
 

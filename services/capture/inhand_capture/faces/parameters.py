@@ -10,14 +10,21 @@ from dataclasses import dataclass
 class FaceParameters:
     """Decides what is taken for a face, how much of a picture it takes, and for how long."""
 
-    face_score: float = 0.5
-    """Score from which a box of the detector is a face. Its authors take 0.6; a wrong one costs
-    little."""
+    face_score: float = 0.4
+    """Score from which a box of the detector is a face. Its authors take 0.6; halves of drawn faces
+    score 0.4 and more, and what is hidden for nothing is little."""
+    least_brightness: float = 70.0
+    """Mean brightness, of 255, to which a darker picture is brightened before it is looked at."""
     face_radius: float = 1.0
     """Radius of what is hidden about a detected face, in widths of its box, which reaches from the
     brows to the chin and from cheek to cheek."""
     same_face: float = 0.3
     """Shared over joint area of two boxes from which they are one face: the authors' number."""
+    beyond: float = 0.25
+    """How far a close look reaches beyond the end of a picture, in its shorter sides: there its
+    mirror image makes half a face a whole one."""
+    beside: float = 0.08
+    """How far it reaches beyond the other two edges, in shorter sides."""
     head_radius_m: float = 0.22
     """Radius of what is hidden about the middle of a head, metres: nose and chin are 0.14 m from
     it, and a network errs by 0.05 m."""
