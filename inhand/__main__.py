@@ -30,7 +30,7 @@ VERBS = {
     "replay": "publish a recording again",
     "simulate": "make a labelled dataset of simulated people",
     "import": "make a dataset of real data: utd-mhad, motion, ycb-video, bop",
-    "object": "make a new object of a dataset, from a few measures: new",
+    "object": "make a new object of a dataset, of a mesh file or a few measures: new",
     "train": "learn a model from a labelled dataset",
     "evaluate": "measure methods on people that were not trained on",
     "recognise": "measure tracking where the object is not given, and recognition alone",

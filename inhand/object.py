@@ -1,4 +1,4 @@
-"""``inhand object``: make a new object of a dataset, from a few measures in centimetres."""
+"""``inhand object``: make a new object of a dataset, from a mesh file, or from a few measures."""
 
 import argparse
 from pathlib import Path
@@ -13,7 +13,11 @@ from rich.console import Console
 
 from inhand.looking import positive_number
 from inhand.object_choices import add_choices, chosen_by_hand
+from inhand.object_mesh import add_mesh_options, propose_mesh
 from inhand.object_summary import summarise
+
+OWN_OPTIONS = {"mesh": ("unit", "size", "up"), "kind": MEASURES}
+"""Options that only one way of making an object takes, by the option that chooses the way."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,7 +42,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FOLDER",
         help="the dataset that it becomes part of, which need not be there yet",
     )
-    new.add_argument("--kind", choices=KINDS, metavar="KIND", help=f"one of {', '.join(KINDS)}")
+    new.add_argument("--mesh", type=Path, metavar="FILE", help="make it of a mesh file")
+    add_mesh_options(new)
+    new.add_argument(
+        "--kind",
+        choices=KINDS,
+        metavar="KIND",
+        help=f"make it by measures in centimetres: one of {', '.join(KINDS)}",
+    )
     for measure in MEASURES:
         new.add_argument(
             option(measure), type=positive_number, metavar="CM", help=_meaning(measure)
@@ -57,10 +68,10 @@ def run(arguments: argparse.Namespace) -> int:
     folder = new_folder(arguments.folder, arguments.name)
     picture = arguments.picture or folder / "picture.png"
     require_picture(picture)
-    proposal = _proposed(arguments)
+    console = Console()
+    proposal = _proposed(arguments, console)
     write_object(proposal.shape, folder)
     write_picture(proposal.shape, picture)
-    console = Console()
     console.print(summarise(proposal))
     console.print(
         f"saved {folder}; {picture} shows it: look at its size, axes and marks",
@@ -69,9 +80,26 @@ def run(arguments: argparse.Namespace) -> int:
     return DONE
 
 
-def _proposed(arguments: argparse.Namespace) -> Proposal:
-    if arguments.kind is None:
-        raise SettingsError(f"say what it is: --kind, one of {', '.join(KINDS)}")
+def _proposed(arguments: argparse.Namespace, console: Console) -> Proposal:
+    way = _way(arguments)
+    for name, own in OWN_OPTIONS.items():
+        given = [one for one in own if getattr(arguments, one) is not None]
+        if given and name != way:
+            raise SettingsError(f"{option(given[0])} is for --{name}, and this is by --{way}")
+    return propose_mesh(arguments, console) if way == "mesh" else _propose_kind(arguments)
+
+
+def _way(arguments: argparse.Namespace) -> str:
+    """Return the name of the option that says of what it is made; raises SettingsError."""
+    ways = [name for name in OWN_OPTIONS if getattr(arguments, name) is not None]
+    if len(ways) == 1:
+        return ways[0]
+    if ways:
+        raise SettingsError(f"--{ways[0]} and --{ways[1]} both say what it is: leave one out")
+    raise SettingsError(f"say what it is: --mesh FILE, or --kind, one of {', '.join(KINDS)}")
+
+
+def _propose_kind(arguments: argparse.Namespace) -> Proposal:
     given = {name: getattr(arguments, name) for name in MEASURES}
     measures = {name: value for name, value in given.items() if value is not None}
     model = build_kind(arguments.name, arguments.kind, measures)

@@ -37,6 +37,8 @@ class ProposalParameters:
     """Number of directions that most of the surface faces, in which axes are looked for."""
     parallel: float = 0.01
     """Sine of the angle up to which two axes are one."""
+    same_centre_m: float = 0.0002
+    """Distance in metres up to which the centroid and the middle of the box count as one."""
     most_axes: int = 3
     """Number of axes that are kept, those of the most turns first: the turns about three axes make
     all others of a cube."""

@@ -62,20 +62,17 @@ def propose(
     """
     choices = choices or Choices()
     compared = SelfComparison(vertices, faces, parameters)
-    chosen = choices.mirror_normal
-    normal = find_mirror(compared) if chosen is None else chosen
-    mirrored = normal is not None and (chosen is None or compared.bears(reflection(normal)))
-    normal = AXES[0] if normal is None else normal
-    shift = _shift_to_plane(compared, normal) if mirrored else np.zeros(3)
+    plane = _mirror_plane(compared, choices.mirror_normal)
+    shift = _shift_to_plane(compared, plane) if plane.holds else np.zeros(3)
     symmetries = choices.symmetries
     if symmetries is None:
         symmetries = tuple(_moved(one, shift) for one in find_symmetries(compared))
     if choices.marks is not None:
         marks = _on_surface(compared, choices.marks - shift)
     return Proposal(
-        ObjectShape(name, vertices + shift, faces, marks + shift, normal, symmetries),
-        compared.miss(reflection(normal)),
-        mirrored,
+        ObjectShape(name, vertices + shift, faces, marks + shift, plane.normal, symmetries),
+        compared.miss(reflection(plane.normal), plane.point),
+        plane.holds,
     )
 
 
@@ -84,13 +81,33 @@ def centred(vertices: Array) -> Array:
     return vertices - (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
 
 
-def _shift_to_plane(compared: SelfComparison, normal: Array) -> Array:
-    """The shift (3,) that brings the mirror plane, which holds the centroid, to the origin.
+@dataclass(frozen=True)
+class _Plane:
+    """A plane by its normal (3,) and a point (3,) of it, and whether it mirrors the mesh."""
+
+    normal: Array
+    point: Array
+    holds: bool
+
+
+def _mirror_plane(compared: SelfComparison, chosen: Array | None) -> _Plane:
+    """The plane that was chosen, or that is found; the one across x where none is."""
+    if chosen is None:
+        found = find_mirror(compared)
+        return _Plane(AXES[0], np.zeros(3), False) if found is None else _Plane(*found, True)
+    for centre in compared.centres:
+        if compared.bears(reflection(chosen), centre):
+            return _Plane(chosen, centre, True)
+    return _Plane(chosen, np.zeros(3), False)
+
+
+def _shift_to_plane(compared: SelfComparison, plane: _Plane) -> Array:
+    """The shift (3,) that brings a plane to the origin.
 
     A plane that is nearer than what is compared stays, so that a mesh at its place keeps it.
     """
-    away = float(compared.centroid @ normal)
-    return np.zeros(3) if abs(away) < compared.parameters.tolerance_m else -away * normal
+    away = float(plane.point @ plane.normal)
+    return np.zeros(3) if abs(away) < compared.parameters.tolerance_m else -away * plane.normal
 
 
 def _moved(symmetry: Symmetry, shift: Array) -> Symmetry:

@@ -1,10 +1,10 @@
 """Finds on a mesh itself which turns and which mirror planes leave it as it is.
 
 A turn or reflection is tried on points of the surface: nearly all of them must come to lie on the
-surface again. Every such turn goes through the surface's centroid.
+surface again. Every such turn goes through the surface's centroid; where a surface is drawn double,
+as by a label on one side, it may go through the middle of the box around it instead.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -61,23 +61,30 @@ class SelfComparison:
         faced = _faced_directions(corners, self.parameters.normals)
         return _distinct(np.concatenate([AXES, principal, faced]), self.parameters.parallel)
 
-    def miss(self, matrix: Array) -> float:
+    @cached_property
+    def centres(self) -> Array:
+        """Points (1 or 2, 3) through which axes and mirror planes are tried."""
+        middle = (self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2.0
+        apart = np.linalg.norm(middle - self.centroid) > self.parameters.same_centre_m
+        return np.array([self.centroid, middle] if apart else [self.centroid])
+
+    def miss(self, matrix: Array, centre: Array) -> float:
         """Distance in metres by which an image under a matrix (3, 3) misses the surface.
 
-        The matrix turns or mirrors about the centroid; a small share of the points is left out.
+        The matrix turns or mirrors about a centre (3,); a small share of the points is left out.
         """
-        return self._miss(matrix, self.parameters.compared, self.parameters.compared_share)
-
-    def bears(self, matrix: Array) -> bool:
-        """Whether the mesh looks the same under a matrix (3, 3)."""
         chosen = self.parameters
-        screened = self._miss(matrix, chosen.screened, chosen.screened_share)
-        return screened <= self.tolerance_m and self.miss(matrix) <= self.tolerance_m
+        return self._miss(matrix, centre, chosen.compared, chosen.compared_share)
 
-    def _miss(self, matrix: Array, count: int, share: float) -> float:
+    def bears(self, matrix: Array, centre: Array) -> bool:
+        """Whether the mesh looks the same under a matrix (3, 3) about a centre (3,)."""
+        chosen = self.parameters
+        screened = self._miss(matrix, centre, chosen.screened, chosen.screened_share)
+        return screened <= self.tolerance_m and self.miss(matrix, centre) <= self.tolerance_m
+
+    def _miss(self, matrix: Array, centre: Array, count: int, share: float) -> float:
         """Distance that a share of the images of ``count`` points is within, metres."""
-        points = self.surface.points(count)
-        image = (points - self.centroid) @ matrix.T + self.centroid
+        image = (self.surface.points(count) - centre) @ matrix.T + centre
         return float(np.quantile(self.surface.distances(image), share))
 
     @cached_property
@@ -94,25 +101,21 @@ def find_symmetries(compared: SelfComparison) -> tuple[Symmetry, ...]:
     Of a round thing two are enough: its axis, and one across it where both its ends are alike.
     """
     chosen = compared.parameters
-    orders = {
-        index: order
-        for index, axis in enumerate(compared.directions)
-        if (order := _order(compared, axis)) is not None
-    }
-    round_axes = [index for index, order in orders.items() if order == 0]
-    kept = sorted(orders, key=lambda index: -orders[index])[: chosen.most_axes]
-    if round_axes:
-        axis = compared.directions[round_axes[0]]
-        across = [i for i in orders if abs(compared.directions[i] @ axis) < chosen.parallel]
-        kept = [round_axes[0], *across[:1]]
-    return tuple(_symmetry(compared, index, orders[index]) for index in kept)
+    found = [one for axis in compared.directions if (one := _turns_about(compared, axis))]
+    round_things = [one for one in found if one.order == 0]
+    if round_things:
+        axis = np.array(round_things[0].axis)
+        across = [one for one in found if abs(np.dot(one.axis, axis)) < chosen.parallel]
+        return (round_things[0], *across[:1])
+    return tuple(sorted(found, key=lambda one: -one.order)[: chosen.most_axes])
 
 
-def find_mirror(compared: SelfComparison) -> Array | None:
-    """Find the normal (3,) of a mirror plane through the centroid; None where there is none."""
+def find_mirror(compared: SelfComparison) -> tuple[Array, Array] | None:
+    """Find the normal (3,) of a mirror plane and a point (3,) of it; None where there is none."""
     for normal in compared.directions:
-        if compared.bears(reflection(normal)):
-            return normal
+        for centre in compared.centres:
+            if compared.bears(reflection(normal), centre):
+                return normal, centre
     return None
 
 
@@ -121,24 +124,25 @@ def reflection(normal: Array) -> Array:
     return np.eye(3) - 2.0 * np.outer(normal, normal)
 
 
-def _order(compared: SelfComparison, axis: Array) -> int | None:
-    """The number of equal turns about an axis that are borne; 0 for any, None for none."""
-
-    def bears(angles: Iterator[float]) -> bool:
-        return all(compared.bears(rotation_from_vector(angle * axis)) for angle in angles)
-
-    if bears(iter(compared.parameters.any_angle)):
-        return 0
-    for order in compared.parameters.orders:
-        if bears(iter([2.0 * np.pi / order])):
-            return order
+def _turns_about(compared: SelfComparison, axis: Array) -> Symmetry | None:
+    """The turns about an axis that are borne, through one of the centres."""
+    for centre in compared.centres:
+        order = _order(compared, axis, centre)
+        if order is not None:
+            (x, y, z), middle = ((row.round(6) + 0.0).tolist() for row in (axis, centre))
+            return Symmetry((x, y, z), (middle[0], middle[1], middle[2]), order)
     return None
 
 
-def _symmetry(compared: SelfComparison, index: int, order: int) -> Symmetry:
-    x, y, z = (compared.directions[index] + 0.0).round(6).tolist()
-    centre = (compared.centroid.round(6) + 0.0).tolist()
-    return Symmetry((x, y, z), (centre[0], centre[1], centre[2]), order)
+def _order(compared: SelfComparison, axis: Array, centre: Array) -> int | None:
+    """The number of equal turns about an axis that are borne; 0 for any, None for none."""
+
+    def bears(angle: float) -> bool:
+        return compared.bears(rotation_from_vector(angle * axis), centre)
+
+    if all(bears(angle) for angle in compared.parameters.any_angle):
+        return 0
+    return next((n for n in compared.parameters.orders if bears(2.0 * np.pi / n)), None)
 
 
 def _faced_directions(corners: Array, count: int) -> Array:

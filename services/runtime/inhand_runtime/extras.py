@@ -1,7 +1,7 @@
 """The optional dependencies of the distribution, and the line about one that is not installed."""
 
 EXTRAS = {
-    "lab": ("faiss", "matplotlib", "scipy", "sklearn", "trimesh"),
+    "lab": ("faiss", "fast_simplification", "matplotlib", "scipy", "sklearn", "trimesh"),
     "pose": ("ai_edge_litert",),
     "oak": ("depthai",),
     "onnx": ("onnxruntime",),

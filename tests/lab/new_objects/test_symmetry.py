@@ -57,9 +57,11 @@ def test_the_turns_that_a_thing_bears_are_found_however_it_lies(
 
 @pytest.mark.parametrize("turn", [np.eye(3), TURN], ids=["upright", "askew"])
 def test_the_mirror_plane_of_a_mug_is_found_and_a_golf_club_has_none(turn: np.ndarray) -> None:
-    normal = find_mirror(SelfComparison(mug().vertices @ turn.T + MOVE, mug().faces))
-    assert normal is not None
+    found = find_mirror(SelfComparison(mug().vertices @ turn.T + MOVE, mug().faces))
+    assert found is not None
+    normal, point = found
     assert abs(normal @ turn[:, 0]) > 0.9999
+    assert abs((point - MOVE) @ normal) < 0.001
     club = golf_club()
     assert find_mirror(SelfComparison(club.vertices @ turn.T, club.faces)) is None
 
@@ -67,6 +69,16 @@ def test_the_mirror_plane_of_a_mug_is_found_and_a_golf_club_has_none(turn: np.nd
 def test_an_image_misses_by_how_far_it_is_off() -> None:
     box = build_box("box", 0.10, 0.06, 0.04)
     compared = SelfComparison(box.vertices, box.faces)
-    assert compared.miss(reflection(NAMED["x"])) < 1e-6
+    assert compared.miss(reflection(NAMED["x"]), np.zeros(3)) < 1e-6
     quarter = rotation_from_vector(0.5 * np.pi * NAMED["z"])
-    assert compared.miss(quarter) == pytest.approx(0.01, abs=0.001)
+    assert compared.miss(quarter, np.zeros(3)) == pytest.approx(0.01, abs=0.001)
+
+
+def test_a_label_on_one_side_of_a_bottle_leaves_it_round() -> None:
+    bottle = vinegar_bottle()
+    ahead = bottle.vertices[bottle.faces].mean(axis=1)[:, 1] > 0.01
+    faces = np.concatenate([bottle.faces, *[bottle.faces[ahead]] * 3])
+    (found,) = find_symmetries(SelfComparison(bottle.vertices, faces))
+    assert found.axis == (0.0, 0.0, 1.0)
+    assert found.order == 0
+    assert np.hypot(*found.centre[:2]) < 0.0005

@@ -42,8 +42,16 @@ def read_mesh(path: Path) -> tuple[Array, Indices]:
         faces = np.asarray(mesh.faces, np.int64)
     except Exception as error:  # noqa: BLE001 - a reader of foreign files may raise anything
         raise InhandError(f"{path} is no mesh that can be read: {error}") from None
-    if len(faces) == 0 or not np.isfinite(vertices).all():
-        raise InhandError(f"{path} is no mesh that can be used: it has no finite triangles")
+    if len(faces) == 0:
+        raise InhandError(
+            f"{path} is no mesh that can be used: it has no triangles; export surfaces, no points, "
+            "lines or solids"
+        )
+    if faults := np.count_nonzero(~np.isfinite(vertices).all(axis=1)):
+        raise InhandError(
+            f"{path} is no mesh that can be used: {faults:,} of its {len(vertices):,} vertices are "
+            "no finite numbers; export it anew"
+        )
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise InhandError(f"{path} is no mesh that can be used: a face has no such vertex")
     return vertices, faces
