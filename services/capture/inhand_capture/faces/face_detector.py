@@ -42,9 +42,7 @@ class FaceDetector:
         Beside the picture is its mirror image, which makes whole faces of those that an edge cuts.
         """
         cut = _mirrored_crop(picture, view)
-        gain = max(1.0, self._parameters.least_brightness / max(float(cut.mean()), 1.0))
-        lit = np.minimum(cut * np.float32(gain), np.float32(255.0))
-        outputs = self._network(lit * np.float32(1.0 / 127.5) - np.float32(1.0))
+        outputs = self._network(cut * np.float32(1.0 / 127.5) - np.float32(1.0))
         logits = np.clip(outputs["Identity_1"][:, 0].astype(float), -MOST_LOGIT, MOST_LOGIT)
         scores = 1.0 / (1.0 + np.exp(-logits))
         good = np.flatnonzero(scores >= self._parameters.face_score)

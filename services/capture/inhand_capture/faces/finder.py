@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from inhand_schemas.messages import CameraInfo, Person
 from numpy.typing import NDArray
@@ -59,14 +60,15 @@ class FaceFinder:
     ) -> FacesFound:
         """Find faces in a picture (H, W, 3) RGB; ``skeletons`` of it, in space, have heads, too."""
         height, width = colour.shape[:2]
-        people = self._network.find(colour)
+        lit = brightened(colour, self._parameters.least_brightness)
+        people = self._network.find(lit)
         heads = [head_of(one, self._parameters) for one in people]
         trusted = skeletons if self._trust_skeletons else ()
         known = [head_of_skeleton(one, info, self._parameters) for one in trusted]
         finders = [
             [disc for disc in heads if disc is not None],
             [_scaled(disc, info, width) for disc in known if disc is not None],
-            *(self._detector.find(colour, view) for view in self._views(width, height)),
+            *(self._detector.find(lit, view) for view in self._views(width, height)),
         ]
         self._pictures += 1
         return FacesFound(self._held.see(finders, time_ns), (height, width), people)
@@ -82,6 +84,14 @@ class FaceFinder:
             along = max(width, height) - along
         x, y = (along, 0.5 * height) if width >= height else (0.5 * width, along)
         return [whole_picture(width, height), Region(x, y, side)]
+
+
+def brightened(picture: NDArray[np.uint8], least: float) -> NDArray[np.uint8]:
+    """Return a picture whose brightness, judged by one pixel of sixteen, is no less than that."""
+    brightness = float(picture[::4, ::4].mean())
+    if brightness >= least:
+        return picture
+    return np.asarray(cv2.convertScaleAbs(picture, alpha=least / max(brightness, 1.0)), np.uint8)
 
 
 def _scaled(disc: Disc, info: CameraInfo, width: int) -> Disc:

@@ -14,7 +14,8 @@ class FaceParameters:
     """Score from which a box of the detector is a face. Its authors take 0.6; halves of drawn faces
     score 0.4 and more, and what is hidden for nothing is little."""
     least_brightness: float = 70.0
-    """Mean brightness, of 255, to which a darker picture is brightened before it is looked at."""
+    """Mean brightness, of 255, to which a darker picture is brightened before it is looked
+    at."""
     face_radius: float = 1.0
     """Radius of what is hidden about a detected face, in widths of its box, which reaches from the
     brows to the chin and from cheek to cheek."""
