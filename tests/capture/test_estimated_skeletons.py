@@ -43,6 +43,12 @@ def start(
     return started
 
 
+def _largest_core_dump(process: Process) -> str:
+    """Bytes of a core dump that the system would write at the most."""
+    limits = Path(f"/proc/{process.pid}/limits").read_text().splitlines()
+    return next(line for line in limits if line.startswith("Max core file size")).split()[4]
+
+
 def _skeletons(heard: Sequence[Received]) -> list[Skeletons]:
     return [SKELETONS.decode(one.payload) for one in heard]
 
@@ -98,6 +104,7 @@ def test_a_shutter_stops_estimated_skeletons_at_once_and_masks_hold_after_it(
         counts = {topic: len(received) for topic, received in heard.items()}
         rig.health("front")  # a second at the least
         assert counts == {topic: len(received) for topic, received in heard.items()}
+        assert _largest_core_dump(daemon) == "0"
         opened = rig.done("shutter", "open", "--config", rig.config)
         assert opened.popen.returncode == 0, opened.stderr
     assert daemon.stop() == 0

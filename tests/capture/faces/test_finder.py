@@ -8,12 +8,14 @@ from drawn_heads import head_pixels
 from fetched_weights import use_weights
 from inhand_capture.estimation.networks import open_network
 from inhand_capture.estimation.weights import FACES, WeightsError, models_folder
+from inhand_capture.faces.discs import Disc
 from inhand_capture.faces.face_detector import FaceDetector
 from inhand_capture.faces.finder import FaceFinder, open_face_finder
 from inhand_lab.world.messages import camera_info
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_schemas.joints import Joint
 from numpy.typing import NDArray
+from posed_person import INFO, ToldNetwork, seen, standing
 
 pytestmark = pytest.mark.long
 FRAME_NS = 33_333_333
@@ -23,6 +25,30 @@ FRAME_NS = 33_333_333
 def finder(monkeypatch: pytest.MonkeyPatch) -> FaceFinder:
     use_weights(monkeypatch, "lite", "faces")
     return open_face_finder(open_network("lite"), trust_skeletons=False)
+
+
+class ToldFaces:
+    """Finds the faces that it is told of."""
+
+    def __init__(self) -> None:
+        self.discs: list[Disc] = []
+
+    def find(self, _picture: NDArray[np.uint8], _view: object) -> list[Disc]:
+        return self.discs
+
+
+def test_the_head_of_a_body_that_is_lost_is_not_given_up_for_a_wrong_face_beside_it() -> None:
+    network, faces = ToldNetwork([[seen(standing())]] * 10 + [[]]), ToldFaces()
+    finder = FaceFinder(faces, network)  # type: ignore[arg-type]
+    grey = np.full((480, 640, 3), 110, np.uint8)
+    for number in range(10):
+        before = finder.find(grey, number * FRAME_NS, (), INFO).mask(480, 640)
+    head = np.argwhere(before).mean(axis=0)
+    faces.discs = [Disc(float(head[1]) + 60.0, float(head[0]), 20.0)]
+    after = finder.find(grey, 10 * FRAME_NS, (), INFO).mask(480, 640)
+    assert before.any()
+    assert not (before & ~after).any()
+    assert after.sum() > before.sum()
 
 
 @pytest.fixture(scope="module")

@@ -49,6 +49,7 @@ class FaceFinder:
         self._parameters = parameters
         self._trust_skeletons = trust_skeletons
         self._held = HeldHeads(parameters)
+        self._held_bodies = HeldHeads(parameters)
         self._pictures = 0
 
     def find(
@@ -65,13 +66,16 @@ class FaceFinder:
         heads = [head_of(one, self._parameters) for one in people]
         trusted = skeletons if self._trust_skeletons else ()
         known = [head_of_skeleton(one, info, self._parameters) for one in trusted]
-        finders = [
+        bodies = [
             [disc for disc in heads if disc is not None],
             [_scaled(disc, info, width) for disc in known if disc is not None],
-            *(self._detector.find(lit, view) for view in self._views(width, height)),
         ]
+        faces = [self._detector.find(lit, view) for view in self._views(width, height)]
         self._pictures += 1
-        return FacesFound(self._held.see(finders, time_ns), (height, width), people)
+        # Held by itself, so that the head of a body is not given up for a wrong face beside it.
+        discs = self._held_bodies.see(bodies, time_ns)
+        discs += self._held.see([*bodies, *faces], time_ns)
+        return FacesFound(tuple(dict.fromkeys(discs)), (height, width), people)
 
     def _views(self, width: int, height: int) -> list[Region]:
         """Return where to look for faces: in all of a picture, and closer in one of its ends by
