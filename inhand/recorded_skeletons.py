@@ -1,4 +1,7 @@
-"""Completes recordings of colour and depth: estimates the skeletons of the people in them."""
+"""Completes recordings of colour and depth: estimates the skeletons of the people in them.
+
+Those of simulated people can get their labels' true joints instead.
+"""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -19,8 +22,17 @@ from inhand_runtime.recording import (
 from inhand_runtime.recording.part_file import PART_SUFFIX
 from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import parse_key
-from inhand_schemas.messages import CameraInfo, RgbdFrame, Skeletons
-from inhand_schemas.topics import INFO, RGBD, SKELETONS
+from inhand_schemas.messages import (
+    CameraInfo,
+    JointState,
+    ObjectPose,
+    Person,
+    RgbdFrame,
+    Skeletons,
+    Vector3,
+)
+from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS
+from msgspec import structs
 
 
 @dataclass
@@ -77,6 +89,53 @@ def add_skeletons(
         writer.add_metadata("skeletons", {"source": path.name, "estimated": " ".join(wanted)})
         _require_skeletons(path, estimated)
     return estimated
+
+
+def true_skeletons(path: Path, output: Path) -> int:
+    """Write a recording whose skeletons have the true joints of its labels to ``output``.
+
+    What a tracker does with it is what it would do with skeletons without any error. Returns the
+    number of skeletons; raises RecordingError where the labels hold no joints.
+    """
+    joints = _true_joints(path)
+    if not joints:
+        raise RecordingError(
+            f"{path} holds no true joints: only labels of simulated people have them"
+        )
+    written = 0
+    with _written_or_gone(output) as writer:
+        for message in read_recording(path):
+            payload = message.payload
+            if message.topic is SKELETONS:
+                skeletons: Skeletons = SKELETONS.decode(payload)
+                truth = joints.get((message.name, skeletons.sequence))
+                if truth is None:
+                    continue
+                person = skeletons.people[0].id if skeletons.people else 0
+                people = (_exact_person(person, truth),)
+                payload = SKELETONS.encode(structs.replace(skeletons, people=people))
+                written += 1
+            _write(writer, message.key, message, payload)
+        for name, values in read_metadata(path).items():
+            writer.add_metadata(name, values)
+        writer.add_metadata("skeletons", {"source": path.name, "true": "labels"})
+    return written
+
+
+def _true_joints(path: Path) -> dict[tuple[str, int], tuple[Vector3, ...]]:
+    """Return the person's true joints by camera and number of the frame."""
+    joints = {}
+    for message in read_recording(path, streams=(LABEL.stream,)):
+        label: ObjectPose = LABEL.decode(message.payload)
+        if label.person_joints is not None:
+            joints[label.camera, label.sequence] = label.person_joints
+    return joints
+
+
+def _exact_person(number: int, joints: tuple[Vector3, ...]) -> Person:
+    state: JointState = "tracked"
+    count = len(joints)
+    return Person(id=number, joints=joints, states=(state,) * count, confidences=(1.0,) * count)
 
 
 @contextmanager

@@ -5,6 +5,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from inhand_capture.estimation.weights import DEFAULT_NETWORK, LANDMARKS
 from inhand_recorder.inspection import RecordingInfo, inspect_recording
 from inhand_recorder.missing_infos import add_infos
 from inhand_recorder.recovery import RecoveryReport, recover_recording
@@ -21,8 +22,6 @@ from inhand.results import listing, write_json
 RECOVERED_SUFFIX = ".recovered.mcap"
 REPAIRED_SUFFIX = ".repaired.mcap"
 COMPLETED_SUFFIX = ".skeletons.mcap"
-
-NETWORKS = ("lite", "full", "heavy")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -54,12 +53,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_skeleton_arguments(action: argparse.ArgumentParser) -> None:
     action.add_argument(
         "--network",
-        type=lambda text: text if text in NETWORKS else Path(text),
-        default=NETWORKS[0],
-        help=f"what finds people: {', '.join(NETWORKS)}, or an ONNX file (default: {NETWORKS[0]})",
+        type=lambda text: text if text in LANDMARKS else Path(text),
+        default=DEFAULT_NETWORK,
+        help=f"what finds people: {', '.join(LANDMARKS)}, or an ONNX file (default: "
+        f"{DEFAULT_NETWORK})",
     )
     action.add_argument(
         "--replace", action="store_true", help="in place of the skeletons that it has"
+    )
+    action.add_argument(
+        "--true",
+        action="store_true",
+        help="the true joints that labels of simulated people hold, in place of its skeletons",
     )
 
 
@@ -132,12 +137,12 @@ def _skeletons(arguments: argparse.Namespace) -> int:
 
     if arguments.output is not None and len(arguments.files) > 1:
         raise SettingsError("-o names one output: give one FILE, or leave -o out")
+    if arguments.true:
+        return _true_skeletons(arguments)
     require_network(arguments.network)
     completed = []
     for path in arguments.files:
-        output = arguments.output or path.with_name(
-            path.name.removesuffix(".mcap") + COMPLETED_SUFFIX
-        )
+        output = _completed(path, arguments)
         cameras = add_skeletons(
             path, output, lambda: open_network(arguments.network), replace=arguments.replace
         )
@@ -150,6 +155,25 @@ def _skeletons(arguments: argparse.Namespace) -> int:
         completed.append({"path": str(path), "output": str(output), "cameras": values})
     _result(arguments, "completed", completed)
     return DONE
+
+
+def _true_skeletons(arguments: argparse.Namespace) -> int:
+    from inhand.recorded_skeletons import true_skeletons
+
+    completed = []
+    for path in arguments.files:
+        output = _completed(path, arguments)
+        written = true_skeletons(path, output)
+        print(f"{output}: true joints of {counted(written, 'frame')}")
+        completed.append({"path": str(path), "output": str(output), "true": written})
+    _result(arguments, "completed", completed)
+    return DONE
+
+
+def _completed(path: Path, arguments: argparse.Namespace) -> Path:
+    """Return where a recording goes that gets skeletons."""
+    output: Path | None = arguments.output
+    return output or path.with_name(path.name.removesuffix(".mcap") + COMPLETED_SUFFIX)
 
 
 def _recovered(path: Path) -> Path:

@@ -10,12 +10,12 @@ from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_runtime.recording import RecordingError, RecordingWriter, read_recording
 from inhand_schemas.joints import Joint
 from inhand_schemas.keys import Site
-from inhand_schemas.messages import Message, Person, RgbdFrame, Skeletons
-from inhand_schemas.topics import INFO, RGBD, SKELETONS, AnyTopic
+from inhand_schemas.messages import Message, ObjectPose, Person, Pose, RgbdFrame, Skeletons
+from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS, AnyTopic
 from posed_person import INFO as CAMERA
 from posed_person import ToldNetwork, depth_of, seen, standing
 
-from inhand.recorded_skeletons import add_skeletons
+from inhand.recorded_skeletons import add_skeletons, true_skeletons
 
 TRUTH = standing()
 COLOUR = encode_colour(np.zeros((480, 640, 3), np.uint8))
@@ -106,3 +106,54 @@ def test_a_file_that_another_writes_stays(tmp_path: Path) -> None:
     with pytest.raises(RecordingError):
         add_skeletons(path, tmp_path / "out.mcap", network)
     assert part.read_bytes() == b"being recorded"
+
+
+def labelled(path: Path) -> Path:
+    """A recording of what labels know better: the first two frames of four have true joints."""
+    truth = tuple((x, y, z) for x, y, z in np.nan_to_num(TRUTH).tolist())
+    with RecordingWriter(path) as writer:
+
+        def write(topic: AnyTopic, name: str, message: Message) -> None:
+            writer.write(
+                topic.key(Site(), name),
+                topic.encode(message),  # type: ignore[arg-type]
+                received_ns=message.time_ns + 5,
+                captured_ns=message.time_ns,
+                sequence=message.sequence,
+            )
+
+        for number in range(FRAMES):
+            stamp = {"sequence": 10 + number, "time_ns": 10**9 + number * 33_000_000}
+            write(SKELETONS, "front", Skeletons(**stamp, people=(SOMEBODY,)))
+            joints = truth if number < 2 else None
+            pose = Pose(translation=(0.0, 0.0, 2.0), rotation=(1.0, 0.0, 0.0, 0.0))
+            label = ObjectPose(
+                **stamp,
+                object="mug",
+                camera="front",
+                state="tracked",
+                confidence=1.0,
+                camera_from_object=pose,
+                person_joints=joints,
+            )
+            write(LABEL, "mug", label)
+    return path
+
+
+def test_true_joints_of_labels_stand_in_place_of_skeletons(tmp_path: Path) -> None:
+    path, output = labelled(tmp_path / "walk.mcap"), tmp_path / "true.mcap"
+    assert true_skeletons(path, output) == 2
+    found = skeletons_in(output)
+    assert [one.sequence for one in found] == [10, 11]
+    for one in found:
+        (person,) = one.people
+        assert person.id == SOMEBODY.id
+        np.testing.assert_array_equal(person.joints, np.nan_to_num(TRUTH))
+    assert verify_recording(output) == []
+
+
+def test_true_joints_of_a_recording_without_any_are_refused(tmp_path: Path) -> None:
+    path, output = recorded(tmp_path / "walk.mcap", skeletons=True), tmp_path / "true.mcap"
+    with pytest.raises(RecordingError, match="holds no true joints: only labels of simulated"):
+        true_skeletons(path, output)
+    assert not output.exists()
