@@ -188,7 +188,7 @@ def test_a_source_whose_package_is_missing_says_what_to_install(
 def test_a_simulator_that_hides_its_skeleton_has_it_estimated_from_its_pictures(
     wire: Wire, rig: RunningRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    use_weights(monkeypatch, "lite")
+    use_weights(monkeypatch, "full")
     heard = {topic: wire.hear(topic) for topic in (RGBD, SKELETONS, LABEL)}
     rig.configure(
         '[capture.front]\nsource = "simulator"\nskeletons = "estimated"\n'
@@ -227,7 +227,7 @@ def test_estimated_skeletons_without_weights_are_refused_before_a_start(
 def test_faces_cannot_be_hidden_without_weights(
     rig: RunningRig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    folder = use_weights(monkeypatch, "lite")
+    folder = use_weights(monkeypatch, "full")
     (tmp_path / "models").mkdir()
     for file in folder.glob("pose_*"):
         (tmp_path / "models" / file.name).symlink_to(file)

@@ -26,7 +26,7 @@ BLACK = 70
 def test_no_message_holds_a_pixel_of_a_face_and_skeletons_flow(
     wire: Wire, rig: RunningRig, monkeypatch: pytest.MonkeyPatch, skeletons: str
 ) -> None:
-    use_weights(monkeypatch, "lite", "faces")
+    use_weights(monkeypatch, "full", "faces")
     topics: tuple[AnyTopic, ...] = (RGBD, PREVIEW, SKELETONS, LABEL)
     heard = {topic.stream: wire.hear(topic) for topic in topics}
     rig.configure(

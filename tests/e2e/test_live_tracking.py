@@ -175,7 +175,7 @@ def test_the_demonstration_tracks_a_stranger_and_loses_nothing(tmp_path: Path) -
 def test_the_demonstration_finds_the_person_in_the_pictures_as_with_a_camera(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    use_weights(monkeypatch, "lite")
+    use_weights(monkeypatch, "full")
     result = tmp_path / "demo.json"
     arguments = ["--camera-like", "--folder", str(tmp_path / "demo"), "--json", str(result)]
     main(["demo", *arguments])

@@ -55,7 +55,7 @@ class CaptureSettings(Section):
     options: dict[str, Any] = {}
     wait_for_reader_s: Annotated[float, Field(ge=0, le=3600)] = 2.0
     skeletons: Literal["source", "estimated"] = "source"
-    network: Literal["lite", "full", "heavy"] | FilePath = "lite"
+    network: Literal["lite", "full", "heavy"] | FilePath = "full"
     rotate: Literal[0, 90, 180, 270] = 0
     masks: tuple[Annotated[tuple[Corner, ...], Field(min_length=3)], ...] = ()
     mask_faces: bool = False

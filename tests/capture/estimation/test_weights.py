@@ -16,7 +16,7 @@ from inhand_capture.estimation.weights import (
 
 
 def test_missing_weights_name_the_file_and_what_gets_it(tmp_path: Path) -> None:
-    for name, wish in (("lite", "fetch`"), ("full", "fetch full`")):
+    for name, wish in (("full", "fetch`"), ("lite", "fetch lite`")):
         file = tmp_path / LANDMARKS[name].file
         with pytest.raises(WeightsError) as refused:
             require_weights(LANDMARKS[name], tmp_path)

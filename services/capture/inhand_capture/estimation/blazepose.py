@@ -1,7 +1,8 @@
 """BlazePose: a detector that finds somebody, and landmarks that follow their region from picture to
 picture (Bazarevsky et al. 2020)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -10,6 +11,7 @@ from inhand_schemas.joints import Joint
 from numpy.typing import NDArray
 
 from inhand_capture.estimation.detector import PersonDetector
+from inhand_capture.estimation.facing import FollowedRegion, agreement, begun_with
 from inhand_capture.estimation.found_person import Floats, FoundPerson
 from inhand_capture.estimation.landmarks import POINTS, LandmarkNetwork, Landmarks
 from inhand_capture.estimation.parameters import DEFAULT_BLAZEPOSE, BlazePoseParameters
@@ -61,7 +63,7 @@ def person_of(landmarks: Landmarks) -> FoundPerson:
     """Make our joints of the network's points."""
     return FoundPerson(
         pixels=np.where(_KNOWN[:, None], _MIXTURE @ landmarks.pixels, np.nan),
-        depths=np.where(_KNOWN, _MIXTURE @ landmarks.depths, np.nan),
+        depths=np.where(_KNOWN, _MIXTURE @ landmarks.places[:, 2], np.nan),
         visibilities=np.where(_KNOWN, _MIXTURE @ landmarks.visibilities, 0.0),
     )
 
@@ -84,28 +86,49 @@ class BlazePose:
         self._landmarks = LandmarkNetwork(require_weights(LANDMARKS[network], folder), parameters)
         self._detector = PersonDetector(require_weights(DETECTOR, folder), parameters)
         self._parameters = parameters
-        self._regions: list[Region] = []
+        self._followed: list[FollowedRegion] = []
         self._pictures = self._searches = 0
 
     def find(self, colour: NDArray[np.uint8]) -> Sequence[FoundPerson]:
         """Find the people in a picture (H, W, 3) RGB."""
-        people = list(self._followed(colour))
+        people, followed = self._find_again(colour)
         if self._searches_now(len(people)):
             found = self._search(colour, people)
             if found is not None and not _is_one_of(found, people, self._parameters.same_person):
                 people.append(found)
+                followed.append(begun_with(found))
         self._pictures += 1
-        self._regions = [one.next_region for one in people]
+        self._followed = followed
         return [person_of(one) for one in people]
 
-    def _followed(self, colour: NDArray[np.uint8]) -> Iterator[Landmarks]:
+    def _find_again(
+        self, colour: NDArray[np.uint8]
+    ) -> tuple[list[Landmarks], list[FollowedRegion]]:
         """Find those again who were found before, each once."""
-        seen: list[Landmarks] = []
-        for region in self._regions:
-            one = self._landmarks.find(colour, region)
-            if self._believes(one) and not _is_one_of(one, seen, self._parameters.same_person):
-                seen.append(one)
-                yield one
+        people: list[Landmarks] = []
+        followed: list[FollowedRegion] = []
+        for before in self._followed:
+            one = self._look(colour, before)
+            if self._believes(one) and not _is_one_of(one, people, self._parameters.same_person):
+                people.append(one)
+                followed.append(before.after(one, self._parameters.facing_share))
+        return people, followed
+
+    def _look(self, colour: NDArray[np.uint8], before: FollowedRegion) -> Landmarks:
+        """Look where somebody was, and twice where they seem to have turned round since.
+
+        Nobody does so between two pictures. The second look is at the mirror image of a closer
+        region: a network that takes left for right in one seldom does so in the other.
+        """
+        parameters = self._parameters
+        first = self._landmarks.find(colour, before.region)
+        if agreement(first, before) >= parameters.facing_agreement:
+            return first
+        closer = before.region.scaled(parameters.second_look)
+        second = self._landmarks.find(colour, closer, mirrored=True)
+        if not self._believes(second) or agreement(second, before) <= agreement(first, before):
+            return first
+        return replace(second, next_region=first.next_region, score=first.score)
 
     def _searches_now(self, people: int) -> bool:
         parameters = self._parameters

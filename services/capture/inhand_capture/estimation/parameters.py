@@ -32,6 +32,13 @@ class BlazePoseParameters:
     person found twice."""
     most_people: int = 10
     """Number of people that are followed at the most: each costs the landmark network's time."""
+    facing_agreement: float = 0.5
+    """Cosine, from how shoulders and hips have lain to how they lie, below which somebody seems to
+    have turned round and is looked at a second time."""
+    facing_share: float = 0.1
+    """Share of one picture in the mean of how shoulders and hips have lain."""
+    second_look: float = 0.85
+    """Side of the region of a second look, as a share of that of the first."""
 
 
 DEFAULT_BLAZEPOSE = BlazePoseParameters()
@@ -167,9 +174,11 @@ class FollowingParameters:
     """Seconds after which joints of before say nothing of where joints are now."""
 
     # Which side is which (sides).
-    exchanged_below: float = 0.5
-    """Distance of joints from where they were with left and right exchanged, over that as they are,
-    below which a network is taken to have exchanged them."""
+    across_s: float = 0.3
+    """Time constant of the mean of how shoulders and hips lie, seconds."""
+    across_m: float = 0.05
+    """Distance of left from right, metres, from which they say that sides are exchanged: whoever is
+    seen from the side has hardly any in the picture."""
     longest_exchange_s: float = 0.7
     """Seconds after which a network that exchanges sides is believed, unless toes contradict it."""
     toes_m: float = 0.03

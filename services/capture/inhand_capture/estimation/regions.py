@@ -40,6 +40,17 @@ class Region:
         there: Floats = points @ matrix[:, :2].T + matrix[:, 2]
         return there
 
+    def turned(self, places: Floats) -> Floats:
+        """Turn places (N, 3), whose x and y are along the region's sides, to the picture's."""
+        cosine, sine = math.cos(self.angle), math.sin(self.angle)
+        turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        there: Floats = places @ turn.T
+        return there
+
+    def scaled(self, share: float) -> "Region":
+        """Return the region about the same centre whose side is that share of its own."""
+        return Region(self.x, self.y, share * self.side, self.angle)
+
 
 def whole_picture(width: int, height: int) -> Region:
     """Return the smallest square about a picture."""
