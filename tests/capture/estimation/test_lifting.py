@@ -72,6 +72,17 @@ def test_a_joint_behind_a_thing_is_inferred_and_not_in_the_thing() -> None:
     assert found.states[Joint.KNEE_LEFT] == 1
 
 
+def test_a_hip_behind_a_thing_is_inferred_and_the_trunk_stays_where_it_is() -> None:
+    truth = standing()
+    depth = depth_of(truth).astype(float)
+    for hip in (Joint.HIP_LEFT, Joint.HIP_RIGHT):
+        draw_ball(depth, 0.8 * truth[hip], 0.12)
+    found = lifted(seen(truth), DepthPicture(depth.astype(np.uint16), 0.001))
+    assert errors(found, truth).max() < 0.15
+    assert found is not None
+    assert set(found.states[[Joint.HIP_LEFT, Joint.HIP_RIGHT]]) == {1}
+
+
 def test_a_pixel_beside_a_thin_limb_does_not_put_the_joint_on_the_wall() -> None:
     truth = standing()
     person = seen(truth)

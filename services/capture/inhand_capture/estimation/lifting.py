@@ -115,14 +115,18 @@ class Lifter:
         seen, states = np.full((20, 3), np.nan), np.zeros(20, np.uint8)
 
         def choose(
-            chain: NDArray[np.int64], first: Floats, behind: Floats, expected: Floats
+            chain: NDArray[np.int64],
+            first: Floats,
+            under: Surfaces,
+            behind: Floats,
+            expected: Floats,
         ) -> None:
             outer = chain[1:]
             seen[outer], states[outer] = choose_limb(
                 chain,
                 first,
-                surfaces.depths,
-                surfaces.counts,
+                under.depths,
+                under.counts,
                 rays,
                 behind,
                 expected,
@@ -131,11 +135,12 @@ class Lifter:
             )
 
         behind_middle = np.nan_to_num(person.depths)
+        trunks = near_surfaces(surfaces, behind_middle, self._parameters.trunk_gate_m)
         for joint in (*TRUNK_ENDS, Joint.HEAD):
             if np.isnan(rays[joint, 0]):
                 continue
             chain = np.array([Joint.HIP_CENTER, joint])
-            choose(chain, surfaces.middle, behind_middle, _UNKNOWN)
+            choose(chain, surfaces.middle, trunks, behind_middle, _UNKNOWN)
         trunk = body.trunk if np.isfinite(body.trunk) else trunk_length(seen)
         if not self._parameters.shortest_trunk_m < trunk < self._parameters.longest_trunk_m:
             return None
@@ -143,7 +148,7 @@ class Lifter:
         for limb in LIMBS:
             known = limb[np.isfinite(rays[limb, 0])]
             if len(known) > 1:
-                choose(known, seen[limb[0]], person.depths, expected)
+                choose(known, seen[limb[0]], surfaces, person.depths, expected)
         self._doubt(person, states)
         self._drop_wild(seen, states, expected)
         joints, kinects = as_kinect(seen, states, self._parameters)
@@ -190,6 +195,15 @@ class Lifter:
             wild = lengths > self._parameters.longest_ratio * expected[limb[1:]]
             if wild.any():
                 states[limb[1 + int(np.argmax(wild)) :]] = 0
+
+
+def near_surfaces(surfaces: Surfaces, behind: Floats, gate_m: float) -> Surfaces:
+    """Keep the surfaces within a distance of where joints (20,) behind the middle are expected."""
+    away = np.abs(surfaces.depths - (surfaces.middle[2] + behind)[:, None])
+    far = (away > gate_m) | (np.arange(away.shape[1]) >= surfaces.counts[:, None])
+    order = np.argsort(far, axis=1, kind="stable")
+    depths = np.take_along_axis(surfaces.depths, order, axis=1)
+    return Surfaces(depths, (~far).sum(axis=1), surfaces.middle)
 
 
 def joint_radii(parameters: LiftingParameters) -> Floats:
