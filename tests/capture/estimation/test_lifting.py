@@ -83,6 +83,23 @@ def test_a_hip_behind_a_thing_is_inferred_and_the_trunk_stays_where_it_is() -> N
     assert set(found.states[[Joint.HIP_LEFT, Joint.HIP_RIGHT]]) == {1}
 
 
+@pytest.mark.parametrize("depths", [True, False], ids=["with its depths", "without"])
+def test_who_bends_towards_the_camera_has_shoulders_before_the_hips(depths: bool) -> None:
+    truth, bend = standing(), np.radians(70.0)
+    hips = truth[[Joint.HIP_LEFT, Joint.HIP_RIGHT]].mean(axis=0)
+    legs = [
+        joint for joint in Joint if joint.name.split("_")[0] in ("HIP", "KNEE", "ANKLE", "FOOT")
+    ]
+    upper = [joint for joint in Joint if joint not in legs]
+    up, ahead = hips[1] - truth[upper, 1], hips[2] - truth[upper, 2]
+    truth[upper, 1] = hips[1] - np.cos(bend) * up + np.sin(bend) * ahead
+    truth[upper, 2] = hips[2] - np.sin(bend) * up - np.cos(bend) * ahead
+    found = lifted(seen(truth, depths=depths), picture(truth))
+    assert found is not None
+    shoulders = [Joint.SHOULDER_LEFT, Joint.SHOULDER_RIGHT]
+    assert np.linalg.norm(found.seen - truth, axis=1)[shoulders].max() < 0.12
+
+
 def test_a_pixel_beside_a_thin_limb_does_not_put_the_joint_on_the_wall() -> None:
     truth = standing()
     person = seen(truth)

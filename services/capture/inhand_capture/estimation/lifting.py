@@ -135,7 +135,7 @@ class Lifter:
             )
 
         behind_middle = np.nan_to_num(person.depths)
-        trunks = near_surfaces(surfaces, behind_middle, self._parameters.trunk_gate_m)
+        trunks = near_surfaces(surfaces, person.depths, self._parameters.trunk_gate_m)
         for joint in (*TRUNK_ENDS, Joint.HEAD):
             if np.isnan(rays[joint, 0]):
                 continue
@@ -198,7 +198,8 @@ class Lifter:
 
 
 def near_surfaces(surfaces: Surfaces, behind: Floats, gate_m: float) -> Surfaces:
-    """Keep the surfaces within a distance of where joints (20,) behind the middle are expected."""
+    """Keep the surfaces within a distance of where joints are expected so far ``behind`` (20,) the
+    middle; all of them where that is NaN."""
     away = np.abs(surfaces.depths - (surfaces.middle[2] + behind)[:, None])
     far = (away > gate_m) | (np.arange(away.shape[1]) >= surfaces.counts[:, None])
     order = np.argsort(far, axis=1, kind="stable")
