@@ -29,7 +29,7 @@ def start(
     rig: RunningRig, plugin_folder: Path, own_data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Start:
     """Starts a capture that estimates, by a source and more lines of settings."""
-    weights = use_weights(monkeypatch, "lite", "faces")
+    weights = use_weights(monkeypatch, "full", "faces")
     own_data.mkdir(exist_ok=True)
     if not (own_data / "models").exists():
         (own_data / "models").symlink_to(weights)
