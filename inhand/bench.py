@@ -22,6 +22,7 @@ from inhand_lab.benchmarks.estimated_skeletons import check_skeletons, check_ste
 from inhand_lab.benchmarks.estimation_cost import measure_estimation
 from inhand_lab.benchmarks.frame_cost import frame_steps, measure_frames
 from inhand_lab.benchmarks.likelihood_check import check_likelihood
+from inhand_lab.benchmarks.object_accuracy import check_objects, object_steps
 from inhand_lab.benchmarks.parameters import (
     DEFAULT_COMPARISON,
     DEFAULT_FRAME_COST,
@@ -45,6 +46,7 @@ from inhand.bench_tables import (
     constants_table,
     fusion_table,
     likelihood_table,
+    objects_table,
     stages_table,
     tracker_table,
     training_table,
@@ -139,6 +141,12 @@ def _likelihood(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str
     return likelihood_table(checks), {"objects": [asdict(check) for check in checks]}
 
 
+def _objects(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    with progress_bar("measuring", object_steps()) as advance:
+        checks = check_objects(advance)
+    return objects_table(checks), {"objects": [asdict(check) for check in checks]}
+
+
 def _ablation(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     varied(arguments.vary)  # a wrong setting is refused before anything is loaded
     dataset = load_dataset(arguments.source)
@@ -204,6 +212,7 @@ SUBJECTS_HELP = {
     "ablation": "the error of fusion without each of its parts",
     "constants": "its error with each number halved and doubled",
     "likelihood": "how true poses score, and refine, on real frames of YCB-Video",
+    "objects": "new objects, by measures and by the camera, beside the true meshes",
     "skeletons": "skeletons from images: found people, joints' errors, and what a frame costs",
     "tracker": "poses weighed in a second, and what a frame costs, by itself or against other code",
     "training": "time and memory of training by its size",
@@ -216,6 +225,7 @@ SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "ablation": _ablation,
     "constants": _constants,
     "likelihood": _likelihood,
+    "objects": _objects,
     "skeletons": _skeletons,
     "tracker": _tracker,
     "training": _training,

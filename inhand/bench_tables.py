@@ -8,6 +8,7 @@ from inhand_lab.benchmarks.checkout_comparison import CaseComparison
 from inhand_lab.benchmarks.constants import ConstantCheck
 from inhand_lab.benchmarks.frame_cost import FrameCosts
 from inhand_lab.benchmarks.likelihood_check import ObjectCheck
+from inhand_lab.benchmarks.object_accuracy import ObjectAccuracy
 from inhand_lab.benchmarks.tracker_speed import TrackerSpeed
 from inhand_lab.benchmarks.training_cost import TrainingCost
 from inhand_lab.benchmarks.transport_delay import TransportDelays
@@ -170,6 +171,32 @@ def likelihood_table(checks: list[ObjectCheck]) -> Table:
             f"{check.rotation_deg:.1f}",
             f"{check.rotation_90_deg:.1f}",
             f"{check.rank:.2%} (≤ {check.worst_rank:.2%})",
+        )
+    return table
+
+
+def objects_table(checks: Sequence[ObjectAccuracy]) -> Table:
+    """A row an object."""
+    table = Table(
+        title="new objects beside the true mesh: mean surface distance, mm",
+        caption="by measures: of a ruler, to the millimetre; by the camera: where it stands, from "
+        "15 frames of a simulated Kinect's depth; stated: the residual that the fit states",
+    )
+    table.add_column("object", overflow="fold")
+    for name in ("by measures", "by the camera", "worst", "stated", "fitted"):
+        table.add_column(name, justify="right")
+    table.add_column("as a")
+    for check in checks:
+        fitted = check.by_camera_mm
+        scenes = len(fitted) + len(check.refusals)
+        table.add_row(
+            check.name,
+            f"{check.by_measures_mm:.1f}",
+            f"{check.camera_median_mm:.1f}" if fitted else "-",
+            f"{max(fitted):.1f}" if fitted else "-",
+            f"{median(check.stated_mm):.1f}" if fitted else "-",
+            f"{len(fitted)} of {scenes}",
+            ", ".join(dict.fromkeys(check.kinds)) or "refused",
         )
     return table
 

@@ -10,6 +10,7 @@ from inhand_lab.new_objects.proposal import Proposal, centred, propose
 from inhand_lab.new_objects.units import (
     UNITS,
     UPS,
+    UnitGuess,
     guess_unit,
     length_of,
     scale_of,
@@ -46,9 +47,13 @@ def propose_mesh(arguments: argparse.Namespace, console: Console) -> Proposal:
     """Make an object of ``--mesh``, of all its parts; raises SettingsError or InhandError."""
     if arguments.unit is not None and arguments.size is not None:
         raise SettingsError("--unit and --size both say how large it is: leave one out")
-    path = arguments.mesh
-    mesh = read_file_mesh(path)
-    scale = _scale(mesh, arguments, console)
+    mesh = read_file_mesh(arguments.mesh)
+    guess = guess_unit(float(mesh.sides.max()), mesh.unit)
+    unsaid = _unsaid(mesh, guess, arguments)
+    answerable = guess.sizes or "unit" not in unsaid
+    if unsaid and not (sys.stdin.isatty() and answerable):
+        raise SettingsError(f"{arguments.mesh}: {'; '.join(unsaid.values())}")
+    scale = _scale(mesh, guess, arguments, console)
     turn = upright(_up(mesh, arguments, console))
     reduced = reduce_mesh(centred(scale * mesh.vertices @ turn.T), mesh.faces)
     if len(reduced.faces) < len(mesh.faces):
@@ -62,47 +67,55 @@ def propose_mesh(arguments: argparse.Namespace, console: Console) -> Proposal:
     return propose(arguments.name, vertices, reduced.faces, marks, chosen_by_hand(arguments))
 
 
-def _scale(mesh: FileMesh, arguments: argparse.Namespace, console: Console) -> float:
-    """Metres of the mesh's unit."""
-    length = float(mesh.sides.max())
+def _unsaid(mesh: FileMesh, guess: UnitGuess, arguments: argparse.Namespace) -> dict[str, str]:
+    """Return what neither the file nor an option says, each with the options that do."""
+    unsaid = {}
+    if arguments.unit is None and arguments.size is None and guess.sure is None:
+        unsaid["unit"] = which_unit(float(mesh.sides.max()), guess)
+    if arguments.up is None and mesh.up is None:
+        sides = " × ".join(f"{side:.4g}" for side in mesh.sides)
+        unsaid["up"] = (
+            f"it is {sides} along x, y, z, and does not say which points up: add --up z or --up y"
+        )
+    return unsaid
+
+
+def _scale(
+    mesh: FileMesh, guess: UnitGuess, arguments: argparse.Namespace, console: Console
+) -> float:
+    """Metres of the mesh's unit, which is asked where nothing says it."""
     unit, size = arguments.unit, arguments.size
     if unit is None and size is None:
-        guess = guess_unit(length, mesh.unit)
         unit = guess.sure
-        if unit is not None:
-            console.print(f"taken to be in {unit}: {length_of(guess.sizes[unit])} long")
-        elif guess.sizes and sys.stdin.isatty():
-            units = [f"{name} ({length_of(metres)} long)" for name, metres in guess.sizes.items()]
-            console.print(
-                f"{arguments.mesh}: in which unit is it? {', '.join(units)}", soft_wrap=True
-            )
-            unit = _asked("unit", tuple(guess.sizes))
+        if unit is None:
+            sizes = [f"{name} ({length_of(metres)} long)" for name, metres in guess.sizes.items()]
+            question = f"{arguments.mesh}: in which unit is it? {', '.join(sizes)}"
+            unit = _asked(question, "unit", tuple(guess.sizes), console)
         else:
-            raise SettingsError(f"{arguments.mesh}: {which_unit(length, guess)}")
-    return scale_of(length, unit, None if size is None else M_PER_CM * size)
+            told = f"taken to be in {unit}: {length_of(guess.sizes[unit])} long"
+            console.print(told, soft_wrap=True)
+    return scale_of(float(mesh.sides.max()), unit, None if size is None else M_PER_CM * size)
 
 
 def _up(mesh: FileMesh, arguments: argparse.Namespace, console: Console) -> str:
-    """The axis of the mesh that points up."""
+    """The axis of the mesh that points up, which is asked where nothing says it."""
     if arguments.up is not None:
         return str(arguments.up)
     if mesh.up is not None:
         console.print(f"taken to be upright along {mesh.up}, as its format has it")
         return mesh.up
     sides = " × ".join(f"{side:.4g}" for side in mesh.sides)
-    where = f"{arguments.mesh}: it is {sides} along x, y, z, and does not say which points up"
-    if not sys.stdin.isatty():
-        raise SettingsError(f"{where}: add --up z or --up y")
-    console.print(f"{where}: {', '.join(UPS)}?", soft_wrap=True)
-    return _asked("up", UPS)
+    question = f"{arguments.mesh}: it is {sides} along x, y, z; which of them points up?"
+    return _asked(question, "up", UPS, console)
 
 
-def _asked(what: str, answers: Sequence[str]) -> str:
+def _asked(question: str, option: str, answers: Sequence[str], console: Console) -> str:
     """Ask until one of the answers is given; raises SettingsError where none can be."""
+    console.print(question, soft_wrap=True)
     while True:
         try:
-            answer = input(f"{what} ({'/'.join(answers)}): ").strip().lower()
+            answer = input(f"{option} ({'/'.join(answers)}): ").strip().lower()
         except EOFError:
-            raise SettingsError(f"nothing was answered: add --{what}") from None
+            raise SettingsError(f"nothing was answered: add --{option}") from None
         if answer in answers:
             return answer

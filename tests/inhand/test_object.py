@@ -53,7 +53,7 @@ def test_what_is_chosen_is_written(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        ([], "say what it is: --mesh FILE, or --kind, one"),
+        ([], "say what it is: --mesh FILE, --from RECORD"),
         (
             ["--kind", "mug", "--height", "9.5"],
             "a mug needs --diameter (outer diam",

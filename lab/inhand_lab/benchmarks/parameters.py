@@ -200,3 +200,32 @@ class SkeletonCheckParameters:
 
 
 DEFAULT_SKELETON_CHECK = SkeletonCheckParameters()
+
+
+@dataclass(frozen=True)
+class ObjectAccuracyParameters:
+    """In which scenes new objects are compared with the true ones."""
+
+    seed: int = 17
+    """Seed of the cameras and of where things stand."""
+    scenes: int = 8
+    """Number of scenes of each object, each with another camera, place and turn."""
+    frames: int = 15
+    """Number of frames of depth of each scene."""
+    distance_m: tuple[float, float] = (0.65, 1.1)
+    """Least and largest distance in metres of the camera from the middle of the table."""
+    down: tuple[float, float] = (0.45, 0.9)
+    """Least and largest angle in radians at which it looks down."""
+    aside: float = 0.5
+    """Angle in radians by which it stands to a side, at the most."""
+    off_middle_m: float = 0.12
+    """Distance in metres from the middle of the table along x and along y, at the most."""
+    samples: int = 60_000
+    """Number of points on a surface by which its nearest triangles are found."""
+    neighbours: int = 8
+    """Number of nearest points whose triangles are tried."""
+    compared: int = 4000
+    """Number of points of each surface whose distance from the other is measured."""
+
+
+DEFAULT_OBJECT_ACCURACY = ObjectAccuracyParameters()

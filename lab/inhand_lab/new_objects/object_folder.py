@@ -1,8 +1,8 @@
 """Writes a new object into the folder ``objects/NAME/`` of a dataset."""
 
+import shutil
 from pathlib import Path
 
-import numpy as np
 from inhand_runtime.errors import SettingsError
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import require_name
@@ -30,17 +30,19 @@ def new_folder(dataset: Path, name: str) -> Path:
 
 
 def write_object(shape: ObjectShape, folder: Path) -> None:
-    """Write a new object's folder, as training reads it; raises DatasetError.
+    """Write a new object's folder, as training reads it, whole or not at all.
 
-    What training would refuse is refused before anything is written, and what was written is read
-    again.
+    What training would refuse is refused before anything is written. Raises DatasetError.
     """
     check_shape(shape, folder)
+    part = folder.with_name(f".{folder.name}.part")
     try:
-        save_shape(shape, folder)
+        if part.exists():  # of a try that was ended in the middle
+            shutil.rmtree(part)
+        save_shape(shape, part)
+        load_shape(part)
+        part.rename(folder)
     except OSError as error:
         raise DatasetError(
             f"cannot write {folder}: {error.strerror}; choose another folder"
         ) from None
-    if not np.array_equal(load_shape(folder).faces, shape.faces):
-        raise DatasetError(f"{folder} was not written whole: try again")

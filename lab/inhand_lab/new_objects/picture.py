@@ -62,10 +62,10 @@ def require_picture(path: Path) -> None:
         raise SettingsError(f"{path} is no picture's name: let it end in {' or '.join(SUFFIXES)}")
 
 
-def write_picture(shape: ObjectShape, path: Path) -> None:
-    """Draw an object into a picture file; raises InhandError."""
+def write_picture(picture: Bytes, path: Path) -> None:
+    """Write a picture (H, W, 3) RGB to a file; raises InhandError."""
     require_picture(path)
-    _, data = cv2.imencode(path.suffix.lower(), cv2.cvtColor(draw_object(shape), cv2.COLOR_RGB2BGR))
+    _, data = cv2.imencode(path.suffix.lower(), cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data.tobytes())

@@ -44,7 +44,7 @@ def test_the_smallest_and_the_largest_object_are_shown(size: float, tmp_path: Pa
     scaled = replace(
         BOX, vertices=BOX.vertices * size / 0.2, marked_vertices=BOX.marked_vertices * size / 0.2
     )
-    write_picture(scaled, tmp_path / "new/a.png")
+    write_picture(draw_object(scaled), tmp_path / "new/a.png")
     picture = cv2.imread(str(tmp_path / "new/a.png"))
     assert picture is not None
     assert heights(picture[:, :, ::-1], wide=3)[0] > 5
@@ -56,4 +56,4 @@ def test_a_hand_is_as_long_as_hands_are() -> None:
 
 def test_a_name_that_is_no_pictures_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InhandError, match=r"let it end in \.png or \.jpg"):
-        write_picture(BOX, tmp_path / "a.txt")
+        write_picture(np.zeros((4, 4, 3), np.uint8), tmp_path / "a.txt")
