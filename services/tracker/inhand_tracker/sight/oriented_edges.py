@@ -29,8 +29,7 @@ def edge_distances(grey: Bytes, parameters: SightParameters = DEFAULT_SIGHT) -> 
 
     ``grey`` (H, W) has little noise.
     """
-    across = cv2.Sobel(grey, cv2.CV_16S, 1, 0)
-    down = cv2.Sobel(grey, cv2.CV_16S, 0, 1)
+    across, down = cv2.spatialGradient(grey)
     height, width = grey.shape
     edges = np.zeros((height + 2, width + 2), np.uint8)
     mark_edges(

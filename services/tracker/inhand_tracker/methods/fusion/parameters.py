@@ -73,7 +73,7 @@ class FusionParameters:
     """Radians within which two refined poses are the same one, if they agree in translation."""
 
     # What an image teaches (search).
-    looks_to_learn: int = 3
+    looks_to_learn: int = 8
     """Number of images of which one teaches colours."""
     around_rate: float = 0.5
     """Share of that image in the learned colours of the surroundings."""
