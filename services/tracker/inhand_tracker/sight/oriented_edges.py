@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Bytes, Singles
-from inhand_tracker.sight.kernels.mark_edges import count_distances, find_distances, mark_edges
+from inhand_tracker.sight.kernels.mark_edges import find_distances, mark_edges, score_distances
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
 CHANNELS = 4
@@ -50,12 +50,10 @@ def edge_scores(distances: Bytes, parameters: SightParameters = DEFAULT_SIGHT) -
     A share of a boundary's points shows an edge within about a pixel; the rest is like anywhere.
     Where edges are everywhere, they say little.
     """
-    matched = parameters.matched_share
-    anywhere = np.ones((CHANNELS, FARTHEST_PIXELS + 1))
-    count_distances(distances, DOWN, COUNTED_LINES, anywhere)
-    anywhere /= anywhere.sum(axis=1, keepdims=True)
+    scores = np.empty((CHANNELS, FARTHEST_PIXELS + 1), np.float32)
     near = _near(parameters.matched_pixels)
-    return np.log((1.0 - matched) + matched * near / anywhere).astype(np.float32)
+    score_distances(distances, (DOWN, COUNTED_LINES), parameters.matched_share, near, scores)
+    return scores
 
 
 @cache

@@ -4,7 +4,7 @@ import numpy as np
 from inhand_runtime.compiled import njit
 from numpy.typing import NDArray
 
-from inhand_tracker.geometry.arrays import Array, Bytes
+from inhand_tracker.geometry.arrays import Array, Bytes, Singles
 
 
 @njit(cache=True, nogil=True, fastmath=True)
@@ -101,16 +101,27 @@ def find_distances(edges: Bytes, farthest: int, distances: Bytes) -> None:
 
 
 @njit(cache=True, nogil=True)
-def count_distances(distances: Bytes, down: int, every: int, counts: Array) -> None:
-    """Add up in ``counts`` (4, N) how often each distance to the next edge is, in ``distances``
-    (4, H, W).
+def score_distances(
+    distances: Bytes, lines: tuple[int, int], matched_share: float, near: Array, scores: Singles
+) -> None:
+    """Fill ``scores`` (4, N) with log p(distance | a boundary is here) / p(distance | anywhere) of
+    each distance to the next edge, by how often it is in ``distances`` (4, H, W).
 
-    One line in ``every`` is looked at, across the channel's edges, as others would fall in with
-    them, or miss them: columns of the channel ``down``, else rows.
+    ``near`` (N,) is the probability of each distance at a boundary that shows an edge, as a
+    ``matched_share`` do. Of ``lines``, the channel of normals down and a number, one line in that
+    number is looked at, across the channel's edges, as others would fall in with them, or miss
+    them: columns of that channel, else rows.
     """
+    down, every = lines
     channels, height, width = distances.shape
+    counts = np.empty(len(near))
     for channel in range(channels):
         rows, columns = (1, every) if channel == down else (every, 1)
+        counts[:] = 1.0
         for row in range(0, height, rows):
             for column in range(0, width, columns):
-                counts[channel, distances[channel, row, column]] += 1.0
+                counts[distances[channel, row, column]] += 1.0
+        counts /= counts.sum()
+        for distance in range(len(near)):
+            here = (1.0 - matched_share) + matched_share * near[distance] / counts[distance]
+            scores[channel, distance] = np.log(here)
