@@ -1,4 +1,4 @@
-"""What one frame shows, prepared once for however many objects are looked for in it."""
+"""What one part of a frame shows, prepared for the objects that are looked for in it."""
 
 import math
 from dataclasses import dataclass, replace
