@@ -51,6 +51,16 @@ def test_the_head_of_a_body_that_is_lost_is_not_given_up_for_a_wrong_face_beside
     assert after.sum() > before.sum()
 
 
+def test_a_fault_of_what_looks_for_faces_is_not_swallowed() -> None:
+    class Broken(ToldFaces):
+        def find(self, _picture: NDArray[np.uint8], _view: object) -> list[Disc]:
+            raise RuntimeError("something that nobody thought of")
+
+    finder = FaceFinder(Broken(), ToldNetwork([[]]))  # type: ignore[arg-type]
+    with pytest.raises(RuntimeError, match="nobody thought of"):
+        finder.find(np.zeros((48, 64, 3), np.uint8), 0, (), INFO)
+
+
 @pytest.fixture(scope="module")
 def drinking() -> Simulation:
     return simulate("drinkFromMug", 0, seed=3, frames=30)

@@ -1,6 +1,7 @@
 """What to hide of each picture, so that nobody's face is in it."""
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import cv2
@@ -33,7 +34,11 @@ class FacesFound:
 
 
 class FaceFinder:
-    """Finds faces in pictures that follow each other, in one thread."""
+    """Finds faces in pictures that follow each other.
+
+    Faces are looked for in a thread of its own while the network looks for people, since every
+    frame waits for both.
+    """
 
     def __init__(
         self,
@@ -51,6 +56,7 @@ class FaceFinder:
         self._held = HeldHeads(parameters)
         self._held_bodies = HeldHeads(parameters)
         self._pictures = 0
+        self._thread = ThreadPoolExecutor(1, "faces")
 
     def find(
         self,
@@ -62,6 +68,7 @@ class FaceFinder:
         """Find faces in a picture (H, W, 3) RGB; ``skeletons`` of it, in space, have heads, too."""
         height, width = colour.shape[:2]
         lit = brightened(colour, self._parameters.least_brightness)
+        looking = self._thread.submit(self._faces, lit)
         people = self._network.find(lit)
         heads = [head_of(one, self._parameters) for one in people]
         trusted = skeletons if self._trust_skeletons else ()
@@ -70,12 +77,17 @@ class FaceFinder:
             [disc for disc in heads if disc is not None],
             [_scaled(disc, info, width) for disc in known if disc is not None],
         ]
-        faces = [self._detector.find(lit, view) for view in self._views(width, height)]
-        self._pictures += 1
         # Held by itself, so that the head of a body is not given up for a wrong face beside it.
         discs = self._held_bodies.see(bodies, time_ns)
-        discs += self._held.see([*bodies, *faces], time_ns)
+        discs += self._held.see([*bodies, *looking.result()], time_ns)
         return FacesFound(tuple(dict.fromkeys(discs)), (height, width), people)
+
+    def _faces(self, picture: NDArray[np.uint8]) -> list[list[Disc]]:
+        """Look for faces, in one view after the other."""
+        height, width = picture.shape[:2]
+        views = self._views(width, height)
+        self._pictures += 1
+        return [self._detector.find(picture, view) for view in views]
 
     def _views(self, width: int, height: int) -> list[Region]:
         """Return where to look for faces: in all of a picture, and closer in one of its ends by
