@@ -125,11 +125,13 @@ def transport_table(delays: TransportDelays) -> Table:
         caption="; ".join(notes),
     )
     table.add_column("way")
-    for name in ("frames", "lost", "p50, ms", "p99, ms", "times Zenoh's p50"):
+    for name in ("frames", "lost", "p50, ms", "p99, ms", "times Zenoh's p50", "in pairs"):
         table.add_column(name, justify="right")
     for one in delays.ways:
         figures = (one.p50_ms, one.p99_ms, one.ratio)
         cells = ["–" if figure is None else f"{figure:.2f}" for figure in figures]
+        if len(set(one.ratios)) > 1:
+            cells.append(f"{min(one.ratios):.2f} to {max(one.ratios):.2f}")
         table.add_row(one.way, f"{one.sent:,}", f"{one.lost:,}", *cells)
     return table
 

@@ -95,7 +95,7 @@ def test_the_trackers_frames_are_measured_by_stages_and_by_objects_and_people(
 def test_delays_are_measured_by_every_way_and_of_dora_or_it_is_said_to_be_absent(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    few = TransportParameters(shown_frame=1, frames=30, first_frames=10)
+    few = TransportParameters(shown_frame=1, pairs=2, frames=20, first_frames=10)
     monkeypatch.setattr(bench, "DEFAULT_TRANSPORT", few)
     result = tmp_path / "result.json"
     assert main(["bench", "transport", "--json", str(result)]) == 0
@@ -108,6 +108,7 @@ def test_delays_are_measured_by_every_way_and_of_dora_or_it_is_said_to_be_absent
         # Shared memory may lose all of them where little memory may be locked.
         if way["way"] != RAW_SHARED:
             assert 0.0 < way["p50_ms"] <= way["p99_ms"]
+            assert len(way["ratios"]) == (1 if way["way"] == DORA else 2)
     shown = " ".join(capsys.readouterr().out.split())
     assert ("dora-rs was left out: dora" in shown) == (absent is not None)
 

@@ -160,8 +160,10 @@ class TransportParameters:
     """Seed of the simulated person in the frame."""
     shown_frame: int = 60
     """Which frame of the simulation is sent, again and again."""
-    frames: int = 600
-    """Number of frames by each way."""
+    pairs: int = 6
+    """Number of pairs of processes that frames go between."""
+    frames: int = 150
+    """Number of frames by each way, in each pair."""
     first_frames: int = 30
     """Number of frames at the beginning that do not count: links are opened then."""
     frame_rate: float = 30.0

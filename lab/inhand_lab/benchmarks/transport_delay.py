@@ -5,10 +5,10 @@ ways carry the same bytes: a simulated Kinect's frame, coded as on the wire.
 """
 
 import socket
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 
 import numpy as np
@@ -30,8 +30,8 @@ INTERACTION = "drinkFromMug"
 class WayDelay:
     """Milliseconds that frames were under way, and how many of those that were sent were lost.
 
-    ``ratio`` is how many times longer the median is than that of Zenoh by itself. Where no frame
-    came there are none.
+    ``ratio`` is how many times longer the median is than that of Zenoh by itself, and ``ratios``
+    are those of each pair of processes that both went through. Where no frame came there are none.
     """
 
     way: str
@@ -40,6 +40,7 @@ class WayDelay:
     p50_ms: float | None = None
     p99_ms: float | None = None
     ratio: float | None = None
+    ratios: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -52,23 +53,26 @@ class TransportDelays:
 
 
 def measure_transport(parameters: TransportParameters = DEFAULT_TRANSPORT) -> TransportDelays:
-    """Measure Zenoh's ways in turns, frame by frame, and then dora-rs where it is installed.
+    """Measure Zenoh's ways in turns, frame by frame, in several pairs of processes, as one pair may
+    be faster than another for as long as it lives; then dora-rs, where it is installed, in one.
 
     Raises InhandError.
     """
     frame = _frame(parameters)
     payload = RGBD.encode(frame)
-    sent, came = _exchanged(frame, parameters)
+    pairs = [_exchanged(frame, parameters) for _ in range(parameters.pairs)]
+    delays = {way: [_delays_ms(*pair, way, parameters) for pair in pairs] for way in WAYS}
+    if not all(map(len, delays[RAW])):
+        raise InhandError("Zenoh by itself delivered no frame: there is nothing to compare with")
+    counted = parameters.pairs * (parameters.frames - parameters.first_frames)
+    rows = [_row(way, delays[way], delays[RAW], counted) for way in WAYS]
     without_dora = why_not_measured()
     if without_dora is None:
-        sent[DORA], came[DORA] = measure_dora(payload, parameters)
-    delays = {way: _delays_ms(sent[way], came[way], parameters) for way in sent}
-    if not len(delays[RAW]):
-        raise InhandError("Zenoh by itself delivered no frame: there is nothing to compare with")
-    usual_ms = float(np.median(delays[RAW]))
-    counted = parameters.frames - parameters.first_frames
-    rows = tuple(_row(way, delays[way], counted, usual_ms) for way in sent)
-    return TransportDelays(len(payload), rows, without_dora)
+        longer = replace(parameters, frames=parameters.first_frames + counted)
+        sent, came = measure_dora(payload, longer)
+        dora = _delays_ms({DORA: sent}, {DORA: came}, DORA, longer)
+        rows.append(_row(DORA, [dora], [np.concatenate(delays[RAW])], counted))
+    return TransportDelays(len(payload), tuple(rows), without_dora)
 
 
 def _frame(parameters: TransportParameters) -> RgbdFrame:
@@ -98,17 +102,25 @@ def _free_addresses() -> Mapping[str, str]:
         return addresses
 
 
-def _delays_ms(
-    sent: Mapping[int, int], came: Mapping[int, int], parameters: TransportParameters
-) -> np.ndarray:
-    """Milliseconds that those frames were under way that count and came."""
+def _delays_ms(sent: Times, came: Times, way: str, parameters: TransportParameters) -> np.ndarray:
+    """Milliseconds that those frames of a way were under way that count and came."""
     counted = range(parameters.first_frames, parameters.frames)
-    return np.array([(came[n] - sent[n]) / 1e6 for n in counted if n in came])
+    return np.array([(came[way][n] - sent[way][n]) / 1e6 for n in counted if n in came[way]])
 
 
-def _row(way: str, delays_ms: np.ndarray, counted: int, usual_ms: float) -> WayDelay:
-    lost = counted - len(delays_ms)
+def _row(
+    way: str, delays_ms: Sequence[np.ndarray], usual_ms: Sequence[np.ndarray], counted: int
+) -> WayDelay:
+    """The row of a way's delays in each pair of processes, beside Zenoh's by itself in the same."""
+    every = np.concatenate(delays_ms)
+    lost = counted - len(every)
     if lost == counted:
         return WayDelay(way, counted, lost)
-    p50_ms, p99_ms = np.percentile(delays_ms, [50, 99]).tolist()
-    return WayDelay(way, counted, lost, p50_ms, p99_ms, p50_ms / usual_ms)
+    p50_ms, p99_ms = np.percentile(every, [50, 99]).tolist()
+    ratios = tuple(
+        float(np.median(one) / np.median(usual))
+        for one, usual in zip(delays_ms, usual_ms, strict=True)
+        if len(one)
+    )
+    ratio = p50_ms / float(np.median(np.concatenate(usual_ms)))
+    return WayDelay(way, counted, lost, p50_ms, p99_ms, ratio, ratios)
