@@ -31,11 +31,12 @@ VERBS = {
     "simulate": "make a labelled dataset of simulated people",
     "import": "make a dataset of real data: utd-mhad, motion, ycb-video, bop",
     "object": "make a new object of a dataset, of a mesh, measures or depth: new",
+    "label": "write an object's labels, from keyframes of it, beside a recording",
     "train": "learn a model from a labelled dataset",
     "evaluate": "measure methods on people that were not trained on",
     "recognise": "measure tracking where the object is not given, and recognition alone",
-    "bench": "measure tracker, training, transport, skeletons, objects, likelihood, constants, "
-    "ablation",
+    "bench": "measure tracker, training, transport, skeletons, objects, labels, likelihood, "
+    "constants, ablation",
     "models": "get the networks that find people in images: fetch",
     "recording": "info, verify, recover, repair and complete recordings",
     "topics": "list what a running site publishes",

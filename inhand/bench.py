@@ -21,6 +21,7 @@ from inhand_lab.benchmarks.constants import check_constants
 from inhand_lab.benchmarks.estimated_skeletons import check_skeletons, check_steps
 from inhand_lab.benchmarks.estimation_cost import measure_estimation
 from inhand_lab.benchmarks.frame_cost import frame_steps, measure_frames
+from inhand_lab.benchmarks.label_errors import check_labels, chosen_entries
 from inhand_lab.benchmarks.likelihood_check import check_likelihood
 from inhand_lab.benchmarks.object_accuracy import check_objects, object_steps
 from inhand_lab.benchmarks.parameters import (
@@ -39,6 +40,7 @@ from inhand_lab.workers import usable_cores
 from inhand_runtime.errors import SettingsError
 from rich.console import Console, Group, RenderableType
 
+from inhand.bench_label_tables import labels_table
 from inhand.bench_skeleton_tables import actions_table, costs_table, joints_table, rules_table
 from inhand.bench_tables import (
     ablation_table,
@@ -71,8 +73,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         type=Path,
         metavar="SOURCE",
-        help="for likelihood: a folder of YCB-Video, or of an excerpt; for ablation and "
-        "constants: a dataset; for skeletons, if at hand: a folder of UTD-MHAD with its depth",
+        help="for likelihood: a folder of YCB-Video, or of an excerpt; for ablation, constants "
+        "and labels: a dataset; for skeletons, if at hand: a folder of UTD-MHAD with its depth",
     )
     parser.add_argument(
         "--vary",
@@ -185,6 +187,14 @@ def _transport(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     return transport_table(delays), asdict(delays)
 
 
+def _labels(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    dataset = load_dataset(arguments.source)
+    recordings = sum(map(len, chosen_entries(dataset).values()))
+    with progress_bar("labelling", recordings) as advance:
+        checks = list(check_labels(dataset, advance))
+    return labels_table(checks), {"interactions": [asdict(check) for check in checks]}
+
+
 def _skeletons(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     files = [] if arguments.source is None else real_recordings(arguments.source)
 
@@ -211,6 +221,7 @@ def _skeletons(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str,
 SUBJECTS_HELP = {
     "ablation": "the error of fusion without each of its parts",
     "constants": "its error with each number halved and doubled",
+    "labels": "how far labels between keyframes are from the truth",
     "likelihood": "how true poses score, and refine, on real frames of YCB-Video",
     "objects": "new objects, by measures and by the camera, beside the true meshes",
     "skeletons": "skeletons from images: found people, joints' errors, and what a frame costs",
@@ -219,11 +230,12 @@ SUBJECTS_HELP = {
     "transport": "the delay of a frame to another process, beside Zenoh's own and dora-rs's",
 }
 
-MEASURED_ON = ("likelihood", "ablation", "constants")
+MEASURED_ON = ("likelihood", "ablation", "constants", "labels")
 
 SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "ablation": _ablation,
     "constants": _constants,
+    "labels": _labels,
     "likelihood": _likelihood,
     "objects": _objects,
     "skeletons": _skeletons,

@@ -3,8 +3,7 @@
 Those of simulated people can get their labels' true joints instead.
 """
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,14 +11,13 @@ from inhand_capture.estimation.estimator import EstimationError, SkeletonEstimat
 from inhand_capture.estimation.found_person import PoseNetwork
 from inhand_runtime.errors import InhandError
 from inhand_runtime.pixels import decode_colour, decode_depth
-from inhand_runtime.recording import (
-    RecordedMessage,
-    RecordingError,
-    RecordingWriter,
-    read_metadata,
-    read_recording,
+from inhand_runtime.recording import RecordedMessage, RecordingError, read_recording
+from inhand_runtime.recording.copying import (
+    copy_message,
+    copy_metadata,
+    write_beside,
+    written_or_gone,
 )
-from inhand_runtime.recording.part_file import PART_SUFFIX
 from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import (
@@ -73,20 +71,19 @@ def add_skeletons(
         name: SkeletonEstimator(new_network(), cameras.infos[name]) for name in sorted(wanted)
     }
     estimated = {name: CameraSkeletons() for name in estimators}
-    with _written_or_gone(output) as writer:
+    with written_or_gone(output) as writer:
         for message in read_recording(path):
             if message.topic is SKELETONS and message.name in wanted:
                 continue
-            _write(writer, message.key, message, message.payload)
+            copy_message(writer, message)
             if message.topic is RGBD and message.name in wanted:
                 camera = message.name
                 skeletons = _estimate(message, estimators[camera], estimated[camera])
                 if skeletons is not None:
                     key = SKELETONS.key(parse_key(message.key).site, camera)
-                    _write(writer, key, message, SKELETONS.encode(skeletons))
-        for name, values in read_metadata(path).items():
-            writer.add_metadata(name, values)
-        writer.add_metadata("skeletons", {"source": path.name, "estimated": " ".join(wanted)})
+                    write_beside(writer, key, message, SKELETONS.encode(skeletons))
+        about = {"source": path.name, "estimated": " ".join(wanted)}
+        copy_metadata(writer, path, "skeletons", about)
         _require_skeletons(path, estimated)
     return estimated
 
@@ -103,7 +100,7 @@ def true_skeletons(path: Path, output: Path) -> int:
             f"{path} holds no true joints: only labels of simulated people have them"
         )
     written = 0
-    with _written_or_gone(output) as writer:
+    with written_or_gone(output) as writer:
         for message in read_recording(path):
             payload = message.payload
             if message.topic is SKELETONS:
@@ -115,10 +112,8 @@ def true_skeletons(path: Path, output: Path) -> int:
                 people = (_exact_person(person, truth),)
                 payload = SKELETONS.encode(structs.replace(skeletons, people=people))
                 written += 1
-            _write(writer, message.key, message, payload)
-        for name, values in read_metadata(path).items():
-            writer.add_metadata(name, values)
-        writer.add_metadata("skeletons", {"source": path.name, "true": "labels"})
+            write_beside(writer, message.key, message, payload)
+        copy_metadata(writer, path, "skeletons", {"source": path.name, "true": "labels"})
     return written
 
 
@@ -136,18 +131,6 @@ def _exact_person(number: int, joints: tuple[Vector3, ...]) -> Person:
     state: JointState = "tracked"
     count = len(joints)
     return Person(id=number, joints=joints, states=(state,) * count, confidences=(1.0,) * count)
-
-
-@contextmanager
-def _written_or_gone(output: Path) -> Iterator[RecordingWriter]:
-    """Write a recording in a block; where that fails, nothing of it stays."""
-    opened = RecordingWriter(output)
-    try:
-        with opened as writer:
-            yield writer
-    except InhandError:
-        output.with_name(output.name + PART_SUFFIX).unlink(missing_ok=True)
-        raise
 
 
 def _cameras_of(path: Path) -> _Cameras:
@@ -202,13 +185,3 @@ def _require_skeletons(path: Path, estimated: dict[str, CameraSkeletons]) -> Non
     for name, counts in estimated.items():
         if counts.unusable == counts.frames:
             raise InhandError(f"{path}, camera {name}: {counts.reason}")
-
-
-def _write(writer: RecordingWriter, key: str, of: RecordedMessage, payload: bytes) -> None:
-    writer.write(
-        key,
-        payload,
-        received_ns=of.received_ns,
-        captured_ns=of.captured_ns,
-        sequence=of.sequence,
-    )

@@ -7,11 +7,23 @@ from typing import Any
 import msgspec
 from inhand_runtime.recording import RecordingWriter
 from inhand_schemas.keys import Site
-from inhand_schemas.messages import CameraInfo, Message, ObjectPose, Pose, Skeletons
-from inhand_schemas.topics import INFO, LABEL, SKELETONS
+from inhand_schemas.messages import (
+    CameraInfo,
+    Message,
+    ObjectPose,
+    Pose,
+    RgbdFrame,
+    Skeletons,
+)
+from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS
 from waving import messages
 
-TOPICS: dict[type[Message], Any] = {CameraInfo: INFO, Skeletons: SKELETONS, ObjectPose: LABEL}
+TOPICS: dict[type[Message], Any] = {
+    CameraInfo: INFO,
+    Skeletons: SKELETONS,
+    ObjectPose: LABEL,
+    RgbdFrame: RGBD,
+}
 replace = msgspec.structs.replace
 Change = Callable[[Any], Message | None]
 
@@ -21,20 +33,24 @@ def write_recording(path: Path, change: Change, frames: int = 30) -> Path:
     return write_messages(path, (change(message) for message in messages(frames, 0)))
 
 
-def write_messages(path: Path, changed: Iterable[Message | None]) -> Path:
-    """Write messages in their order, whatever they say."""
+def write_messages(
+    path: Path, changed: Iterable[Message | None], *, also: str | None = None
+) -> Path:
+    """Write messages in their order, whatever they say; ``also`` names a second camera of all."""
+    cameras = ["camera"] if also is None else ["camera", also]
     with RecordingWriter(path) as writer:
         for number, message in enumerate(changed):
             if message is not None:
                 topic = TOPICS[type(message)]
-                name = message.object if isinstance(message, ObjectPose) else "camera"
-                writer.write(
-                    topic.key(Site(), name),
-                    msgspec.msgpack.encode(message),
-                    received_ns=number,
-                    captured_ns=message.time_ns,
-                    sequence=message.sequence,
-                )
+                names = [message.object] if isinstance(message, ObjectPose) else cameras
+                for name in names:
+                    writer.write(
+                        topic.key(Site(), name),
+                        msgspec.msgpack.encode(message),
+                        received_ns=number,
+                        captured_ns=message.time_ns,
+                        sequence=message.sequence,
+                    )
     return path
 
 

@@ -231,3 +231,24 @@ class ObjectAccuracyParameters:
 
 
 DEFAULT_OBJECT_ACCURACY = ObjectAccuracyParameters()
+
+
+@dataclass(frozen=True)
+class LabelCheckParameters:
+    """From which keyframes labels are made, and on whom they are measured."""
+
+    seed: int = 0
+    """Seed of a person's inaccuracy."""
+    people: int = 2
+    """Number of the dataset's people, the first ones, whose recordings are labelled."""
+    every: int = 30
+    """Frames from one keyframe to the next: a second."""
+    keyframe_m: float = 0.005
+    """Metres by which each keyframe is off, in a random direction."""
+    keyframe_rad: float = float(np.deg2rad(3.0))
+    """Radians by which each is turned, about a random axis."""
+    visible_share: float = 1.0 / 3.0
+    """Share of the object from which on it counts as visible."""
+
+
+DEFAULT_LABEL_CHECK = LabelCheckParameters()

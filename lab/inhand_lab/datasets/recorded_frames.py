@@ -26,12 +26,15 @@ class RecordedFrame:
     label: ObjectPose | None
 
 
-def load_frames(path: Path, object_name: str | None) -> list[RecordedFrame]:
+def load_frames(
+    path: Path, object_name: str | None, camera: str | None = None
+) -> list[RecordedFrame]:
     """Read the skeletons and labels of a recording, in order, without pixels.
 
-    Of several cameras the skeletons come from the one in which the labels were made. Raises
-    DatasetError where that is not exactly one, for times that are no clock's, units that are no
-    metres, and labels that are of no frame, object or person of the recording.
+    Of several cameras the skeletons come from the one in which the labels were made, or else from
+    the ``camera`` that is named. Raises DatasetError where that is not exactly one, for times that
+    are no clock's, units that are no metres, and labels that are of no frame, object or person of
+    the recording.
     """
     labels: list[ObjectPose] = []
     objects: set[str] = set()
@@ -45,8 +48,8 @@ def load_frames(path: Path, object_name: str | None) -> list[RecordedFrame]:
             if message.object == object_name:
                 labels.append(message)
     check_objects(path, object_name, objects)
-    camera = _shared_camera(path, {label.camera for label in labels}, set(skeletons))
-    shown = skeletons.get(camera, [])
+    labelled = {label.camera for label in labels} or ({camera} if camera else set())
+    shown = skeletons.get(_shared_camera(path, labelled, set(skeletons)), [])
     check_times(path, np.array([one.time_ns for one in shown], np.int64))
     joined = join_labels(path, labels, shown)
     check_people(path, labels, shown)

@@ -1,0 +1,39 @@
+"""Tables of how far labels between keyframes are from the truth."""
+
+from collections.abc import Sequence
+from statistics import mean
+
+from inhand_lab.benchmarks.label_errors import KINDS, LabelCheck, LabelErrors
+from rich.console import Group
+from rich.table import Table
+
+
+def labels_table(checks: Sequence[LabelCheck]) -> Group:
+    """A row an interaction: medians where the object is visible, and where it is not."""
+    return Group(
+        _table("a third or more of the object is visible", [(c, c.visible) for c in checks]),
+        _table("less of it is visible", [(c, c.hidden) for c in checks if c.hidden[0].frames]),
+    )
+
+
+def _table(title: str, rows: Sequence[tuple[LabelCheck, Sequence[LabelErrors]]]) -> Table:
+    table = Table(title=f"{title}: median errors, mm and degrees")
+    table.add_column("interaction")
+    for name in ("frames", *KINDS, "doubt and error"):
+        table.add_column(name, justify="right")
+    for check, errors in rows:
+        told = (one.doubt_correlation for one in errors)
+        doubts = [correlation for correlation in told if correlation is not None]
+        table.add_row(
+            check.interaction,
+            str(errors[0].frames),
+            *(_cell(one) for one in errors),
+            f"{mean(doubts):.2f}" if doubts else "",
+        )
+    return table
+
+
+def _cell(errors: LabelErrors) -> str:
+    if errors.translation_mm is None:
+        return ""
+    return f"{errors.translation_mm:.1f}, {errors.rotation_deg:.1f}"

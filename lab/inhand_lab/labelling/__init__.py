@@ -1,0 +1,1 @@
+"""Labels of an object in a recording: a person's keyframes, and the poses between them."""

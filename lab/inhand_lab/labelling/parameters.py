@@ -1,0 +1,66 @@
+"""Every number of labelling that can be tuned.
+
+Those of assistance were chosen on the people of one simulated dataset, and docs/labels.md shows
+what they do on another (`inhand bench labels DATASET`).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class LabellingParameters:
+    """Decides how poses between keyframes are found."""
+
+    # Which frames get a pose (interpolation).
+    longest_step_s: float = 0.5
+    """Seconds from one frame to the next beyond which nothing is known of the way between two
+    keyframes: the camera stood still, and the object need not have."""
+
+    # What is expected of an object between keyframes (expectations, smoothing).
+    keyframe_m: float = 0.005
+    """Root mean square in metres of a person's inaccuracy in placing a keyframe."""
+    keyframe_rad: float = float(np.deg2rad(3.0))
+    """Root mean square in radians of a person's inaccuracy in turning it."""
+    drift_m: float = 0.3
+    """Root mean square in metres by which an object leaves the interpolated way within a second; it
+    grows with the square root of time."""
+    drift_rad: float = 0.5
+    """Root mean square in radians of the same."""
+    far_factor: float = 3.0
+    """Number of times as far that some objects leave the way: a swing does within a second."""
+    acceleration_m: float = 5.0
+    """Usual acceleration of an object that is used, in m/s²."""
+    acceleration_rad: float = 20.0
+    """Usual acceleration of its turning, in rad/s²."""
+    smooth_drift_m: float = 1.0
+    """Root mean square in metres by which it leaves the way within a second, where all frames are
+    smoothed together."""
+    smooth_drift_rad: float = 2.5
+    """Root mean square in radians of the same."""
+    smoothing_steps: int = 5
+    """Number of Gauss-Newton steps in which a stretch is smoothed."""
+
+    # How an image is looked at (looking, assistance).
+    drawn: int = 300
+    """Number of poses that are tried about the expected ones."""
+    refined: int = 3
+    """Number of these, the likeliest ones, that are refined."""
+    image_trust: float = 1.0
+    """Share of a sharp image's log-likelihood that counts where poses are chosen; with 0.4, as in
+    fusion, swings are lost."""
+    refinement_trust: float = 1.0
+    """Share of a sharp image's information that refinement keeps."""
+    blurred_pixels: float = 20.0
+    """Pixels that an object goes from frame to frame where its image counts half, as in fusion."""
+    most_disagreement: float = 2.0
+    """Standard deviations that both directions may be apart, beyond which each is tried alone."""
+    same_m: float = 0.01
+    """Metres within which two refined poses are the same, and the image says as much of one as of
+    the other."""
+    same_rad: float = 0.1
+    """Radians of the same."""
+
+
+DEFAULT_LABELLING = LabellingParameters()
