@@ -17,6 +17,7 @@ from inhand_lab.labelling.labelled_copy import (
 from inhand_lab.labelling.scene import Scene, check_keyframes, load_scene
 from inhand_runtime.exit_codes import DONE
 from inhand_runtime.wording import counted
+from inhand_runtime.writable import require_writable_file
 from inhand_tracker.shape.shape import ObjectShape, load_shape
 from inhand_tracker.shape.viewpoints import count_views, find_viewpoints
 
@@ -53,6 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the labelled copy; raises InhandError."""
     path, name = arguments.recording, arguments.object
     output = arguments.output or labelled_path(path)
+    require_writable_file(output)
     contents = load_keyframes(arguments.keyframes)
     shape = load_shape(_dataset(arguments) / "objects" / name)
     scene = load_scene(path, contents.camera)

@@ -114,3 +114,13 @@ def test_in_a_recording_of_two_cameras_the_keyframes_camera_is_labelled(tmp_path
     assert label(both, file_of(*KEYS, camera="side")) == 0
     frames = load_frames(recording.with_name("both.labelled.mcap"), "box")
     assert {frame.label.camera for frame in frames if frame.label} == {"side"}
+
+
+def test_where_nothing_can_be_written_is_said_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    recording = dataset(tmp_path)
+    assert label(recording, file_of(*KEYS), "-o", str(tmp_path / "none" / "out.mcap")) == 1
+    assert "none is no folder: make it, or choose another one" in capsys.readouterr().err
+    assert label(recording, file_of(*KEYS), "-o", "/proc/nowhere/out.mcap") == 2
+    assert "cannot write /proc/nowhere/out.mcap" in capsys.readouterr().err

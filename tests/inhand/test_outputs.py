@@ -48,7 +48,7 @@ def test_no_argument_that_names_a_place_to_write_goes_unchecked(verb: str) -> No
     """Arguments with a path are read, or their names are among those that are checked."""
     read = {
         *("config", "dataset", "test_on", "bodies", "data", "models", "recording", "files"),
-        *("info", "sources", "source", "contrib", "others", "against", "mesh"),
+        *("info", "sources", "source", "contrib", "others", "against", "mesh", "keyframes"),
     }
     module = importlib.import_module(f"inhand.{verb}_" if iskeyword(verb) else f"inhand.{verb}")
     parser = argparse.ArgumentParser()

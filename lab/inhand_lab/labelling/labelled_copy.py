@@ -51,8 +51,10 @@ def labelled_path(path: Path) -> Path:
 def require_labels_wanted(
     scene: Scene, object_name: str, output: Path, *, replace: bool = False
 ) -> None:
-    """Raise RecordingError where an object has labels already that are not to be replaced, or the
-    copy is there: before the work that makes others."""
+    """Raise RecordingError where an object has labels already that are not to be replaced, the copy
+    is there, or its folder is not: before the work that makes others."""
+    if not output.parent.is_dir():
+        raise RecordingError(f"{output.parent} is no folder: make it, or choose another one")
     if output.exists():
         raise RecordingError(f"{output} exists already: choose another name, or move it away")
     if not replace and _has_labels(scene.path, object_name):
