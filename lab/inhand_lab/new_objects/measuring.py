@@ -19,7 +19,7 @@ from inhand_lab.new_objects.outline_fit import (
 )
 from inhand_lab.new_objects.parameters import DEFAULT_MEASURING, MeasuringParameters
 from inhand_lab.new_objects.table import MeasuringError, Standing, cut_out
-from inhand_lab.objects.kinds import build_kind
+from inhand_lab.objects.kinds import KINDS, require_measures
 from inhand_lab.objects.model import ObjectModel
 
 FITS = (fit_box, fit_cylinder, fit_cup, fit_bottle)
@@ -33,7 +33,8 @@ class MeasuredThing:
     ``kind`` and ``measures_cm`` are as ``objects.kinds`` takes them, and ``model`` is what they
     make. ``residual_mm`` is the mean distance of the points that are on its surface, ``off_share``
     the share of those that are not, and ``overlap`` the pixels that are of both the thing and the
-    model, as a share of those of either. ``camera_from_object`` is where the model stands.
+    model, as a share of those of either. ``cost`` is what the shapes are compared by.
+    ``camera_from_object`` is where the model stands.
     """
 
     kind: str
@@ -42,6 +43,7 @@ class MeasuredThing:
     residual_mm: float
     off_share: float
     overlap: float
+    cost: float
     points: int
     camera_from_object: Transform
 
@@ -63,51 +65,49 @@ def fit_standing(
     count = min(parameters.fitted_points, len(standing.points))
     points = standing.points[np.linspace(0, len(standing.points) - 1, count).astype(np.int64)]
     off_m = parameters.off_m + parameters.plane_m_per_m2 * standing.distance_m**2
-    best, *others = (
-        _with_handle(fit(points, parameters), points, off_m, parameters) for fit in FITS
-    )
-    for fitted in others:
-        if _cost(fitted, off_m) < parameters.simpler * _cost(best, off_m):
-            best = fitted
-    return _judged(best, standing, off_m, parameters)
+    fits = [_with_handle(fit(points, parameters), points, off_m, parameters) for fit in FITS]
+    best, *others = (_made(fitted, standing, off_m) for fitted in fits)
+    for thing in others:
+        if thing.cost < parameters.simpler * best.cost:
+            best = thing
+    _require_fit(best, off_m, parameters)
+    return best
 
 
-def _cost(fitted: FittedShape, off_m: float) -> float:
-    """Mean distance of the points in metres; one that is off counts as if just off."""
-    return float(np.minimum(fitted.distances, off_m).mean())
-
-
-def _judged(
-    fitted: FittedShape, standing: Standing, off_m: float, parameters: MeasuringParameters
-) -> MeasuredThing:
-    """What was fitted, if it fits; raises MeasuringError."""
+def _made(fitted: FittedShape, standing: Standing, off_m: float) -> MeasuredThing:
+    """What a fitted shape makes, of whatever measures, and how well it fits."""
     measures_cm = {name: round(100.0 * metres, 1) for name, metres in fitted.measures.items()}
-    try:
-        model = build_kind("measured", fitted.kind, measures_cm)
-    except SettingsError as error:
-        raise MeasuringError(
-            f"no box, cylinder, cup or bottle fits: of the best, a {fitted.kind}, {error}; see "
-            "that depth shows all of the thing, which may be too near to the camera"
-        ) from None
-    turn = rotation_about("z", fitted.turn)
+    model = KINDS[fitted.kind].build("measured", **fitted.measures)
     height = float(np.ptp(model.vertices[:, 2]))
-    table_from_object = Transform(np.array([*fitted.centre, height / 2.0]), turn)
+    table_from_object = Transform(
+        np.array([*fitted.centre, height / 2.0]), rotation_about("z", fitted.turn)
+    )
     off = fitted.distances > off_m
-    thing = MeasuredThing(
+    overlap = _overlap(model, table_from_object, standing)
+    # One that is off counts as if just off, so that a few wild points do not choose the shape.
+    mean_m = float(np.minimum(fitted.distances, off_m).mean())
+    return MeasuredThing(
         fitted.kind,
         measures_cm,
         model,
         1000.0 * (off_m if off.all() else float(fitted.distances[~off].mean())),
         float(off.mean()),
-        _overlap(model, table_from_object, standing),
+        overlap,
+        mean_m / max(overlap, 1e-3) ** 2,
         len(standing.points),
         standing.camera_from_table @ table_from_object,
     )
-    _require_fit(thing, off_m, parameters)
-    return thing
 
 
 def _require_fit(thing: MeasuredThing, off_m: float, parameters: MeasuringParameters) -> None:
+    """Raise MeasuringError for a shape that does not fit, or of measures that no such thing has."""
+    try:
+        require_measures(thing.kind, thing.measures_cm)
+    except SettingsError as error:
+        raise MeasuringError(
+            f"no box, cylinder, cup or bottle fits: of the best, a {thing.kind}, {error}; see "
+            "that depth shows all of the thing, which may be too near to the camera"
+        ) from None
     if (
         thing.off_share <= parameters.most_off_share
         and thing.residual_mm <= 1000.0 * parameters.most_residual_m

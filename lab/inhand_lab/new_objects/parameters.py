@@ -153,7 +153,7 @@ class MeasuringParameters:
     """Share of the points that may be off the fitted surface."""
     most_residual_m: float = 0.004
     """Mean distance in metres of the points that are on it, at the most."""
-    least_overlap: float = 0.75
+    least_overlap: float = 0.85
     """Share of the pixels of thing or model that are of both, at the least: a sensor loses some at
     every edge."""
     simpler: float = 0.85

@@ -175,6 +175,13 @@ MEASURES = tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.
 
 def build_kind(name: str, kind: str, measures_cm: Mapping[str, float]) -> ObjectModel:
     """Build an object of a kind from measures in centimetres; raises SettingsError."""
+    require_measures(kind, measures_cm)
+    metres = {key: M_PER_CM * value for key, value in measures_cm.items()}
+    return KINDS[kind].build(name, **metres)
+
+
+def require_measures(kind: str, measures_cm: Mapping[str, float]) -> None:
+    """Raise SettingsError for a kind that is none, and for measures that it cannot have."""
     if kind not in KINDS:
         raise SettingsError(f"no kind {kind!r}; there are {', '.join(KINDS)}")
     known = KINDS[kind]
@@ -183,7 +190,6 @@ def build_kind(name: str, kind: str, measures_cm: Mapping[str, float]) -> Object
         _require_range(kind, measure, known.measures[measure], value)
     for limit in known.limits:
         _require_less(kind, limit, measures_cm)
-    return known.build(name, **{key: M_PER_CM * value for key, value in measures_cm.items()})
 
 
 def option(measure: str) -> str:

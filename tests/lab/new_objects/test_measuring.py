@@ -57,6 +57,20 @@ def test_a_round_thing_is_measured_to_a_few_millimetres(
 
 
 @pytest.mark.parametrize("camera", [KINECT, OAK_D], ids=lambda camera: camera.name)
+@pytest.mark.parametrize("place", [(0.1, 0.0), (-0.08, 0.06)])
+@pytest.mark.parametrize(("height", "diameter"), [(0.05, 0.05), (0.04, 0.085)])
+def test_a_small_can_is_round_by_its_outline_where_its_points_do_not_tell(
+    height: float, diameter: float, place: tuple[float, float], camera: Camera
+) -> None:
+    model = build_can("can", height, diameter)
+    thing = measured((model, *place, 0.3), view=VIEWS[1], camera=camera)
+    assert thing.kind == "cylinder"
+    expected = {"height": 100.0 * height, "diameter": 100.0 * diameter}
+    assert dict(thing.measures_cm) == pytest.approx(expected, abs=0.4)
+    assert thing.overlap > 0.85
+
+
+@pytest.mark.parametrize("camera", [KINECT, OAK_D], ids=lambda camera: camera.name)
 @pytest.mark.parametrize("turn", [0.0, 0.4, 1.2])
 def test_a_box_is_measured_to_a_few_millimetres_however_it_is_turned(
     turn: float, camera: Camera
