@@ -15,7 +15,7 @@ from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import read_metadata, read_recording
 from inhand_schemas.messages import Message, Skeletons
 from keyframed import dataset, file_of, key, pose, unlabelled
-from waving import messages
+from waving import messages, write_dataset
 
 from inhand.__main__ import main
 
@@ -124,3 +124,21 @@ def test_where_nothing_can_be_written_is_said_before_the_work(
     assert "none is no folder: make it, or choose another one" in capsys.readouterr().err
     assert label(recording, file_of(*KEYS), "-o", "/proc/nowhere/out.mcap") == 2
     assert "cannot write /proc/nowhere/out.mcap" in capsys.readouterr().err
+
+
+@pytest.mark.long
+def test_what_is_labelled_trains(tmp_path: Path) -> None:
+    folder = tmp_path / "waving"
+    for entry in write_dataset(folder, 3).entries:
+        path = folder / entry.file
+        frames = load_frames(path, "box")
+        marks = [
+            key(index, frame.label.camera_from_object, relative_to="right forearm")
+            for index, frame in enumerate(frames)
+            if frame.label is not None and index % 5 == 0
+        ]
+        assert label(path, file_of(*marks), "--replace") == 0
+    table = folder / "dataset.toml"
+    table.write_text(table.read_text().replace(".mcap", ".labelled.mcap"))
+    assert main(["train", str(folder), "-o", str(tmp_path / "box.model")]) == 0
+    assert (tmp_path / "box.model").exists()

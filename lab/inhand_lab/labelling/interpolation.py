@@ -38,7 +38,8 @@ class Interpolated:
     """Poses camera_from_object of T frames, (T, 3) and (T, 4), NaN where there is none.
 
     ``absent`` (T,) flags frames in which the object is absent by the keyframes. ``stretches`` are
-    those that got poses, and ``notes`` say why others did not, or not as they were asked for.
+    those with frames that got poses, and ``notes`` say why others did not, or not as they were
+    asked for.
     """
 
     translations: Array
@@ -83,8 +84,9 @@ def interpolate(
         if broken := _broken(stretch, times_ns, parameters):
             notes.append(broken)
             continue
-        translations[stretch.inner], turns[stretch.inner] = inner
-        stretches.append(stretch)
+        if frame > stretch.first + 1:
+            translations[stretch.inner], turns[stretch.inner] = inner
+            stretches.append(stretch)
     return Interpolated(translations, turns, absent, tuple(stretches), tuple(notes))
 
 

@@ -31,7 +31,7 @@ class LabellingParameters:
     far_factor: float = 3.0
     """Number of times as far that some objects leave the way: a swing does within a second."""
     acceleration_m: float = 5.0
-    """Usual acceleration of an object that is used, in m/s²."""
+    """Usual acceleration of an object away from the interpolated way, in m/s²."""
     acceleration_rad: float = 20.0
     """Usual acceleration of its turning, in rad/s²."""
     smooth_drift_m: float = 1.0

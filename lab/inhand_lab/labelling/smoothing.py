@@ -1,7 +1,7 @@
 """The likeliest way of an object through the frames of a stretch, by images and by how things move.
 
-Each frame's image is a normal distribution about its pose. Things seldom change their velocity, and
-seldom leave the way between keyframes; where they do, they may do so much (Cauchy's distribution).
+Each frame's image is a normal distribution about its pose. Things seldom leave the way between
+keyframes, and do so smoothly; where they do not, they may do so much (Cauchy's distribution).
 """
 
 from collections.abc import Iterator
@@ -36,12 +36,6 @@ class Way:
         turns = rotations.multiply(other.rotations, rotations.conjugate(self.rotations))
         return np.hstack((other.translations - self.translations, rotations.to_vector(turns)))
 
-    def velocities(self) -> Array:
-        """Return the velocities (T - 1, 6) from frame to frame, a second."""
-        after = Way(self.translations[1:], self.rotations[1:], self.times_s[1:])
-        before = Way(self.translations[:-1], self.rotations[:-1], self.times_s[:-1])
-        return before.deviations(after) / np.diff(self.times_s)[:, None]
-
 
 @dataclass(frozen=True)
 class Smoothed:
@@ -67,14 +61,9 @@ class _Term:
         return np.repeat(1.0 / (1.0 + halves), 3, axis=1) / self.scale**2
 
 
-def smooth(
-    start: Way,
-    guide: Way,
-    information: Array,
-    parameters: LabellingParameters,
-) -> Smoothed:
-    """Find the likeliest way near ``start``, of whose poses there is ``information`` (T, 6, 6), by
-    the ``guide`` between keyframes."""
+def smooth(start: Way, guide: Way, information: Array, parameters: LabellingParameters) -> Smoothed:
+    """Find the likeliest way of three or more frames near ``start``, of whose poses there is
+    ``information`` (T, 6, 6), by the ``guide`` between keyframes."""
     way = start
     for _ in range(parameters.smoothing_steps):
         terms = list(_terms(way, guide, parameters))
@@ -87,17 +76,16 @@ def smooth(
 
 
 def _terms(way: Way, guide: Way, parameters: LabellingParameters) -> Iterator[_Term]:
-    """Yield that velocities stay, and that the object keeps its place beside the guide."""
+    """Yield that the object keeps its velocity beside the guide, and its place there."""
     seconds = np.diff(way.times_s)[:, None]
     rate = 1.0 / seconds
-    velocities = way.velocities()
+    aside = guide.deviations(way)
     spread = np.repeat([parameters.acceleration_m, parameters.acceleration_rad], 3) / np.sqrt(3.0)
     yield _Term(
         np.hstack((rate[:-1], -rate[:-1] - rate[1:], rate[1:])),
-        np.diff(velocities, axis=0),
+        np.diff(np.diff(aside, axis=0) * rate, axis=0),
         0.5 * (seconds[:-1] + seconds[1:]) * spread,
     )
-    aside = guide.deviations(way)
     ones = np.ones_like(seconds)
     drift = np.repeat([parameters.smooth_drift_m, parameters.smooth_drift_rad], 3) / np.sqrt(3.0)
     yield _Term(np.hstack((-ones, ones)), np.diff(aside, axis=0), np.sqrt(seconds) * drift)

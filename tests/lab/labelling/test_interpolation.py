@@ -144,4 +144,5 @@ def test_across_a_break_in_time_nothing_is_known(change: int, line: str) -> None
     assert line in note
     beside = found(*(key(frame, pose()) for frame in (0, 5, 6, 10)), times=times)
     assert labelled(beside) == list(range(11))
+    assert [(one.first, one.last) for one in beside.stretches] == [(0, 5), (6, 10)]
     assert beside.notes == ()
