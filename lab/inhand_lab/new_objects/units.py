@@ -20,15 +20,11 @@ class UnitGuess:
     """The units in which a length makes an object of a size that people hold.
 
     ``sizes`` has the length in metres by those units, which may be none; ``sure`` is the only one
-    of them, or None.
+    that can be, None where several can, none can, or the format says another.
     """
 
     sizes: dict[str, float]
-
-    @property
-    def sure(self) -> str | None:
-        """The only unit that can be, None where several can, or none."""
-        return next(iter(self.sizes)) if len(self.sizes) == 1 else None
+    sure: str | None
 
 
 def guess_unit(
@@ -40,7 +36,9 @@ def guess_unit(
         for unit, metres in UNITS.items()
         if parameters.smallest_m <= length * metres <= parameters.largest_m
     }
-    return UnitGuess({declared: sizes[declared]} if declared in sizes else sizes)
+    if declared is not None:
+        return UnitGuess(sizes, declared if declared in sizes else None)
+    return UnitGuess(sizes, next(iter(sizes)) if len(sizes) == 1 else None)
 
 
 def scale_of(length: float, unit: str | None, size_m: float | None) -> float:
@@ -65,7 +63,7 @@ def which_unit(length: float, guess: UnitGuess) -> str:
     options = ", ".join(f"--unit {unit} makes it {length_of(m)}" for unit, m in guess.sizes.items())
     fits = options or "by no unit is it a thing that a hand holds"
     return (
-        f"its longest side is {length:g}, and it does not say of what: {fits}; or say --size CM, "
+        f"its longest side is {length:g}, and of which unit is not clear: {fits}; or say --size CM, "
         "how long that side is"
     )
 

@@ -23,12 +23,14 @@ def test_what_a_hand_holds_is_never_taken_for_another_size(size_m: float, unit: 
         (12.0, None, None),
         (2.0, None, None),
         (1.2, "m", "m"),
-        (330.0, "m", "mm"),
+        (330.0, "m", None),
+        (1000.0, "m", None),
+        (1000.0, None, "mm"),
         (1e6, None, None),
         (1e-6, None, None),
     ],
 )
-def test_a_unit_is_sure_where_no_other_fits_a_hand(
+def test_a_unit_is_sure_where_no_other_fits_a_hand_nor_is_declared(
     length: float, declared: str | None, sure: str | None
 ) -> None:
     assert guess_unit(length, declared).sure == sure
