@@ -63,8 +63,8 @@ def which_unit(length: float, guess: UnitGuess) -> str:
     options = ", ".join(f"--unit {unit} makes it {length_of(m)}" for unit, m in guess.sizes.items())
     fits = options or "by no unit is it a thing that a hand holds"
     return (
-        f"its longest side is {length:g}, and of which unit is not clear: {fits}; or say --size CM, "
-        "how long that side is"
+        f"its longest side is {length:g}, and of which unit is not clear: {fits}; or say "
+        "--size CM, how long that side is"
     )
 
 
