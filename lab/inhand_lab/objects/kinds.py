@@ -82,7 +82,7 @@ KINDS: Mapping[str, Kind] = {
         {
             "height": Measure("height of the cup", 3.0, 30.0),
             "diameter": Measure("outer diameter of the cup", 3.0, 25.0),
-            "handle": Measure("how far the handle stands out from the cup", 1.0, 12.0),
+            "handle": Measure("distance that the handle stands out from the cup", 1.0, 12.0),
         },
         _mug,
         (Less("handle", "diameter"),),
