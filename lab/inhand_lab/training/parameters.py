@@ -44,6 +44,9 @@ class TrainingParameters:
     """Speed in metres a second above which an object is moved, so somebody holds it."""
     fewest_moved: int = 30
     """Number of frames of a moved object from which on it is judged how it is held."""
+    steady_hold_m: float = 0.015
+    """Spread in metres of a hand's places on the object within which nothing is wrong: by true
+    joints of who films it is 0.005 to 0.012 in either reading, as the camera is hardly turned."""
     clear_hold_ratio: float = 1.25
     """Spread of a hand's places on the object as rotations are read, in that if they are read in
     another way, from which all of an object's recordings are written in that way. The median of

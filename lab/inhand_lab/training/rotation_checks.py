@@ -57,12 +57,17 @@ def check_rotations(
 
 def _check_holds(entries: Sequence[DatasetEntry], sequences: Sequence[LabelledSequence]) -> None:
     """Raise DatasetError where hands in all recordings stay better if read as (x, y, z, w)."""
-    ratios = [
-        _hand_spread_m(one) / _hand_spread_m(replace(one, rotations=_from_xyzw(one.rotations)))
-        for one in sequences
-    ]
-    ratios = [ratio for ratio in ratios if np.isfinite(ratio)]
-    if ratios and min(ratios) > 1.0 and np.median(ratios) >= DEFAULT_TRAINING.clear_hold_ratio:
+    spreads = np.array(
+        [
+            (_hand_spread_m(one), _hand_spread_m(replace(one, rotations=_from_xyzw(one.rotations))))
+            for one in sequences
+        ]
+    )
+    spreads = spreads[np.isfinite(spreads).all(axis=1)]
+    if not len(spreads) or np.median(spreads[:, 0]) <= DEFAULT_TRAINING.steady_hold_m:
+        return
+    ratios = spreads[:, 0] / spreads[:, 1]
+    if ratios.min() > 1.0 and np.median(ratios) >= DEFAULT_TRAINING.clear_hold_ratio:
         raise DatasetError(
             f"{entries[0].file} and others: hands stay {np.median(ratios):.1f} times as well where "
             f"they hold {entries[0].object!r} if quaternions are (x, y, z, w): write (w, x, y, z)"
