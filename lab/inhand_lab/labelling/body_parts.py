@@ -37,7 +37,6 @@ def filled(part: Bases, times_ns: Indices) -> Bases:
         if last == first + 1:
             continue
         inner = np.arange(first + 1, last)
-        span = times_ns[last] - times_ns[first]
         done, span = times_ns[inner] - times_ns[first], times_ns[last] - times_ns[first]
         shares = done / span if span > 0 else np.full(len(inner), 0.5)
         ends = [(part.origins[frame], part.rotations[frame]) for frame in (first, last)]
