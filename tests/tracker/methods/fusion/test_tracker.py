@@ -77,7 +77,8 @@ shown = [draw(*pose) for pose in zip(places, turns)]
 tracker = FusionTracker(wave_model())
 before = compiled()
 for number, image in enumerate(shown):
-    assert tracker.step(joints[number], number * FRAME_NS, image).state == "tracked"
+    estimate = tracker.step(joints[number], number * FRAME_NS, image)
+    assert estimate.state == "tracked" and len(tracker.outline(estimate, image.camera))
 print(compiled() - before)
 """
 

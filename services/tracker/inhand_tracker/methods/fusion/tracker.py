@@ -70,7 +70,9 @@ class FusionTracker(FollowingTracker):
         """Compile what a first frame would wait for, by a frame of somebody usual 2 m ahead."""
         pose = self._mapping.body_poses.mean(axis=0).reshape(20, 3)
         joints = USUAL_HEIGHT_M * pose + np.array([0.0, 0.0, 2.0])
-        self.estimate_single_frame(joints, None if self._sight is None else blank_image())
+        image = blank_image()
+        estimate = self.estimate_single_frame(joints, None if self._sight is None else image)
+        self.outline(estimate, image.camera)
 
     def _start(self, *, alone: bool) -> Follower:
         search = None
