@@ -14,6 +14,9 @@ from msgspec import Meta, Struct
 # Ends by a lookahead, since in some languages "$" also matches before a last newline.
 NAME_PATTERN = r"^[a-z0-9_]+(?![\s\S])"
 
+MOST_PEOPLE = 64
+"""Number of people that a message holds at the most."""
+
 Name = Annotated[str, Meta(pattern=NAME_PATTERN, max_length=64)]
 Count = Annotated[int, Meta(ge=0, le=2**63 - 1)]
 Nanoseconds = Annotated[int, Meta(ge=0, le=2**63 - 1)]
@@ -171,7 +174,7 @@ class Person(Struct, frozen=True, kw_only=True):
 class Skeletons(Message, frozen=True, kw_only=True):
     """The people in one frame; ``sequence`` and ``time_ns`` are the source frame's."""
 
-    people: Annotated[tuple[Person, ...], Meta(max_length=64)] = ()
+    people: Annotated[tuple[Person, ...], Meta(max_length=MOST_PEOPLE)] = ()
 
 
 class Box(Struct, frozen=True):

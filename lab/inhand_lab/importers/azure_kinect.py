@@ -18,10 +18,12 @@ from inhand_lab.importers.body_checks import Mends, check_joint_count
 from inhand_lab.importers.body_times import times_since_start
 from inhand_lab.importers.foreign_bodies import Bodies, ForeignBody, our_bodies, write_bodies
 from inhand_lab.importers.joint_tables import (
+    NAVEL_SHARE,
     TRACKED,
     JointMean,
     JointTable,
     feet,
+    limb_names,
     limbs,
     middle,
     trunk,
@@ -33,24 +35,19 @@ from inhand_lab.importers.sources import find_files, read_shown
 M_PER_MM = 0.001
 NS_PER_US = 1000
 
-_ARM = ("CLAVICLE", "SHOULDER", "ELBOW", "WRIST", "HAND", "HANDTIP", "THUMB")
-_LEG = ("HIP", "KNEE", "ANKLE", "FOOT")
 _JOINTS = (
     *("PELVIS", "SPINE_NAVEL", "SPINE_CHEST", "NECK"),
-    *(f"{joint}_{side}" for side in ("LEFT", "RIGHT") for joint in _ARM),
-    *(f"{joint}_{side}" for side in ("LEFT", "RIGHT") for joint in _LEG),
+    *limb_names("{}_{}".format),
     *("HEAD", "NOSE", "EYE_LEFT", "EAR_LEFT", "EYE_RIGHT", "EAR_RIGHT"),
 )
 _OTHER_NAMES = {"SPINE_NAVAL": "SPINE_NAVEL"}
 """Names of joints in the vendor's documentation that differ from those in its files."""
-_NAVEL_SHARE = 1.0 / 3.0
-"""Place of SPINE_NAVEL on the way from PELVIS to NECK, as in ZED's skeleton, which is like it."""
 
 AZURE_KINECT = JointTable(
     "Azure Kinect",
     _JOINTS,
     {
-        **trunk("PELVIS", "SPINE_NAVEL", "NECK", _NAVEL_SHARE),
+        **trunk("PELVIS", "SPINE_NAVEL", "NECK", NAVEL_SHARE),
         Joint.HEAD: (*middle("EAR_LEFT", "EAR_RIGHT"), JointMean({"HEAD": 1.0}, inferred=True)),
         **limbs("{}_{}".format),
     },

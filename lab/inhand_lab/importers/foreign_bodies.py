@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from inhand_runtime.wording import counted
-from inhand_schemas.messages import Message, Person, Skeletons
+from inhand_schemas.messages import MOST_PEOPLE, Message, Person, Skeletons
 from inhand_tracker.geometry.arrays import Array, Indices
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
@@ -25,9 +25,6 @@ from inhand_lab.importers.messages import imagined_camera
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.sources import NobodyError
 from inhand_lab.world.messages import JOINT_STATES
-
-MOST_PEOPLE = 64
-"""Number of people in a frame that a message holds at the most."""
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,9 @@ from inhand_lab.importers.parameters import DEFAULT_IMPORT
 
 States = NDArray[np.uint8]
 MISSING, INFERRED, TRACKED = 0, 1, 2
+NAVEL_SHARE = 1.0 / 3.0
+"""Place of a navel on the way from the pelvis to the neck, in the skeleton that ZED's SDK fits;
+Azure Kinect's is like it."""
 
 
 @dataclass(frozen=True)
@@ -115,6 +118,15 @@ def limbs(name_of: Callable[[str, str], str]) -> dict[Joint, Candidates]:
         for side in ("LEFT", "RIGHT")
         for joint in joints
     }
+
+
+def limb_names(name_of: Callable[[str, str], str]) -> tuple[str, ...]:
+    """Names of the limbs' joints, in the order of those conventions that begin an arm at the
+    clavicle; ``name_of`` as in ``limbs``."""
+    arm = ("CLAVICLE", "SHOULDER", "ELBOW", "WRIST", "HAND", "HANDTIP", "THUMB")
+    leg = ("HIP", "KNEE", "ANKLE", "FOOT")
+    sides = ("LEFT", "RIGHT")
+    return tuple(name_of(joint, side) for limb in (arm, leg) for side in sides for joint in limb)
 
 
 def feet(name_of: Callable[[str, str], str]) -> tuple[JointMean, JointMean]:

@@ -20,10 +20,12 @@ from inhand_lab.importers.coordinates import Coordinates
 from inhand_lab.importers.foreign_bodies import Bodies, ForeignBody, our_bodies, write_bodies
 from inhand_lab.importers.joint_tables import (
     INFERRED,
+    NAVEL_SHARE,
     TRACKED,
     JointMean,
     JointTable,
     feet,
+    limb_names,
     limbs,
     middle,
     trunk,
@@ -35,22 +37,17 @@ from inhand_lab.importers.sources import find_files, read_shown
 SAMPLE_COORDINATES = Coordinates("RIGHT_HANDED_Y_UP")
 """What the SDK's sample in Python records; that in C++ leaves the unit at millimetres."""
 
-_ARM = ("CLAVICLE", "SHOULDER", "ELBOW", "WRIST", "HAND", "HANDTIP", "THUMB")
-_LEG = ("HIP", "KNEE", "ANKLE", "FOOT")
 _JOINTS = (
     *("PELVIS", "NAVAL_SPINE", "CHEST_SPINE", "NECK"),
-    *(f"{side}_{joint}" for side in ("LEFT", "RIGHT") for joint in _ARM),
-    *(f"{side}_{joint}" for side in ("LEFT", "RIGHT") for joint in _LEG),
+    *limb_names("{1}_{0}".format),
     *("HEAD", "NOSE", "LEFT_EYE", "LEFT_EAR", "RIGHT_EYE", "RIGHT_EAR", "LEFT_HEEL", "RIGHT_HEEL"),
 )
-_NAVEL_SHARE = 1.0 / 3.0
-"""Place of NAVAL_SPINE on the way from PELVIS to NECK, in the skeleton that the SDK fits."""
 
 ZED = JointTable(
     "ZED BODY_34",
     _JOINTS,
     {
-        **trunk("PELVIS", "NAVAL_SPINE", "NECK", _NAVEL_SHARE),
+        **trunk("PELVIS", "NAVAL_SPINE", "NECK", NAVEL_SHARE),
         Joint.HEAD: (*middle("LEFT_EAR", "RIGHT_EAR"), JointMean({"HEAD": 1.0}, inferred=True)),
         **limbs("{1}_{0}".format),
     },

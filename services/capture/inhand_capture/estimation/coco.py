@@ -15,6 +15,7 @@ from inhand_runtime.extras import missing_extra
 from inhand_schemas.joints import Joint
 from numpy.typing import NDArray
 
+from inhand_capture.estimation.boxes import overlap
 from inhand_capture.estimation.found_person import Floats, FoundPerson
 from inhand_capture.estimation.parameters import DEFAULT_COCO, CocoParameters
 from inhand_capture.estimation.regions import Region, crop, whole_picture
@@ -70,7 +71,7 @@ class CocoNetwork:
         """Find the people in a picture (H, W, 3) RGB, the surest first."""
         height, width = colour.shape[:2]
         view = whole_picture(width, height)
-        cut = crop(colour, view, self._side, padded=True)
+        cut = crop(colour, view, self._side, beside="grey")
         taken = np.ascontiguousarray(cut.transpose(2, 0, 1)[None], np.float32) / np.float32(255.0)
         (candidates,) = self._session.run(None, {self._name: taken})
         return self._people(candidates[0].T.astype(float), view)
@@ -84,7 +85,7 @@ class CocoNetwork:
         for one in good:
             if len(chosen) == parameters.most_people:
                 break
-            if all(_overlap(one, other) < parameters.same_person for other in chosen):
+            if all(overlap(one[:4], other[:4]) < parameters.same_person for other in chosen):
                 chosen.append(one)
         return [self._person(one[5:].reshape(POINTS, 3), view) for one in chosen]
 
@@ -109,15 +110,6 @@ def _input_of(session: Any, path: Path) -> tuple[str, int]:
         f"{path} is another network: it should take pictures (1, 3, S, S), and give "
         f"(1, {ROWS}, N), as YOLO's pose networks of COCO's {POINTS} key points do"
     )
-
-
-def _overlap(one: Floats, other: Floats) -> float:
-    """Return the shared over the joint area of two candidates' boxes."""
-    low = np.maximum(one[:2] - 0.5 * one[2:4], other[:2] - 0.5 * other[2:4])
-    high = np.minimum(one[:2] + 0.5 * one[2:4], other[:2] + 0.5 * other[2:4])
-    shared = np.clip(high - low, 0.0, None).prod()
-    joint = one[2:4].prod() + other[2:4].prod() - shared
-    return float(shared / max(joint, 1e-12))
 
 
 def _line(error: Exception) -> str:

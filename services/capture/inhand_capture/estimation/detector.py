@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from inhand_capture.estimation.boxes import overlap, scores_of
 from inhand_capture.estimation.found_person import Floats
 from inhand_capture.estimation.litert import LiteRtNetwork
 from inhand_capture.estimation.parameters import DEFAULT_BLAZEPOSE, BlazePoseParameters
@@ -14,7 +15,6 @@ SIDE = 224
 GRIDS = ((28, 2), (14, 2), (7, 6))
 """Cells along each side of a grid of anchors, and how many anchors share a cell."""
 ANCHORS = sum(cells * cells * shared for cells, shared in GRIDS)
-MOST_LOGIT = 100.0
 
 
 def anchor_centres() -> Floats:
@@ -42,17 +42,16 @@ class PersonDetector:
 
         Overlapping boxes are averaged by their scores, as the network's authors do it.
         """
-        cut = crop(picture, view, SIDE, padded=True)
+        cut = crop(picture, view, SIDE, beside="grey")
         outputs = self._network(cut * np.float32(1.0 / 127.5) - np.float32(1.0))
-        logits = np.clip(outputs["Identity_1"][:, 0].astype(float), -MOST_LOGIT, MOST_LOGIT)
-        scores = 1.0 / (1.0 + np.exp(-logits))
+        scores = scores_of(outputs["Identity_1"][:, 0])
         good = np.flatnonzero(scores >= self._parameters.detection_score)
         if not len(good):
             return None
         boxes = outputs["Identity"][good].astype(float).reshape(-1, 6, 2)
         points = boxes[:, 2:4] / SIDE + self._anchors[good, None]
-        centres, sizes = boxes[:, 0] / SIDE + self._anchors[good], boxes[:, 1] / SIDE
-        near = _overlaps(centres, sizes, int(np.argmax(scores[good]))) > LEAST_OVERLAP
+        places = np.column_stack([boxes[:, 0] / SIDE + self._anchors[good], boxes[:, 1] / SIDE])
+        near = overlap(places, places[np.argmax(scores[good])]) > LEAST_OVERLAP
         weights = scores[good][near]
         hips, rim = (weights[:, None, None] * points[near]).sum(axis=0) / weights.sum()
         ends = view.to_picture(np.stack([hips, rim]) * SIDE, SIDE)
@@ -61,12 +60,3 @@ class PersonDetector:
 
 LEAST_OVERLAP = 0.3
 """Shared area over joint area from which two boxes are of one person: the authors' number."""
-
-
-def _overlaps(centres: Floats, sizes: Floats, best: int) -> Floats:
-    """Return the shared over the joint area of the best box with each (N,)."""
-    low, high = centres - 0.5 * sizes, centres + 0.5 * sizes
-    shared = np.clip(np.minimum(high, high[best]) - np.maximum(low, low[best]), 0.0, None)
-    areas, both = sizes.prod(axis=1), shared.prod(axis=1)
-    shares: Floats = both / np.maximum(areas + areas[best] - both, 1e-12)
-    return shares

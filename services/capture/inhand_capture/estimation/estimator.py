@@ -7,7 +7,7 @@ import numpy as np
 from inhand_runtime.errors import InhandError
 from inhand_runtime.pinhole import Pinhole
 from inhand_schemas.joints import PARENTS
-from inhand_schemas.messages import CameraInfo, JointState, Person
+from inhand_schemas.messages import MOST_PEOPLE, CameraInfo, JointState, Person
 from numpy.typing import NDArray
 
 from inhand_capture.estimation.body_lengths import BodyLengths
@@ -21,8 +21,6 @@ from inhand_capture.estimation.people import FollowedPerson, PeopleFollowed
 JOINT_STATES: tuple[JointState, ...] = ("missing", "inferred", "tracked")
 SHORTEST_S = 1e-3
 """Seconds that two pictures lie apart at the least."""
-MOST_PEOPLE = 64
-"""Number of people that a message holds at the most."""
 
 
 class EstimationError(InhandError):

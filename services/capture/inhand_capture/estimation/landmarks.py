@@ -74,7 +74,7 @@ class LandmarkNetwork:
 
         The network may be shown the region's mirror image; what it finds is mirrored back.
         """
-        cut = crop(picture, region, SIDE, padded=False)
+        cut = crop(picture, region, SIDE, beside="edge")
         if mirrored:
             cut = np.ascontiguousarray(cut[:, ::-1])
         outputs = self._network(cut * np.float32(1.0 / 255.0))

@@ -1,7 +1,9 @@
 """Square regions of a picture, turned with the person in them, and pixels of their crops."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import cv2
 import numpy as np
@@ -57,17 +59,25 @@ def whole_picture(width: int, height: int) -> Region:
     return Region(0.5 * width, 0.5 * height, float(max(width, height)))
 
 
+Beside = Literal["grey", "edge", "mirror"]
+_BORDERS: Mapping[Beside, int] = {
+    "grey": cv2.BORDER_CONSTANT,
+    "edge": cv2.BORDER_REPLICATE,
+    "mirror": cv2.BORDER_REFLECT_101,
+}
+
+
 def crop(
-    picture: NDArray[np.uint8], region: Region, size: int, *, padded: bool
+    picture: NDArray[np.uint8], region: Region, size: int, *, beside: Beside
 ) -> NDArray[np.uint8]:
-    """Cut a region (size, size, 3) out of a picture; beside it is grey, or its last pixels."""
-    border = cv2.BORDER_CONSTANT if padded else cv2.BORDER_REPLICATE
+    """Cut a region (size, size, 3) out of a picture; ``beside`` it is grey, its last pixels, or its
+    mirror image."""
     cut = cv2.warpAffine(
         picture,
         region.matrix(size),
         (size, size),
         flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
-        borderMode=border,
+        borderMode=_BORDERS[beside],
         borderValue=PADDING_GREY,
     )
     return np.asarray(cut, np.uint8)

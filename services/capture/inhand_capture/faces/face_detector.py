@@ -4,13 +4,13 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from inhand_capture.estimation.boxes import overlap, scores_of
 from inhand_capture.estimation.found_person import Floats
 from inhand_capture.estimation.litert import LiteRtNetwork
-from inhand_capture.estimation.regions import Region
+from inhand_capture.estimation.regions import Region, crop
 from inhand_capture.faces.discs import Disc
 from inhand_capture.faces.parameters import DEFAULT_FACES, FaceParameters
 
@@ -19,7 +19,6 @@ CELLS = 48
 """Cells along each side of the grid of anchors."""
 NUMBERS = 16
 """Numbers of a candidate: the box's middle and size, and six points."""
-MOST_LOGIT = 100.0
 
 
 class FaceDetector:
@@ -41,10 +40,9 @@ class FaceDetector:
 
         Beside the picture is its mirror image, which makes whole faces of those that an edge cuts.
         """
-        cut = _mirrored_crop(picture, view)
+        cut = crop(picture, view, SIDE, beside="mirror")
         outputs = self._network(cut * np.float32(1.0 / 127.5) - np.float32(1.0))
-        logits = np.clip(outputs["Identity_1"][:, 0].astype(float), -MOST_LOGIT, MOST_LOGIT)
-        scores = 1.0 / (1.0 + np.exp(-logits))
+        scores = scores_of(outputs["Identity_1"][:, 0])
         good = np.flatnonzero(scores >= self._parameters.face_score)
         boxes = outputs["Identity"][good, :4].astype(float)
         boxes[:, :2] += self._anchors[good] * SIDE
@@ -56,18 +54,6 @@ class FaceDetector:
             Disc(_mirrored_into(x, width), _mirrored_into(y, height), radius)
             for (x, y), radius in zip(places.tolist(), radii.tolist(), strict=True)
         ]
-
-
-def _mirrored_crop(picture: NDArray[np.uint8], view: Region) -> NDArray[np.uint8]:
-    """Cut a region (SIDE, SIDE, 3) out of a picture that goes on as its mirror image."""
-    cut = cv2.warpAffine(
-        picture,
-        view.matrix(SIDE),
-        (SIDE, SIDE),
-        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
-        borderMode=cv2.BORDER_REFLECT_101,
-    )
-    return np.asarray(cut, np.uint8)
 
 
 def _mirrored_into(place: float, size: int) -> float:
@@ -82,15 +68,6 @@ def _each_once(boxes: Floats, scores: Floats, nearness: float) -> Sequence[int]:
     """Return which of boxes (N, 4), middle and size, are the best of their face."""
     chosen: list[int] = []
     for one in np.argsort(-scores, kind="stable").tolist():
-        if all(_shared(boxes[one], boxes[other]) <= nearness for other in chosen):
+        if all(overlap(boxes[one], boxes[other]) <= nearness for other in chosen):
             chosen.append(one)
     return chosen
-
-
-def _shared(one: Floats, other: Floats) -> float:
-    """Return the shared over the joint area of two boxes."""
-    low = np.maximum(one[:2] - 0.5 * one[2:], other[:2] - 0.5 * other[2:])
-    high = np.minimum(one[:2] + 0.5 * one[2:], other[:2] + 0.5 * other[2:])
-    shared = float(np.clip(high - low, 0.0, None).prod())
-    joint = float(one[2:].prod() + other[2:].prod()) - shared
-    return shared / max(joint, 1e-12)
