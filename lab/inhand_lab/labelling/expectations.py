@@ -11,7 +11,12 @@ from inhand_lab.labelling.parameters import LabellingParameters
 
 def given_by_person(pose: Pose, parameters: LabellingParameters) -> PoseGaussian:
     """Return what a keyframe says: its pose, with a person's inaccuracy."""
-    return PoseGaussian(*pose, _covariance(parameters.keyframe_m, parameters.keyframe_rad))
+    return expected_at(pose, parameters.keyframe_m, parameters.keyframe_rad)
+
+
+def expected_at(pose: Pose, metres: float, radians: float) -> PoseGaussian:
+    """Expect the object at a pose, within these root mean squares."""
+    return PoseGaussian(*pose, _covariance(metres, radians))
 
 
 def along_way(

@@ -42,6 +42,34 @@ class LabellingParameters:
     smoothing_steps: int = 5
     """Number of Gauss-Newton steps in which a stretch is smoothed."""
 
+    # What is clicked on (measured_depth, pose_start).
+    click_pixels: int = 3
+    """Pixels around the one that was clicked on whose depths count."""
+    click_depth_m: float = 0.015
+    """Metres from one depth to the next around a pixel within which both are of one surface."""
+    click_share: float = 0.15
+    """Least share of the depths around a pixel that makes a surface, and no stray ones."""
+    click_off_m: float = 0.03
+    """Metres that a point may be off where it was clicked on: sensors and hands err."""
+    click_off_share: float = 0.15
+    """Share of the points' distance from their middle that it may be off beside that."""
+    exchanged_m: float = 0.01
+    """Metres that a point has to be off before another order of the points is thought of."""
+    exchanged_share: float = 0.4
+    """Share of that which is left in another order where it was the one that was meant."""
+    least_apart_m: float = 0.005
+    """Metres from one point to another below which both are the same."""
+    least_aside_share: float = 0.1
+    """Share of their extent that points have to lie aside of one line."""
+    placing_steps: int = 4
+    """Number of steps in which the surface of an object is brought to the depth of a pixel."""
+
+    # What one pose that was given is worth (pose_refinement).
+    given_m: float = 0.03
+    """Root mean square in metres of a pose that a person set by eye, or by clicks."""
+    given_rad: float = float(np.deg2rad(12.0))
+    """Root mean square in radians of the same."""
+
     # How an image is looked at (looking, assistance).
     drawn: int = 300
     """Number of poses that are tried about the expected ones."""
