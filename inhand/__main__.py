@@ -19,6 +19,7 @@ DAEMONS = {
     "capture": "publish frames and skeletons of one camera",
     "tracker": "follow the objects in people's hands",
     "recorder": "write everything that a rig publishes into recordings",
+    "studio": "show a rig in the browser, teach it objects, and look at recordings",
 }
 """Verbs whose module has ``main(arguments) -> int``: the service parses for itself."""
 

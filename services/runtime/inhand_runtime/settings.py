@@ -20,7 +20,7 @@ from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings_environment import texts_read, with_environment
 from inhand_runtime.settings_errors import ENCODING, explain, place, suggestion
 
-SERVICES = ("capture", "tracker", "recorder")
+SERVICES = ("capture", "tracker", "recorder", "studio")
 
 MEETING = "tcp/127.0.0.1:7447"
 
@@ -84,6 +84,7 @@ class RigFile(Section):
     capture: Tables = {}
     tracker: Tables = {}
     recorder: Tables = {}
+    studio: Tables = {}
 
 
 S = TypeVar("S", bound=Section)

@@ -1,0 +1,45 @@
+"""A real Chromium that looks at pages."""
+
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+REQUIRED = "INHAND_CHROMIUM_REQUIRED"
+"""Set where a machine without Chromium is a fault, as in CI."""
+
+# Software rendering, for a machine without a graphics card or a sandbox for root.
+ARGUMENTS = (
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+)
+
+
+@contextmanager
+def chromium() -> Iterator[Browser]:
+    """Start Chromium, and end it with the block; the test is skipped where there is none."""
+    path = shutil.which("chromium") or shutil.which("chromium-browser")
+    if path is None:
+        assert REQUIRED not in os.environ, "there is no Chromium: apt-get install chromium"
+        pytest.skip("there is no Chromium, which looks at the pages: apt-get install chromium")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+@contextmanager
+def tab(browser: Browser, url: str, **options: Any) -> Iterator[Page]:
+    """Open a page in a context of its own, and close it with the block."""
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, **options)
+    page = context.new_page()
+    page.goto(url)
+    yield page
+    context.close()
