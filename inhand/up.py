@@ -17,7 +17,7 @@ from inhand.looking import open_look
 from inhand.starts import require_startable
 from inhand.supervisor import HANGS_AFTER_S, Child, Supervisor
 
-STOP_ORDER = ("capture", "tracker", "recorder", "studio")
+STOP_ORDER = ("studio", "capture", "tracker", "recorder")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from inhand_runtime.entry import daemon_main
 from inhand_runtime.errors import InhandError, SettingsError
-from inhand_runtime.settings import Section, Settings
+from inhand_runtime.settings import FilePath, Section, Settings
 
 
 class FastSettings(Section):
@@ -27,6 +27,26 @@ def test_a_daemon_runs_with_its_own_table(tmp_path: Path) -> None:
     )
     assert code == 0
     assert [(each.instance, each.service.speed) for each in seen] == [("second", 7)]
+
+
+def test_a_folder_of_the_command_line_goes_over_the_file_and_follows_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class PlacedSettings(Section):
+        place: FilePath = Path("usual")
+        speed: int = 1
+
+    monkeypatch.chdir(tmp_path)
+    config = tmp_path / "rigs" / "rig.toml"
+    config.parent.mkdir()
+    config.write_text('[tracker.mug]\nplace = "of the file"\nspeed = 7\n')
+    seen: list[Settings[PlacedSettings]] = []
+    arguments = ["--config", str(config), "--place", "chosen"]
+    code = daemon_main(
+        "tracker", PlacedSettings, seen.append, arguments, folders={"place": "where it is"}
+    )
+    assert code == 0
+    assert [(one.service.place, one.service.speed) for one in seen] == [(tmp_path / "chosen", 7)]
 
 
 def test_check_config_starts_nothing(capsys: pytest.CaptureFixture[str]) -> None:

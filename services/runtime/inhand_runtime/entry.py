@@ -22,21 +22,29 @@ def daemon_main(
     *,
     check: Callable[[Settings[S]], object] | None = None,
     instead: Mapping[str, tuple[str, Callable[[], int]]] | None = None,
+    folders: Mapping[str, str] | None = None,
 ) -> int:
     """Run one daemon until it ends; returns its exit code, after one line about what failed.
 
     ``arguments`` are the process's own unless given. ``check`` is what ``run`` does first as well:
     it raises SettingsError for all that can be known before a start. ``instead`` are options that
     do something else and end: by their name what the help says, and what returns the exit code.
+    ``folders`` are settings that the command line may have in place of the file's, with their help.
     Wrong arguments end the process with 2.
     """
-    instead = instead or {}
-    chosen = _parser(service, instead).parse_args(arguments)
+    instead, folders = instead or {}, folders or {}
+    parser = _parser(service, {name: text for name, (text, _) in instead.items()}, folders)
+    chosen = parser.parse_args(arguments)
     try:
         for name, (_, act) in instead.items():
             if getattr(chosen, name):
                 return act()
-        settings = load_settings(chosen.config, service, model, chosen.name)
+        given = {
+            name: str(folder.absolute())
+            for name in folders
+            if (folder := getattr(chosen, name)) is not None
+        }
+        settings = load_settings(chosen.config, service, model, chosen.name, given)
         if chosen.check_config:
             if check is not None:
                 check(settings)
@@ -55,7 +63,7 @@ def daemon_main(
 
 
 def _parser(
-    service: str, instead: Mapping[str, tuple[str, Callable[[], int]]]
+    service: str, instead: Mapping[str, str], folders: Mapping[str, str]
 ) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=f"inhand {service}", description=f"Run one {service} daemon until SIGTERM or Ctrl-C."
@@ -65,6 +73,8 @@ def _parser(
     parser.add_argument(
         "--check-config", action="store_true", help="check the settings and start nothing"
     )
-    for name, (text, _) in instead.items():
+    for name, text in instead.items():
         parser.add_argument(f"--{name}", action="store_true", help=text)
+    for name, text in folders.items():
+        parser.add_argument(f"--{name}", type=Path, metavar="FOLDER", help=text)
     return parser

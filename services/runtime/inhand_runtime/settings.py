@@ -147,11 +147,16 @@ def load_rig_file(path: Path | None) -> RigFile:
 
 
 def load_settings(
-    path: Path | None, service: str, model: type[S], instance: str | None = None
+    path: Path | None,
+    service: str,
+    model: type[S],
+    instance: str | None = None,
+    chosen: Mapping[str, Any] | None = None,
 ) -> Settings[S]:
     """The settings of one instance.
 
-    ``instance`` may be left out where the file names one at the most. Raises SettingsError.
+    ``instance`` may be left out where the file names one at the most. ``chosen`` are settings of
+    its table that the command line has in place of the file's. Raises SettingsError.
     """
     rig_file = load_rig_file(path)
     tables: Tables = getattr(rig_file, service)
@@ -167,6 +172,9 @@ def load_settings(
         raise SettingsError(
             f"{where} has no [{service}.{instance}]" + suggestion(instance, sorted(tables))
         )
+    if chosen:
+        table = {**tables.get(instance, {}), **chosen}
+        rig_file = rig_file.model_copy(update={service: {**tables, instance: table}})
     return instance_settings(rig_file, path, service, model, instance)
 
 

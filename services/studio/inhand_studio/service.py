@@ -15,6 +15,7 @@ from inhand_studio.visit import Visit
 log = logging.getLogger(__name__)
 
 IDLE_S = 0.1
+FOLDERS = {"dataset": "what the pages show and write (default: the setting)"}
 
 
 def run(settings: Settings[StudioSettings]) -> None:
