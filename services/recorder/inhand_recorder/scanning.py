@@ -13,10 +13,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO, Literal, TypeAlias
+from typing import Literal, TypeAlias
 
 from inhand_runtime.recording import RecordingError
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD, parse_digests
+from inhand_runtime.recording.chunk_walk import size_without_zeros
 from mcap.opcode import Opcode
 from mcap.records import (
     Channel,
@@ -70,7 +71,7 @@ def opened(path: Path) -> Iterator[Bytes]:
     """
     try:
         with path.open("rb") as file:
-            size = _size_without_zeros(file)
+            size = size_without_zeros(file.fileno(), os.fstat(file.fileno()).st_size)
             if size == 0:
                 raise RecordingError(f"{path} is empty: nothing was recorded into it; delete it")
             with mmap.mmap(file.fileno(), size, access=mmap.ACCESS_READ) as data:
@@ -82,18 +83,6 @@ def opened(path: Path) -> Iterator[Bytes]:
         raise RecordingError(
             f"cannot read {path}: {error.strerror}: give a file that you may read"
         ) from error
-
-
-def _size_without_zeros(file: BinaryIO) -> int:
-    end = file.seek(0, os.SEEK_END)
-    while end > 0:
-        start = max(0, end - 2**20)
-        file.seek(start)
-        block = file.read(end - start).rstrip(b"\0")
-        if block:
-            return start + len(block)
-        end = start
-    return 0
 
 
 def _require_recording(path: Path, data: Bytes) -> None:

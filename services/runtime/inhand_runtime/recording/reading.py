@@ -5,7 +5,7 @@ import os
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO
+from typing import IO, TypeVar
 
 from inhand_schemas.errors import KeyFormatError, UnknownVersionError
 from inhand_schemas.keys import ParsedKey
@@ -26,6 +26,8 @@ from inhand_runtime.recording.layout import (
     RecordingError,
 )
 
+Item = TypeVar("Item")
+
 
 def read_recording(
     path: Path, *, streams: Collection[str] | None = None
@@ -39,7 +41,7 @@ def read_recording(
     file that is missing, foreign, cut off or damaged, and UnknownVersionError.
     """
     with _open(path) as reader:
-        chosen = _choose(_summary(path, reader).channels.values(), streams)
+        chosen = choose_channels(_summary(path, reader).channels.values(), streams)
         for key, message in _records(path, reader, chosen):
             topic, parsed = chosen[key]
             times = message.log_time, message.publish_time
@@ -50,7 +52,7 @@ def read_metadata(path: Path) -> dict[str, dict[str, str]]:
     """The named records about a whole recording; raises RecordingError."""
     with _open(path) as reader:
         _summary(path, reader)
-        with _explaining_damage(path):
+        with explaining_damage(path):
             return {
                 record.name: record.metadata
                 for record in reader.iter_metadata()
@@ -58,9 +60,11 @@ def read_metadata(path: Path) -> dict[str, dict[str, str]]:
             }
 
 
-def _choose(
-    channels: Iterable[Channel], streams: Collection[str] | None
+def choose_channels(
+    channels: Iterable[Channel], streams: Collection[str] | None = None
 ) -> dict[str, tuple[AnyTopic, ParsedKey]]:
+    """Choose the channels that hold messages of Inhand's streams, by key; raises
+    UnknownVersionError."""
     chosen = {}
     for channel in channels:
         if channel.message_encoding != MESSAGE_ENCODING:
@@ -79,35 +83,33 @@ def _choose(
 def _records(
     path: Path, reader: SeekingReader, keys: Collection[str]
 ) -> Iterator[tuple[str, MessageRecord]]:
-    with _explaining_damage(path):
+    with explaining_damage(path):
         ours = reader.get_header().profile == PROFILE
     records = (
-        (channel.topic, message)
+        (message.log_time, (channel.topic, message))
         for _, channel, message in reader.iter_messages(topics=keys, log_time_order=not ours)
         if channel.message_encoding == MESSAGE_ENCODING
     )
-    in_order = _in_order_of_reception(records) if ours else records
+    in_order = in_order_of_reception(records) if ours else (record for _, record in records)
     while True:
-        with _explaining_damage(path):
+        with explaining_damage(path):
             record = next(in_order, None)
         if record is None:
             return
         yield record
 
 
-def _in_order_of_reception(
-    records: Iterator[tuple[str, MessageRecord]],
-) -> Iterator[tuple[str, MessageRecord]]:
-    """Sort what lies within a second; what lies farther back comes after a clock that was set."""
-    waiting: list[tuple[int, int, tuple[str, MessageRecord]]] = []
+def in_order_of_reception(timed: Iterable[tuple[int, Item]]) -> Iterator[Item]:
+    """Sort what lies within a second of its time of reception, in nanoseconds; what lies farther
+    back comes after a clock that was set."""
+    waiting: list[tuple[int, int, Item]] = []
     newest_ns = 0
-    for number, record in enumerate(records):
-        time_ns = record[1].log_time
+    for number, (time_ns, item) in enumerate(timed):
         if time_ns < newest_ns - REORDERED_NS:
             yield from (heapq.heappop(waiting)[2] for _ in range(len(waiting)))
             newest_ns = 0
         newest_ns = max(newest_ns, time_ns)
-        heapq.heappush(waiting, (time_ns, number, record))
+        heapq.heappush(waiting, (time_ns, number, item))
         while waiting[0][0] < newest_ns - REORDERED_NS:
             yield heapq.heappop(waiting)[2]
     yield from (heapq.heappop(waiting)[2] for _ in range(len(waiting)))
@@ -144,7 +146,7 @@ def _require_whole(path: Path, file: IO[bytes]) -> None:
 
 
 def _summary(path: Path, reader: SeekingReader) -> Summary:
-    with _explaining_damage(path):
+    with explaining_damage(path):
         summary = reader.get_summary()
     if summary is None:
         raise RecordingError(f"{path} has no index: `inhand recording recover {path}` writes one")
@@ -152,7 +154,8 @@ def _summary(path: Path, reader: SeekingReader) -> Summary:
 
 
 @contextmanager
-def _explaining_damage(path: Path) -> Iterator[None]:
+def explaining_damage(path: Path) -> Iterator[None]:
+    """Raise RecordingError for damaged bytes that are read in a block, and for a failing disk."""
     try:
         yield
     except OSError as error:
