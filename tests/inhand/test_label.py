@@ -78,7 +78,11 @@ WRONG: dict[str, tuple[Callable[[list[Message]], list[Message]], Any, str]] = {
     "outside": (list, file_of(key(0, pose()), key(31, pose())), "has frames 0 to 30, and there is"),
     "times": (list, file_of(msgspec.structs.replace(KEYS[0], time_ns=7)), "its keyframe says 7: t"),
     "object": (list, file_of(*KEYS, object="mug"), "give --object mug, or the keyframes of box"),
-    "camera": (list, file_of(*KEYS, camera="side"), "camera 'side', and the skeletons are of cam"),
+    "camera": (
+        list,
+        file_of(*KEYS, camera="side"),
+        "no skeletons of camera 'side': choose one of camera",
+    ),
     "poses": (list, file_of(key(0, None)), "has a pose: set two or more"),
 }
 

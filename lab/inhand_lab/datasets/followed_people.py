@@ -1,6 +1,6 @@
 """Chooses whom a recording is about: the person whom its labels name, or whom a tracker follows."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from inhand_schemas.joints import Joint
@@ -41,15 +41,13 @@ def follow_people(frames: Sequence[RecordedFrame]) -> Iterator[FollowedPerson]:
         before = current
 
 
-def _show_hips(frames: Sequence[RecordedFrame]) -> bool:
-    """Whether the hips of anybody are seen in any frame."""
-    return any(
-        person.states[Joint.HIP_CENTER] != "missing" for frame in frames for person in frame.people
-    )
+def show_hips(people: Iterable[Person]) -> bool:
+    """Whether anybody's hips are seen, as ``PersonFollower`` has to know."""
+    return any(person.states[Joint.HIP_CENTER] != "missing" for person in people)
 
 
 def _as_trackers_follow(frames: Sequence[RecordedFrame]) -> Iterator[FollowedPerson]:
-    follower = PersonFollower(needs_hips=_show_hips(frames))
+    follower = PersonFollower(needs_hips=show_hips(one for frame in frames for one in frame.people))
     for frame in frames:
         before = follower.person_id
         person = follower.choose(frame.people, frame.time_ns)

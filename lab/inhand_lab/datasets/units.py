@@ -36,10 +36,16 @@ def check_units(
     Raises DatasetError for those that are in another unit than metres.
     """
     owners = np.array([index for index, frame in enumerate(frames) for _ in frame.people], int)
+    joints = written_joints([person for frame in frames for person in frame.people])
+    check_bodies(path, owners, joints, _places(labels))
+
+
+def check_bodies(path: Path, owners: Indices, joints: Array, places: Array) -> None:
+    """Check N bodies of frames ``owners`` (N,) with joints (N, 20, 3), and the ``places`` (T, 3) of
+    T frames' labels, NaN without one; raises DatasetError as ``check_units`` does."""
     if not len(owners):
         return
-    joints = _written_joints([person for frame in frames for person in frame.people])
-    people = _BodiesWithLabels(owners, joints, _places(labels))
+    people = _BodiesWithLabels(owners, joints, places)
     with np.errstate(invalid="ignore", over="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of medians of nothing
         height, far = measured_stature(part_lengths(joints)), people.distance_m()
@@ -120,8 +126,10 @@ def _check_frames(path: Path, owners: Indices, trunks: Array) -> None:
         )
 
 
-def _written_joints(people: Sequence[Person]) -> Array:
-    """Return joints (T, 20, 3) as they are written, however far away; NaN where missing."""
+def written_joints(people: Sequence[Person]) -> Array:
+    """Return joints (N, 20, 3) as they are written, however far away; NaN where missing."""
+    if not people:
+        return np.zeros((0, 20, 3))
     joints = np.array([person.joints for person in people])
     missing = [[state == "missing" for state in person.states] for person in people]
     joints[np.array(missing) | (joints == 0.0).all(axis=(1, 2))[:, None]] = np.nan

@@ -12,6 +12,7 @@ from inhand_runtime.recording.copying import (
     write_beside,
     written_or_gone,
 )
+from inhand_runtime.recording.message_index import open_index
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import ObjectPose
 from inhand_schemas.topics import LABEL, SKELETONS
@@ -87,8 +88,8 @@ def write_labels(
 
 
 def _has_labels(path: Path, object_name: str) -> bool:
-    labels = read_recording(path, streams=(LABEL.stream,))
-    return any(recorded.name == object_name for recorded in labels)
+    with open_index(path) as index:
+        return index.counts(LABEL.stream).get(object_name, 0) > 0
 
 
 def _key(of: RecordedMessage, object_name: str) -> str:

@@ -6,12 +6,17 @@ from pathlib import Path
 
 import numpy as np
 from inhand_schemas.messages import CameraInfo
+from inhand_tracker.body.skeleton import without_impossible
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.wire.conversion import joints_of
+from inhand_tracker.people.following import PersonFollower
 
-from inhand_lab.datasets.followed_people import follow_people
-from inhand_lab.datasets.recorded_frames import RecordedFrame, load_camera_info, load_frames
+from inhand_lab.datasets.followed_people import show_hips
+from inhand_lab.datasets.frame_index import FrameIndex, FrameStamp, open_frames
+from inhand_lab.datasets.units import check_bodies, written_joints
 from inhand_lab.labelling.keyframes import Keyframe, KeyframeFile, LabellingError
+
+_BLOCK = 1000
+"""Frames whose bodies are in memory at a time as messages."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +30,7 @@ class Scene:
     path: Path
     camera: str
     info: CameraInfo
-    frames: Sequence[RecordedFrame]
+    frames: Sequence[FrameStamp]
     times_ns: Indices
     joints: Array
     people: tuple[int | None, ...]
@@ -34,24 +39,52 @@ class Scene:
 def load_scene(path: Path, camera: str) -> Scene:
     """Read what is to be labelled of a recording; raises RecordingError, LabellingError or
     DatasetError for times and units that are none."""
-    frames = load_frames(path, None, camera)
-    if not frames:
-        raise LabellingError(
-            f"{path} holds no skeletons: `inhand recording skeletons` adds them from its pictures"
-        )
-    info = load_camera_info(path, camera)
-    if info is None:
-        raise LabellingError(
-            f"{path} lacks the info of camera {camera}: `inhand recording repair` adds it"
-        )
-    people = [followed.person for followed in follow_people(frames)]
-    joints = np.full((len(frames), 20, 3), np.nan)
-    for index, person in enumerate(people):
-        if person is not None:
-            joints[index] = joints_of(person)
-    times_ns = np.array([frame.time_ns for frame in frames], np.int64)
-    ids = tuple(None if person is None else person.id for person in people)
-    return Scene(path, camera, info, frames, times_ns, joints, ids)
+    with open_frames(path, camera) as frames:
+        if frames.note is not None:
+            raise LabellingError(frames.note)
+        info = frames.camera_info()
+        if info is None:
+            raise LabellingError(
+                f"{path} lacks the info of camera {camera}: `inhand recording repair` adds it"
+            )
+        stamps, joints, people = _follow(frames, range(len(frames)))
+    return Scene(path, camera, info, stamps, frames.times_ns, joints, people)
+
+
+def joints_between(frames: FrameIndex, first: int, last: int) -> Array:
+    """Read the joints (T, 20, 3) of whom a tracker would follow from frame ``first`` to ``last``.
+
+    Nothing before is read, so that of several people it may be another one than in the whole scene.
+    Raises RecordingError, and DatasetError for bodies that are not in metres.
+    """
+    return _follow(frames, range(first, last + 1))[1]
+
+
+def _follow(
+    frames: FrameIndex, chosen: range
+) -> tuple[list[FrameStamp], Array, tuple[int | None, ...]]:
+    """Read the bodies of successive frames: their stamps, and the joints and ids of whom a tracker
+    would follow. Raises DatasetError for bodies that are not in metres."""
+    count = len(chosen)
+    hips = show_hips(one for frame in chosen for one in frames.skeletons(frame).people)
+    follower, joints = PersonFollower(needs_hips=hips), np.full((count, 20, 3), np.nan)
+    stamps, ids, owners, written = [], [], [], []
+    for block in range(0, count, _BLOCK):
+        shown = [frames.skeletons(frame) for frame in chosen[block : block + _BLOCK]]
+        everybody = [person for message in shown for person in message.people]
+        bodies, first = written_joints(everybody), 0
+        for frame, message in enumerate(shown, block):
+            person = follower.choose(message.people, message.time_ns)
+            stamps.append(FrameStamp(message.sequence, message.time_ns))
+            ids.append(None if person is None else person.id)
+            if person is not None:
+                joints[frame] = bodies[first + message.people.index(person)]
+            owners += [frame] * len(message.people)
+            first += len(message.people)
+        written.append(bodies.astype(np.float32))
+    nowhere = np.full((count, 3), np.nan)
+    check_bodies(frames.path, np.array(owners, int), np.concatenate(written), nowhere)
+    return stamps, without_impossible(joints), tuple(ids)
 
 
 def check_keyframes(scene: Scene, contents: KeyframeFile, object_name: str) -> None:

@@ -57,7 +57,7 @@ class Stamps:
 class RecordingIndex:
     """The messages of an open recording by stream and name; several threads may read at a time.
 
-    ``note`` says what is to be known of a file that has no index; it is None where it has one.
+    ``note`` says that a file was cut off, and the mend; it is None of a whole one.
     """
 
     def __init__(self, path: Path, descriptor: int) -> None:
@@ -216,12 +216,11 @@ def _table(path: Path, descriptor: int, size: int) -> tuple[ChunkTable, str | No
     walked = WalkedTable(descriptor, size)
     if not walked.channels and not finished:
         raise RecordingError(f"{path} was cut off before any message: there is nothing to show")
-    lost = 0 if finished else size - walked.walked
-    left = f", and its last {lost} bytes hold no whole record" if lost else ""
-    return walked, (
-        f"{path} has no index and was walked through{left}: `inhand recording recover {path}` "
-        "makes a whole recording of it"
-    )
+    if finished:
+        return walked, None
+    lost = size - walked.walked
+    left = f"; its last {lost} bytes hold no whole record" if lost else ""
+    return walked, f"{path} was cut off: `inhand recording recover {path}` saves what is left{left}"
 
 
 def _keys(table: ChunkTable) -> list[_Key]:
