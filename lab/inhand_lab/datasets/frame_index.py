@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from inhand_runtime.recording.message_index import IndexedMessages, RecordingIndex, open_index
 from inhand_schemas.messages import CameraInfo, RgbdFrame, Skeletons
-from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS
+from inhand_schemas.topics import INFO, RGBD, SKELETONS
 from inhand_tracker.geometry.arrays import Indices
 
 from inhand_lab.datasets.dataset import DatasetError
@@ -73,9 +73,9 @@ class FrameIndex:
         """Return the number of the frame whose time is nearest; raises ValueError without any."""
         return int(np.argmin(np.abs(self.times_ns - time_ns)))
 
-    def labels(self, object_name: str) -> IndexedMessages:
-        """Return the recorded labels of an object."""
-        return self._index.messages(LABEL.stream, object_name)
+    def messages(self, stream: str, name: str) -> IndexedMessages:
+        """Return the messages of another stream: labels or poses of an object, say."""
+        return self._index.messages(stream, name)
 
     @cached_property
     def _pixel_numbers(self) -> Indices:

@@ -46,7 +46,7 @@ def test_frames_are_those_that_are_read_in_order(how: str, tmp_path: Path) -> No
         for number in reversed(range(FRAMES)):
             assert frames.skeletons(number).people == read[number].people
             assert frames.pixels(number) == pixels.get(number)
-        assert len(frames.labels("box")) == FRAMES
+        assert len(frames.messages("label", "box")) == FRAMES
         assert frames.nearest(int(frames.times_ns[4]) + 1000) == 4
 
 
