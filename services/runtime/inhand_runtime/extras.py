@@ -5,7 +5,7 @@ EXTRAS = {
     "pose": ("ai_edge_litert",),
     "oak": ("depthai",),
     "onnx": ("onnxruntime",),
-    "studio": ("viser",),
+    "studio": ("aiohttp", "viser"),
 }
 """Names of the modules that come with each extra of ours (pyproject.toml) and not without it."""
 

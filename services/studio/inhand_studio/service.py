@@ -6,6 +6,8 @@ import viser
 from inhand_runtime.daemon import running_daemon
 from inhand_runtime.settings import Settings
 
+from inhand_studio.access.listening import secluded_address
+from inhand_studio.access.terms import terms_of
 from inhand_studio.pages import PAGES
 from inhand_studio.server import serving
 from inhand_studio.settings import StudioSettings
@@ -18,17 +20,30 @@ IDLE_S = 0.1
 FOLDERS = {"dataset": "what the pages show and write (default: the setting)"}
 
 
+def check(settings: Settings[StudioSettings]) -> None:
+    """Check all that can be known before a start; raises SettingsError."""
+    terms_of(settings.service)
+
+
 def run(settings: Settings[StudioSettings]) -> None:
-    """Serve until SIGTERM or SIGINT; raises InhandError where there is no session or no port."""
+    """Serve until SIGTERM or SIGINT.
+
+    Raises SettingsError before anything starts, and InhandError where there is no session or port.
+    """
+    from inhand_studio.access.gate import gate  # asks for aiohttp, which no other start needs
+
     chosen = settings.service
+    check(settings)
     with running_daemon("studio", settings) as daemon:
         studio = Studio(chosen.dataset, daemon)
 
         def visit_of(client: viser.ClientHandle) -> Visit:
             return Visit(client, studio, PAGES, "Live")
 
-        with serving(chosen.host, chosen.port, visit_of) as port:
-            log.info("the studio is at http://%s:%d", chosen.host, port)
+        # The pages' own server asks nobody who he is: only the gate is told where it is.
+        inside = secluded_address()
+        with serving(inside, 0, visit_of) as port, gate(chosen, (inside, port)) as url:
+            log.info("the studio is at %s", url)
             daemon.health.state = "running"
             while not daemon.stop.is_set():
                 daemon.receive(IDLE_S)

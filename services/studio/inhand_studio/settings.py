@@ -2,13 +2,16 @@
 
 from pathlib import Path
 
-from inhand_runtime.settings import FilePath, Section
+from inhand_runtime.settings import FilePath
 from pydantic import Field
 
+from inhand_studio.access.settings import AccessSettings
 
-class StudioSettings(Section):
-    """``[studio.NAME]``: the pages of a rig, and the dataset that they show and write."""
+
+class StudioSettings(AccessSettings):
+    """``[studio.NAME]``: the ``dataset`` that pages show and write, and who may reach them.
+
+    What is said of who may reach them stands in ``AccessSettings``.
+    """
 
     dataset: FilePath = Field(default=Path("dataset"), validate_default=True)
-    host: str = "127.0.0.1"
-    port: int = Field(default=8730, ge=0, le=65535)

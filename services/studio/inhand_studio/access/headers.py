@@ -8,10 +8,11 @@ _COMMON = {
     "X-DNS-Prefetch-Control": "off",
 }
 
-# The page unpacks its own script with WebAssembly, and has workers and pictures from memory.
+# The page unpacks its own script with WebAssembly, makes functions of text, and has workers and
+# pictures from memory.
 _PAGE_POLICY = (
     "default-src 'none'",
-    "script-src 'self' 'unsafe-inline' 'wasm-unsafe-eval' blob:",
+    "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:",
     "worker-src 'self' blob:",
     "style-src 'self' 'unsafe-inline'",
     "img-src 'self' data: blob:",
@@ -20,7 +21,6 @@ _PAGE_POLICY = (
     "base-uri 'none'",
     "form-action 'self'",
     "frame-ancestors 'none'",
-    "webrtc 'block'",
 )
 _LOGIN_POLICY = (
     "default-src 'none'",
