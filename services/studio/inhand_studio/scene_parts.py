@@ -39,7 +39,9 @@ def add_skeleton(
     scene: viser.SceneApi, name: str, joints: Array, colour: Colour = BONE
 ) -> viser.LineSegmentsHandle:
     """Draw a person's joints (20, 3); ``bones(…)`` assigned to its handle's ``points`` moves it."""
-    return scene.add_line_segments(name, bones(joints), colour, thickness=3.0)
+    return scene.add_line_segments(
+        name, bones(joints), colour, thickness=3.0, thickness_units="screen"
+    )
 
 
 def add_points(

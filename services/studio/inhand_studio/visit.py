@@ -102,6 +102,15 @@ class Visit:
         """Show a line in the tab until it is put away."""
         self.client.add_notification(title, text, auto_close_seconds=None)
 
+    def clear(self) -> None:
+        """Take away all that the page drew into the scene, and its commands."""
+        for command in self._commands:
+            command.remove()
+        self._commands.clear()
+        self._on_look = _nothing
+        self.client.scene.reset()
+        self.client.scene.set_background_image(None)
+
     def _show(self, title: str) -> None:
         """Leave the page that is shown for another."""
         self._leave()
@@ -116,14 +125,9 @@ class Visit:
         self._page = None
         if self._closed:
             return
-        for command in self._commands:
-            command.remove()
-        self._commands.clear()
-        self._on_look = _nothing
+        self.clear()
         if self._folder is not None:
             self._folder.remove()
-        self.client.scene.reset()
-        self.client.scene.set_background_image(None)
 
 
 def _nothing(_event: Any) -> None:
