@@ -1,122 +1,24 @@
-"""Who of a rig lives, what each last said of itself, and what is wrong with that."""
+"""Who of a rig is missing, and what is wrong with those who live."""
 
-import threading
-import time
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable
 
-from inhand_runtime.daemon import HEALTH_PERIOD_S
-from inhand_schemas.errors import KeyFormatError
-from inhand_schemas.keys import parse_key
-from inhand_schemas.messages import Health
+from inhand_runtime.roll import Instance, Roll
 
 from inhand.looking import UNREACHED
-from inhand.stopped import Instance, Stopped, stopped_lines
-
-SILENT_AFTER_S = 3.5
-"""Seconds without a word after which an instance that lives is said to hang: it speaks each one."""
-MOST_PROBLEMS_OF_ONE = 16
+from inhand.stopped import Stopped, stopped_lines
 
 
-@dataclass(frozen=True)
-class Heard:
-    """An instance's last words, when they came (monotonic seconds), and how many came so far."""
+def problems(
+    roll: Roll, expected: Iterable[Instance] = (), stopped: Iterable[Stopped] = ()
+) -> list[str]:
+    """What is wrong, a line each: who is missing or hangs, and what each says is wrong.
 
-    health: Health
-    at: float
-    reports: int
-
-
-class Roll:
-    """Keeps who lives and what they last said; thread-safe."""
-
-    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
-        self._now = now
-        self._lock = threading.Lock()
-        self._living: dict[Instance, float] = {}
-        self._heard: dict[Instance, Heard] = {}
-        self._changed = now()
-
-    def change(self, service: str, instance: str, lives: bool) -> None:
-        """Take note of a liveliness token."""
-        with self._lock:
-            self._changed = self._now()
-            if lives:
-                self._living.setdefault((service, instance), self._changed)
-            else:
-                self._living.pop((service, instance), None)
-
-    def hear(self, health: Health) -> None:
-        """Take note of a health message."""
-        instance = (health.service, health.instance)
-        with self._lock:
-            before = self._heard.get(instance)
-            reports = 1 if before is None else before.reports + 1
-            self._heard[instance] = Heard(health, self._now(), reports)
-
-    def living(self) -> dict[Instance, Heard | None]:
-        """The live instances by name, with None for one that said nothing yet."""
-        with self._lock:
-            return {instance: self._heard.get(instance) for instance in sorted(self._living)}
-
-    def settled(self, expected: Iterable[Instance] = ()) -> bool:
-        """Whether all expected live, all who live spoke, and nobody came or went of late."""
-        living = self.living()
-        quiet = self._now() - self._changed > 1.5 * HEALTH_PERIOD_S
-        complete = bool(living) and living.keys() >= set(expected)
-        return quiet and complete and all(self._speaks(heard) for heard in living.values())
-
-    def problems(
-        self, expected: Iterable[Instance] = (), stopped: Iterable[Stopped] = ()
-    ) -> list[str]:
-        """What is wrong, a line each: who is missing or hangs, and what each says is wrong.
-
-        ``stopped`` are processes of this machine, which cannot show that they are there.
-        """
-        living = self.living()
-        missing = set(expected) - living.keys()
-        silent = [instance for instance, heard in living.items() if not self._speaks(heard)]
-        standing = stopped_lines(stopped, missing, silent)
-        lines = [
-            f"{service} {name} is missing: {UNREACHED}"
-            for service, name in sorted(missing - set(standing.values()))
-        ]
-        lines += standing
-        for instance, heard in living.items():
-            who = " ".join(instance)
-            if not self._speaks(heard):
-                lines.append(self._silence(who, heard))
-            if heard is not None:
-                lines += [f"{who}: {text}" for text in heard.health.troubles[:MOST_PROBLEMS_OF_ONE]]
-        return lines + _published_twice(living)
-
-    def _speaks(self, heard: Heard | None) -> bool:
-        return heard is not None and self._now() - heard.at < SILENT_AFTER_S
-
-    def _silence(self, who: str, heard: Heard | None) -> str:
-        if heard is None:
-            return f"{who} hangs, or is stopped: it is there, and says nothing"
-        return f"{who} hangs, or is stopped: it last spoke {self._now() - heard.at:.0f} s ago"
-
-
-def _published_twice(living: dict[Instance, Heard | None]) -> list[str]:
-    publishers: dict[str, list[str]] = {}
-    for instance, heard in living.items():
-        for key, topic in () if heard is None else heard.health.topics.items():
-            if topic.published and topic.rate_hz > 0.0:
-                publishers.setdefault(key, []).append(" ".join(instance))
-    return [
-        f"{short_key(key)} is published by {' and by '.join(names)}: readers get both; stop one, "
-        "or give it another name"
-        for key, names in publishers.items()
-        if len(names) > 1
+    ``stopped`` are processes of this machine, which cannot show that they are there.
+    """
+    missing = set(expected) - roll.living().keys()
+    standing = stopped_lines(stopped, missing, roll.silent())
+    lines = [
+        f"{service} {name} is missing: {UNREACHED}"
+        for service, name in sorted(missing - set(standing.values()))
     ]
-
-
-def short_key(key: str) -> str:
-    """A key as ``stream/name``, for one rig's tables; a foreign key as it is."""
-    try:
-        parsed = parse_key(key)
-    except KeyFormatError:
-        return key
-    return f"{parsed.stream}/{parsed.name}"
+    return [*lines, *standing, *roll.troubles()]

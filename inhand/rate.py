@@ -13,12 +13,12 @@ from typing import Any
 import msgspec
 from inhand_recorder.losses import LossCounter
 from inhand_runtime.inbox import Received
+from inhand_runtime.roll import short_key
 from inhand_schemas.messages import Message
 from inhand_schemas.topics import AnyTopic, topic_of
 from rich.live import Live
 from rich.table import Table
 
-from inhand.instances import short_key
 from inhand.looking import (
     add_looking_arguments,
     nothing_heard,

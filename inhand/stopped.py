@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import psutil
+from inhand_runtime.roll import Instance
 from inhand_runtime.settings import SERVICES, ZenohSettings
 
-Instance = tuple[str, str]
-"""A service's name and an instance's."""
 _STATES = (psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP)
 _REPLAY = "replay"
 

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from inhand_runtime.roll import short_key
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import Site
 from inhand_schemas.topics import topic_of
 from rich.table import Table
 
-from inhand.instances import short_key
 from inhand.looking import (
     add_looking_arguments,
     nothing_heard,

@@ -8,11 +8,11 @@ from pathlib import Path
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE
 from inhand_runtime.logs import configure_logs
+from inhand_runtime.roll import Roll
 from inhand_runtime.settings import RigFile, load_rig_file
 from inhand_runtime.signals import set_on_signals
 from inhand_schemas.messages import Health
 
-from inhand.instances import Roll
 from inhand.looking import open_look
 from inhand.starts import require_startable
 from inhand.supervisor import HANGS_AFTER_S, Child, Supervisor

@@ -2,10 +2,11 @@
 
 import signal
 
+from inhand_runtime.roll import Roll
 from inhand_runtime.settings import ZenohSettings
 from running_rig import RunningRig, eventually
 
-from inhand.instances import Roll
+from inhand.instances import problems
 from inhand.stopped import Stopped, stopped_services
 
 RECORDER = Stopped(4711, "recorder", "disk", "inhand recorder --name disk")
@@ -13,20 +14,20 @@ UNNAMED = Stopped(4711, "recorder", None, "inhand recorder")
 REPLAY = Stopped(4711, "capture", None, "inhand replay walk.mcap")
 
 
-def problems(stopped: Stopped, *expected: tuple[str, str]) -> list[str]:
-    return Roll().problems(expected, [stopped])
+def problems_with(stopped: Stopped, *expected: tuple[str, str]) -> list[str]:
+    return problems(Roll(), expected, [stopped])
 
 
 def test_whom_the_settings_name_and_who_stands_still_hangs_and_is_not_missing() -> None:
     for stopped in (RECORDER, UNNAMED):
-        assert problems(stopped, ("recorder", "disk")) == [
+        assert problems_with(stopped, ("recorder", "disk")) == [
             "recorder disk hangs, or is stopped: process 4711 of this machine stands still; "
             "`kill -CONT 4711` lets it go on"
         ]
 
 
 def test_one_command_without_a_name_is_none_of_two_that_are_missing() -> None:
-    lines = problems(UNNAMED, ("recorder", "disk"), ("recorder", "tape"))
+    lines = problems_with(UNNAMED, ("recorder", "disk"), ("recorder", "tape"))
     assert [line.split(":")[0] for line in lines] == [
         "recorder disk is missing",
         "recorder tape is missing",
@@ -35,7 +36,7 @@ def test_one_command_without_a_name_is_none_of_two_that_are_missing() -> None:
 
 
 def test_a_stopped_replay_is_named_by_its_command_though_no_settings_name_it() -> None:
-    (line,) = problems(REPLAY)
+    (line,) = problems_with(REPLAY)
     assert line.startswith("`inhand replay walk.mcap` hangs, or is stopped")
 
 
@@ -43,7 +44,7 @@ def test_one_that_lives_by_its_token_has_no_second_line() -> None:
     roll = Roll()
     roll.change("recorder", "disk", True)
     for stopped in (RECORDER, UNNAMED):
-        (line,) = roll.problems((), [stopped])
+        (line,) = problems(roll, (), [stopped])
         assert line == "recorder disk hangs, or is stopped: it is there, and says nothing"
 
 

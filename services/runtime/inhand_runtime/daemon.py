@@ -8,6 +8,7 @@ import contextlib
 import logging
 import threading
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from inhand_schemas.errors import KeyFormatError, MessageError
@@ -20,7 +21,7 @@ from msgspec import Struct
 from inhand_runtime.claims import Elders, claimed_name
 from inhand_runtime.errors import InhandError
 from inhand_runtime.health import HealthBoard
-from inhand_runtime.inbox import UNBOUNDED, Inbox, Received
+from inhand_runtime.inbox import UNBOUNDED, Inbox, Lane, Received
 from inhand_runtime.logs import configure_logs
 from inhand_runtime.memory import give_libraries_back, give_memory_back
 from inhand_runtime.questions import Question, answer
@@ -29,9 +30,11 @@ from inhand_runtime.session import (
     Session,
     Subscription,
     connected,
+    end_subscription,
     hear_namesakes,
     open_session,
     subscribe,
+    watch_instances,
 )
 from inhand_runtime.settings import Section, Settings, ZenohSettings
 from inhand_runtime.signals import set_on_signals
@@ -53,6 +56,15 @@ NEWEST_SAMPLES = 4
 EVERY_SAMPLES = 256
 
 
+@dataclass(frozen=True, eq=False)
+class Arrivals:
+    """What arrives on a key or pattern, and the inbox's lane for it."""
+
+    pattern: str
+    handle: Subscription
+    lane: Lane
+
+
 class Daemon:
     """What a running service works with."""
 
@@ -67,7 +79,7 @@ class Daemon:
         self.given_way: str | None = None
         """Why this instance ends although nobody asked for it, if it does."""
         self._session = session
-        self._subscriptions: list[Subscription] = []
+        self._arrivals: list[Arrivals] = []
         self._kept: list[Publisher[Any]] = []
         self._questions: list[Question] = []
 
@@ -91,8 +103,8 @@ class Daemon:
         *,
         samples: int | None = None,
         size: int = UNBOUNDED,
-    ) -> None:
-        """Let a topic (one name of it, or all) arrive in the inbox.
+    ) -> Arrivals:
+        """Let a topic (one name of it, or all) arrive in the inbox, until it is unsubscribed.
 
         ``samples`` and ``size`` (bytes) bound what may wait; without ``samples`` the topic's
         delivery does. The oldest beyond the bound is dropped and counted.
@@ -101,7 +113,24 @@ class Daemon:
             samples = NEWEST_SAMPLES if topic.delivery.readers == "newest" else EVERY_SAMPLES
         lane = self.inbox.lane(samples=samples, size=size, on_drop=self.health.overflowed)
         pattern = topic.pattern(self.site) if name is None else topic.key(self.site, name)
-        self._subscriptions.append(subscribe(self._session, pattern, topic.delivery, lane.put))
+        handle = subscribe(self._session, pattern, topic.delivery, lane.put)
+        arrivals = Arrivals(pattern, handle, lane)
+        self._arrivals.append(arrivals)
+        return arrivals
+
+    def unsubscribe(self, arrivals: Arrivals) -> None:
+        """Let a topic arrive no more: whoever publishes it sees that nobody listens any longer."""
+        self._arrivals.remove(arrivals)
+        end_subscription(arrivals.handle)
+        self.inbox.remove(arrivals.lane)
+        self.health.begin_anew(arrivals.pattern)
+
+    def watch_instances(self, on_change: Callable[[str, str, bool], None]) -> Subscription:
+        """Call ``on_change(service, instance, lives)`` for all who live now, and at each change.
+
+        It is called from Zenoh's threads; keep the returned handle.
+        """
+        return watch_instances(self._session, self.site, on_change)
 
     def answer(self, procedure: Procedure[Q, R], on_request: Callable[[Q], R | None]) -> None:
         """Answer a procedure's requests from now on, from Zenoh's threads.

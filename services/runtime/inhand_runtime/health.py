@@ -6,6 +6,7 @@ import time
 from collections import Counter, deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 
 import psutil
 from inhand_schemas.messages import Health, Latency, ServiceState, TopicHealth
@@ -87,6 +88,13 @@ class HealthBoard:
             self._sequences[key] = sequence
             if 0 < missing < FARTHEST_GAP:
                 self._lost[key] += missing
+
+    def begin_anew(self, pattern: str) -> None:
+        """Forget the last numbers of the keys of a pattern: what comes next follows nothing."""
+        with self._lock:
+            for key in [key for key in self._sequences if fnmatchcase(key, pattern)]:
+                del self._sequences[key]
+                self._overflowed.pop(key, None)
 
     def overflowed(self, key: str) -> None:
         """Count a message that the inbox had no room for."""

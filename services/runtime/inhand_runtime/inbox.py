@@ -42,6 +42,11 @@ class Inbox:
             self._lanes.append(lane)
         return lane
 
+    def remove(self, lane: "Lane") -> None:
+        """Forget a lane with all that waits in it."""
+        with self._changed:
+            self._lanes.remove(lane)
+
     def get(self, timeout: float) -> Received | None:
         """The next sample; None after the timeout (seconds), or when closed and empty."""
         with self._changed:

@@ -218,6 +218,11 @@ def subscribe(
     )
 
 
+def end_subscription(subscription: Subscription) -> None:
+    """Let nothing of a subscription arrive any longer."""
+    subscription.undeclare()  # type: ignore[no-untyped-call]
+
+
 def session_id(session: Session) -> str:
     """What tells a session from all others: hexadecimal digits."""
     return str(session.info.zid())

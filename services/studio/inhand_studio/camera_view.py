@@ -60,6 +60,11 @@ class CameraView:
         if self._inside:
             self._draw()
 
+    def hide(self) -> None:
+        """Show no image any longer."""
+        self._image = None
+        self._draw()
+
     def _moved(self) -> None:
         """Note from where the browser looks now, and in which form of window."""
         inside = self._looks_through()

@@ -19,6 +19,13 @@ class StudioParameters:
     """Angle in radians from the camera's view of the same: a pixel or less."""
     same_aspect: float = 0.01
     """Share by which a window's form may change until the image is cut anew."""
+    answer_s: float = 5.0
+    """Seconds without a browser's answer after which it gets another picture all the same."""
+    answers_apart: float = 1.5
+    """Times that a browser's answer took, from one picture to the next: it unpacks meanwhile."""
+    unseen_turn: float = 2e-5
+    """Share by which a browser's angle of view is changed to make it answer: a hundredth of a
+    pixel, and twice what is taken for no change."""
     unmeasured_m: float = 100.0
     """Depth in metres, beyond any room, of pixels for which none was measured."""
 

@@ -9,6 +9,8 @@ from inhand_tracker.shape.shape import ObjectShape
 
 Colour = tuple[int, int, int]
 
+BONE_PIXELS = 3.0
+"""Thickness of a bone on the screen."""
 BONE: Colour = (255, 210, 60)
 TRUE: Colour = (60, 220, 90)
 TRACKED: Colour = (250, 70, 60)
@@ -39,8 +41,15 @@ def add_skeleton(
     scene: viser.SceneApi, name: str, joints: Array, colour: Colour = BONE
 ) -> viser.LineSegmentsHandle:
     """Draw a person's joints (20, 3); ``bones(…)`` assigned to its handle's ``points`` moves it."""
+    return add_bones(scene, name, bones(joints), colour)
+
+
+def add_bones(
+    scene: viser.SceneApi, name: str, ends: Singles, colour: Colour
+) -> viser.LineSegmentsHandle:
+    """Draw lines between ends (B, 2, 3)."""
     return scene.add_line_segments(
-        name, bones(joints), colour, thickness=3.0, thickness_units="screen"
+        name, ends, colour, thickness=BONE_PIXELS, thickness_units="screen"
     )
 
 

@@ -1,14 +1,18 @@
 """The studio's daemon: serves the pages of a rig until it is stopped."""
 
 import logging
+from pathlib import Path
 
 import viser
 from inhand_runtime.daemon import running_daemon
-from inhand_runtime.settings import Settings
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.settings import Settings, instance_settings, load_rig_file
+from inhand_tracker.settings import TrackerSettings
 
 from inhand_studio.access.listening import secluded_address
 from inhand_studio.access.terms import terms_of
 from inhand_studio.pages import PAGES
+from inhand_studio.rig import Rig
 from inhand_studio.server import serving
 from inhand_studio.settings import StudioSettings
 from inhand_studio.studio import Studio
@@ -35,7 +39,8 @@ def run(settings: Settings[StudioSettings]) -> None:
     chosen = settings.service
     check(settings)
     with running_daemon("studio", settings) as daemon:
-        studio = Studio(chosen.dataset, daemon)
+        rig = Rig(daemon)
+        studio = Studio(chosen.dataset, daemon, rig=rig, models=models_of(settings.origin.path))
 
         def visit_of(client: viser.ClientHandle) -> Visit:
             return Visit(client, studio, PAGES, "Live")
@@ -46,4 +51,23 @@ def run(settings: Settings[StudioSettings]) -> None:
             log.info("the studio is at %s", url)
             daemon.health.state = "running"
             while not daemon.stop.is_set():
-                daemon.receive(IDLE_S)
+                if (sample := daemon.receive(IDLE_S)) is not None:
+                    rig.take(sample)
+
+
+def models_of(path: Path | None) -> tuple[Path, ...]:
+    """Return the files of the models that a rig's settings name for its trackers, on this machine.
+
+    A tracker whose settings are wrong says so itself, and has none here. Raises SettingsError for a
+    file that is no rig's.
+    """
+    rig_file = load_rig_file(path)
+    models: list[Path] = []
+    for name in rig_file.tracker:
+        try:
+            chosen = instance_settings(rig_file, path, "tracker", TrackerSettings, name).service
+        except SettingsError as error:
+            log.warning("its models are not known here: %s", error)
+            continue
+        models += chosen.models if chosen.model is None else (chosen.model,)
+    return tuple(dict.fromkeys(one for one in models if one.is_file()))

@@ -1,16 +1,28 @@
 """What all pages of a studio have at hand."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from inhand_runtime.daemon import Daemon
+
+from inhand_studio.rig import Rig
+from inhand_studio.shapes import Shapes
 
 
 @dataclass(frozen=True)
 class Studio:
     """The ``dataset`` that pages show and write, and the ``daemon`` whose rig they look at: None
-    where a recording is looked at without a rig. ``recording`` is the one to begin with, if any."""
+    where a recording is looked at without a rig, as is ``rig``, what is heard of it. ``recording``
+    is the one to begin with, if any. ``models`` are the rig's, as far as its settings name them."""
 
     dataset: Path
     daemon: Daemon | None = None
     recording: Path | None = None
+    rig: Rig | None = None
+    models: tuple[Path, ...] = ()
+
+    @cached_property
+    def shapes(self) -> Shapes:
+        """The shapes of objects that are known here."""
+        return Shapes(self.dataset, self.models)

@@ -1,9 +1,8 @@
 """What ``inhand status`` says of instances that are well but behind."""
 
+from inhand_runtime.health_lines import LATE_MS, MOST_KEYS, late_lines, left_unused
+from inhand_runtime.roll import Heard
 from inhand_schemas.messages import Health, TopicHealth
-
-from inhand.instances import Heard
-from inhand.status import LATE_MS, MOST_KEYS, late_lines, left_unused
 
 KEY = "inhand/@v1/rig/rgbd/front"
 
