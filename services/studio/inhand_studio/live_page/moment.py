@@ -60,7 +60,7 @@ def _newest_estimated(news: CameraNews, now_s: float, parameters: LiveParameters
         return newest
     if now_s - news.poses_at > parameters.poses_missed_s:
         return newest
-    last = news.poses[-1].sequence
+    last = max(pose.sequence for pose in news.poses[-parameters.late_poses :])
     return next((one for one in reversed(news.pictures) if one.sequence <= last), newest)
 
 

@@ -19,6 +19,9 @@ class LiveParameters:
     """Pixels of depth from one point to the next, in rows and in columns."""
     poses_missed_s: float = 0.5
     """Seconds without a pose after which pictures no longer wait for theirs."""
+    late_poses: int = 16
+    """Number of last poses of which the newest frame's is the newest: several trackers of a camera
+    are not equally fast."""
     hold_ns: int = 1_000_000_000
     """Nanoseconds for which a pose or a skeleton stays drawn when no newer one comes."""
     silent_s: float = 2.0
