@@ -32,6 +32,7 @@ VERBS = {
     "simulate": "make a labelled dataset of simulated people",
     "import": "make a dataset of real data: utd-mhad, motion, ycb-video, bop",
     "object": "make a new object of a dataset, of a mesh, measures or depth: new",
+    "record": "make a training recording of a running rig, and add it to a dataset",
     "label": "write an object's labels, from keyframes of it, beside a recording",
     "train": "learn a model from a labelled dataset",
     "evaluate": "measure methods on people that were not trained on",

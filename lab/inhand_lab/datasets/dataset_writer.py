@@ -86,18 +86,20 @@ def _reporting(folder: Path) -> Iterator[None]:
         raise DatasetError(f"cannot write {folder}: {error.strerror}") from None
 
 
+def entry_toml(entry: DatasetEntry) -> list[str]:
+    """Return the lines of an entry in ``dataset.toml``."""
+    values = msgspec.structs.asdict(entry)
+    given = {key: value for key, value in values.items() if value is not None}
+    return ["[[recordings]]", *(f"{key} = {_toml_value(value)}" for key, value in given.items())]
+
+
 def _toml(contents: DatasetFile) -> str:
     lines = [f'format = "{contents.format}"', f"version = {contents.version}"]
     if contents.generator:
         lines += ["", "[generator]"]
         lines += [f"{key} = {_toml_value(value)}" for key, value in contents.generator.items()]
     for entry in contents.recordings:
-        lines += ["", "[[recordings]]"]
-        lines += [
-            f"{key} = {_toml_value(value)}"
-            for key, value in msgspec.structs.asdict(entry).items()
-            if value is not None
-        ]
+        lines += ["", *entry_toml(entry)]
     return "\n".join(lines) + "\n"
 
 

@@ -38,8 +38,9 @@ class Limits:
 
 
 class RecordingFile:
-    """Writes entries and counts losses; every method but ``give_up`` raises RecordingError.
+    """Writes entries and counts losses.
 
+    Every method but ``give_up`` and ``discard`` raises RecordingError.
     It is ``worth_keeping`` as soon as the disk holds an entry that memory does not.
     """
 
@@ -111,6 +112,11 @@ class RecordingFile:
         if not self.worth_keeping:
             self._remove_part()
         return self._in_memory
+
+    def discard(self) -> None:
+        """Close the file and remove all of it, whether it failed or not."""
+        self._writer.abandon()
+        self._remove_part()
 
     def _remove_part(self) -> None:
         with contextlib.suppress(OSError):  # then a file stays that holds nothing

@@ -127,6 +127,10 @@ class RecordingWriter:
             self._file.close()
         return self.path
 
+    def abandon(self) -> None:
+        """Write no more, and leave the ``.part`` as it is."""
+        self._file.close()
+
     def __enter__(self) -> Self:
         return self
 
