@@ -15,7 +15,7 @@ from inhand_runtime.errors import InhandError
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
-_ONE_THREAD = dict.fromkeys(
+ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 )
 
@@ -54,7 +54,7 @@ def in_processes(
             on_done(results[-1])
         return results
     # Libraries size their pools of threads when they are loaded: a worker inherits the limits.
-    with _environment(_ONE_THREAD):
+    with _environment(ONE_THREAD):
         pool = ProcessPoolExecutor(
             min(processes, len(tasks)), get_context("spawn"), initializer=_start_worker
         )

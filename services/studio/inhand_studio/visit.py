@@ -73,15 +73,15 @@ class Visit:
 
         def done(event: Any) -> None:
             with self.lock:
-                if self._closed:
-                    return
-                try:
-                    act(event)
-                except InhandError as error:
-                    self.tell(str(error))
-                except Exception as error:
-                    log.exception("an action of a page failed")
-                    self.tell(f"{type(error).__name__}: {error}; the studio's log has the rest")
+                self._do(act, event)
+
+        return done
+
+    def task(self, act: Action) -> Action:
+        """Make what takes long, and runs beside a tab's actions, without its lock."""
+
+        def done(event: Any) -> None:
+            self._do(act, event)
 
         return done
 
@@ -110,6 +110,17 @@ class Visit:
         self._on_look = _nothing
         self.client.scene.reset()
         self.client.scene.set_background_image(None)
+
+    def _do(self, act: Action, event: Any) -> None:
+        if self._closed:
+            return
+        try:
+            act(event)
+        except InhandError as error:
+            self.tell(str(error))
+        except Exception as error:
+            log.exception("an action of a page failed")
+            self.tell(f"{type(error).__name__}: {error}; the studio's log has the rest")
 
     def _show(self, title: str) -> None:
         """Leave the page that is shown for another."""

@@ -1,0 +1,1 @@
+"""Review: a recording with what is true in it, what was tracked, and how far both are apart."""
