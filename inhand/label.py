@@ -1,4 +1,7 @@
-"""``inhand label``: writes an object's labels between a person's keyframes beside a recording."""
+"""``inhand label``: writes an object's labels between a person's keyframes beside a recording.
+
+Without keyframes it serves the page on which a person sets them.
+"""
 
 import argparse
 from pathlib import Path
@@ -15,6 +18,7 @@ from inhand_lab.labelling.labelled_copy import (
     write_labels,
 )
 from inhand_lab.labelling.scene import Scene, check_keyframes, load_scene
+from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE
 from inhand_runtime.wording import counted
 from inhand_runtime.writable import require_writable_file
@@ -28,9 +32,12 @@ from inhand.results import write_json
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's arguments."""
     parser.add_argument("recording", type=Path, metavar="RECORDING")
-    parser.add_argument("--object", required=True, metavar="NAME", help="which object is labelled")
+    parser.add_argument("--object", metavar="NAME", help="which object is labelled")
     parser.add_argument(
-        "--keyframes", type=Path, required=True, metavar="FILE", help="its poses in some frames"
+        "--keyframes",
+        type=Path,
+        metavar="FILE",
+        help="its poses in some frames (default: they are set on a page in the browser)",
     )
     parser.add_argument(
         "--assisted", action="store_true", help="refine the poses between keyframes by the images"
@@ -51,7 +58,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the labelled copy; raises InhandError."""
+    """Write the labelled copy, or serve the page; raises InhandError."""
+    if arguments.keyframes is None:
+        return _serve(arguments)
+    if arguments.object is None:
+        raise SettingsError("--keyframes are of an object: give --object NAME as well")
     path, name = arguments.recording, arguments.object
     output = arguments.output or labelled_path(path)
     require_writable_file(output)
@@ -69,6 +80,25 @@ def run(arguments: argparse.Namespace) -> int:
     }
     write_labels(scene, name, found.labels, output, about)
     _report(arguments, output, way, found)
+    return DONE
+
+
+def _serve(arguments: argparse.Namespace) -> int:
+    """Serve the labelling page until Ctrl-C."""
+    from inhand_studio.labelling_page.alone import serve_alone
+
+    for option in ("assisted", "output", "replace", "json"):
+        if getattr(arguments, option):
+            raise SettingsError(
+                f"--{option} is for labels between keyframes: give --keyframes FILE, or leave it "
+                "out and choose on the page"
+            )
+    dataset, name = _dataset(arguments), arguments.object
+    if not arguments.recording.is_file():
+        raise SettingsError(f"{arguments.recording} does not exist: check the path")
+    if name is not None:
+        load_shape(dataset / "objects" / name)
+    serve_alone(dataset, arguments.recording, name)
     return DONE
 
 

@@ -70,6 +70,15 @@ class Dataset:
 def load_dataset(folder: Path) -> Dataset:
     """Read ``dataset.toml``; raises DatasetError with the mend."""
     path = folder / "dataset.toml"
+    contents = read_dataset_file(path)
+    missing = [e.file for e in contents.recordings if not (folder / e.file).is_file()]
+    if missing:
+        raise DatasetError(f"{path} names {missing[0]!r}, which is not there")
+    return Dataset(folder, contents.recordings)
+
+
+def read_dataset_file(path: Path) -> DatasetFile:
+    """Read a ``dataset.toml``, whose recordings need not be there; raises DatasetError."""
     try:
         values = tomllib.loads(path.read_text(encoding="utf-8"))
         contents = msgspec.convert(values, DatasetFile)
@@ -87,7 +96,4 @@ def load_dataset(folder: Path) -> Dataset:
             f"{path} is {contents.format} version {contents.version}, and this release reads "
             f"{FORMAT} version {VERSION}"
         )
-    missing = [e.file for e in contents.recordings if not (folder / e.file).is_file()]
-    if missing:
-        raise DatasetError(f"{path} names {missing[0]!r}, which is not there")
-    return Dataset(folder, contents.recordings)
+    return contents

@@ -1,10 +1,11 @@
-"""Adds a recording to ``dataset.toml``, which keeps all that a person wrote there."""
+"""Adds a recording to ``dataset.toml``, or puts it in place of another; all else there stays."""
 
 import contextlib
 import fcntl
 import os
+import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 from inhand_runtime.recording.part_file import PART_SUFFIX, PartFile
@@ -20,12 +21,20 @@ def add_entry(folder: Path, entry: DatasetEntry) -> None:
 
     Of several processes that add at once one waits for the other. Raises DatasetError.
     """
+    put_entry(folder, entry, ())
+
+
+def put_entry(folder: Path, entry: DatasetEntry, files: Collection[str]) -> None:
+    """Write an entry in place of those of the same object, or of none, of some ``files``.
+
+    It comes where the first of these was, else at the end, as ``add_entry`` does.
+    """
     path = folder / FILE
     lines = "\n".join(entry_toml(entry))
     try:
         with _alone(folder):
             text = path.read_text(encoding="utf-8") if path.exists() else _beginning()
-            grown = f"{text.rstrip()}\n\n{lines}\n"
+            grown = _put(text, lines, lambda block: _is_of(block, entry, files))
             _require_toml(path, grown, lines)
             _replace(path, grown)
             load_dataset(folder)
@@ -33,6 +42,36 @@ def add_entry(folder: Path, entry: DatasetEntry) -> None:
         raise DatasetError(
             f"cannot write {path}: {error.strerror}; make room and add there:\n{lines}"
         ) from None
+
+
+def _put(text: str, lines: str, replaced: Callable[[str], bool]) -> str:
+    """Put an entry's lines in place of the tables that are replaced, else at the end."""
+    # A table ends where the next one begins; comments before that belong to the next.
+    parts = re.split(r"^(?=(?:[ \t]*#.*\n)*[ \t]*\[)", text, flags=re.MULTILINE)
+    kept: list[str] = []
+    place = None
+    for part in parts:
+        if not replaced(part):
+            kept.append(part)
+            continue
+        comments = "".join(re.findall(r"^[ \t]*#.*\n", part, flags=re.MULTILINE))
+        place = len(kept) if place is None else place
+        kept.append(comments)
+    if place is None:
+        return f"{text.rstrip()}\n\n{lines}\n"
+    kept[place] += f"{lines}\n\n"
+    return "".join(kept).rstrip() + "\n"
+
+
+def _is_of(block: str, entry: DatasetEntry, files: Collection[str]) -> bool:
+    """Whether a table of the file is of one of some files, and of the entry's object or of none."""
+    try:
+        tables = tomllib.loads(block).get("recordings")
+    except tomllib.TOMLDecodeError:
+        return False
+    if not isinstance(tables, list) or len(tables) != 1:
+        return False
+    return tables[0].get("file") in files and tables[0].get("object") in (None, entry.object)
 
 
 @contextlib.contextmanager

@@ -14,11 +14,13 @@ from inhand_studio.shapes import Shapes
 class Studio:
     """The ``dataset`` that pages show and write, and the ``daemon`` whose rig they look at: None
     where a recording is looked at without a rig, as is ``rig``, what is heard of it. ``recording``
-    is the one to begin with, if any. ``models`` are the rig's, as far as its settings name them."""
+    is the one to begin with, and ``object_name`` the object, if any. ``models`` are the rig's, as
+    far as its settings name them."""
 
     dataset: Path
     daemon: Daemon | None = None
     recording: Path | None = None
+    object_name: str | None = None
     rig: Rig | None = None
     models: tuple[Path, ...] = ()
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError, load_dataset
-from inhand_lab.datasets.new_entry import add_entry
+from inhand_lab.datasets.new_entry import add_entry, put_entry
 
 
 def _entry(folder: Path, number: int) -> DatasetEntry:
@@ -56,7 +56,7 @@ def test_on_a_full_disk_the_file_stays_as_it_is(tmp_path: Path) -> None:
     script = (
         "import resource, signal, sys; from pathlib import Path\n"
         "from inhand_lab.datasets.dataset import DatasetEntry\n"
-        "from inhand_lab.datasets.new_entry import add_entry\n"
+        "from inhand_lab.datasets.new_entry import add_entry, put_entry\n"
         "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))\n"
         "add_entry(Path(sys.argv[1]), DatasetEntry(file='recordings/2.mcap', interaction='i',"
@@ -68,3 +68,25 @@ def test_on_a_full_disk_the_file_stays_as_it_is(tmp_path: Path) -> None:
     assert "DatasetError: cannot write" in done.stderr
     assert path.read_text() == before
     assert not list(tmp_path.glob("*.part"))
+
+
+def test_an_entry_takes_the_place_of_its_original_and_all_else_stays(tmp_path: Path) -> None:
+    (tmp_path / "recordings").mkdir()
+    for name in ("a", "b", "c"):
+        (tmp_path / f"recordings/{name}.mcap").touch()
+    before = (
+        'format = "inhand-dataset"\nversion = 1\n\n# about a\n[[recordings]]\n'
+        'file = "recordings/a.mcap"  # the first\ninteraction = "i"\nparticipant = "p"\n\n'
+        '# about c\n[[recordings]]\nfile = "recordings/c.mcap"\ninteraction = "i"\n'
+        'participant = "q"\nobject = "cup"\n'
+    )
+    (tmp_path / "dataset.toml").write_text(before)
+    entry = DatasetEntry(file="recordings/b.mcap", interaction="i", participant="p", object="mug")
+    put_entry(tmp_path, entry, ("recordings/a.mcap", "recordings/c.mcap"))
+    files = [one.file for one in load_dataset(tmp_path).entries]
+    assert files == ["recordings/b.mcap", "recordings/c.mcap"]
+    text = (tmp_path / "dataset.toml").read_text()
+    assert "# about a\n[[recordings]]" in text
+    assert text.endswith(before[before.index("# about c") :])
+    put_entry(tmp_path, entry, ("recordings/b.mcap",))
+    assert (tmp_path / "dataset.toml").read_text() == text

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import msgspec
 from inhand_lab.labelling.keyframes import (
     KeyframeFile,
     LabellingError,
@@ -68,24 +69,19 @@ class KeptKeyframes:
             raise LabellingError("another tab or studio labels this object here: take over first")
         with self._claim.held():
             try:
-                save_keyframes(self.path, _with(self._empty, editing))
+                save_keyframes(self.path, self.contents(editing))
             except LabellingError as error:
                 self.trouble = str(error)
                 return editing
         self.trouble = None
         return saved(editing, editing.keyframes)
 
+    def contents(self, editing: Editing) -> KeyframeFile:
+        """Return what the file is to say."""
+        return msgspec.structs.replace(self._empty, keyframes=editing.keyframes)
+
     def close(self) -> None:
         """Let others write it."""
         if self._claim is not None:
             self._claim.release()
             self._claim = None
-
-
-def _with(contents: KeyframeFile, editing: Editing) -> KeyframeFile:
-    return KeyframeFile(
-        recording=contents.recording,
-        object=contents.object,
-        camera=contents.camera,
-        keyframes=editing.keyframes,
-    )

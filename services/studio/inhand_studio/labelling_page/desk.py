@@ -2,36 +2,27 @@
 
 import time
 from collections.abc import Callable, Mapping
-from functools import partial
 
 import numpy as np
 from inhand_lab.labelling.equal_poses import Pose
 from inhand_lab.labelling.keyframes import Keyframe, KeyframeFile, LabellingError
 from inhand_runtime.wording import counted
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.image import Image
 from inhand_tracker.shape.shape import ObjectShape
 
 from inhand_studio.labelling_page import editing as edits
+from inhand_studio.labelling_page.assistant import Assistance
 from inhand_studio.labelling_page.autosave import KeptKeyframes, keyframes_path
+from inhand_studio.labelling_page.background import Background
 from inhand_studio.labelling_page.opened import OpenedRecording
-from inhand_studio.labelling_page.panel import OBJECT_FRAME, Act, Panel
+from inhand_studio.labelling_page.panel import CAMERA_FRAME, OBJECT_FRAME, Act, Panel
 from inhand_studio.labelling_page.parameters import DEFAULT_PAGE
-from inhand_studio.labelling_page.placing import dragged, message_of, moved, turned
+from inhand_studio.labelling_page.placing import message_of
 from inhand_studio.labelling_page.shown_pose import ShownPose, part_basis, shown_pose
 from inhand_studio.labelling_page.stage import Look, Stage
 from inhand_studio.labelling_page.strip import strip
 from inhand_studio.visit import Visit
-
-X, Y, Z = np.eye(3)
-STEPS = {"left": -X, "right": X, "up": -Y, "down": Y, "nearer": -Z, "farther": Z}
-TURNS = {
-    "pitch_up": X,
-    "pitch_down": -X,
-    "yaw_left": Y,
-    "yaw_right": -Y,
-    "roll_left": -Z,
-    "roll_right": Z,
-}
 
 
 class Desk:
@@ -56,17 +47,21 @@ class Desk:
             raise
         self.frame = 0
         self._drawn = -1
-        self._dragging: Pose | None = None
         self._playing: tuple[float, int] | None = None
         self._tried_s = time.monotonic()
         self.shown = ShownPose(None, "guess")
-        self.stage = Stage(visit, recording, shape, self._drag)
-        self.panel = Panel(visit, len(recording), self._acts())
-        self.panel.show_part(self.editing.part)
+        self.background = Background(visit)
+        self.assistance: Assistance | None = None
+
+    def begin(self, stage: Stage, panel: Panel) -> None:
+        """Show all on a stage and a panel."""
+        self.stage, self.panel = stage, panel
+        panel.show_part(self.editing.part)
         self.refresh()
 
     def close(self) -> None:
-        """Let others edit, and close the recording."""
+        """Let others edit, end what runs, and close the recording."""
+        self.background.close()
         self.kept.close()
         self.recording.close()
 
@@ -83,16 +78,42 @@ class Desk:
             self.stage.show_frame(self.frame)
             self._drawn = self.frame
         self.shown = self._find_shown()
-        self.stage.show_object(self.shown.pose, self.shown.standing, self._axes())
+        self.stage.show_object(self.shown.pose, self.shown.standing, self.axes())
         wanted = self.panel.shows_labels
         self.stage.show_label(self.recording.label(self.shape.name, self.frame) if wanted else None)
         self.panel.show_frame(self.frame)
         self.panel.show_pose(self.shown.pose)
-        self.panel.show_strip(strip(self.editing.keyframes, len(self.recording), self.frame))
+        doubts = None if self.assistance is None else self.assistance.found.doubts
+        keyframes, frames = self.editing.keyframes, len(self.recording)
+        self.panel.show_strip(strip(keyframes, frames, self.frame, doubts))
         self.show_status()
 
     def _find_shown(self) -> ShownPose:
-        return shown_pose(self.editing, self.recording, self.frame, self.shape.symmetries)
+        shown = shown_pose(self.editing, self.recording, self.frame, self.shape.symmetries)
+        if self.assistance is not None:
+            shown = self.assistance.improve(shown, self.editing, self.frame)
+        return shown
+
+    def axes(self) -> Array:
+        """Return along which axes (4,) the object is moved."""
+        name = self.panel.axes
+        if name == OBJECT_FRAME and self.shown.pose is not None:
+            return self.shown.pose[1]
+        part = None if name in (OBJECT_FRAME, CAMERA_FRAME) else name
+        return part_basis(part, self.recording, self.frame)[1]
+
+    def ask(self, text: str) -> None:
+        """Say what is to be done next, or what was done."""
+        self.panel.said.content = text
+
+    def take_assistance(self, assistance: Assistance) -> None:
+        """Show refined poses from now on."""
+        self.assistance = assistance
+        worst = assistance.worst(self.editing)
+        self.refresh()
+        if worst is not None:
+            doubt = 100 * assistance.found.doubts[worst]
+            self.ask(f"Refined. Least sure is frame {worst}: it may be {doubt:.1f} cm off.")
 
     def show_status(self) -> None:
         """Say what frame and pose are shown, and how the keyframes stand."""
@@ -114,6 +135,7 @@ class Desk:
 
     def tick(self) -> None:
         """Do what time asks for: play, write again what could not be written, look at others."""
+        self.panel.show_progress(self.background.doing, self.background.share)
         if self._playing is not None:
             started_s, first = self._playing
             times_ns = self.recording.times_ns
@@ -160,15 +182,16 @@ class Desk:
             self.go(self.panel.frame)
 
     def _zoom(self) -> None:
-        middle = None if self.stage.zoomed else self._middle()
+        middle = None if self.stage.zoomed else self.middle()
         self.stage.zoom(middle)
 
     def _look(self, look: Look) -> None:
-        self.stage.look(look, self._middle())
+        self.stage.look(look, self.middle())
         self._drawn = -1
         self.refresh()
 
-    def _middle(self) -> Array:
+    def middle(self) -> Array:
+        """Return where the object's middle (3,) is, or where a person usually is."""
         pose = self.shown.pose
         return np.array([0.0, 0.0, 2.0]) if pose is None else self.stage.middle_of(pose)
 
@@ -176,15 +199,7 @@ class Desk:
 
     def edit(self, change: Callable[[edits.Editing], edits.Editing]) -> None:
         """Change the keyframes, and write them at once."""
-        if not self.kept.claimed:
-            self.refresh()
-            raise LabellingError(
-                "this is read only, as another tab or studio labels this object here: press "
-                "“Take over” first"
-            )
-        if self.recording.unlabelled_because is not None:
-            self.refresh()
-            raise LabellingError(self.recording.unlabelled_because)
+        self.require_editable()
         told = self.kept.trouble
         self.editing = change(self.editing)
         self.editing = self.kept.save(self.editing)
@@ -192,6 +207,18 @@ class Desk:
         self.refresh()
         if self.kept.trouble is not None and told is None:
             self.visit.tell(self.kept.trouble, title="Keyframes are NOT SAVED")
+
+    def require_editable(self) -> None:
+        """Raise LabellingError where keyframes cannot be changed here."""
+        reason = self.recording.unlabelled_because
+        if not self.kept.claimed:
+            reason = (
+                "this is read only, as another tab or studio labels this object here: press "
+                "“Take over” first"
+            )
+        if reason is not None:
+            self.refresh()
+            raise LabellingError(reason)
 
     def set_pose(self, pose: Pose | None) -> None:
         """Set the keyframe of this frame; None marks the object as absent."""
@@ -203,59 +230,27 @@ class Desk:
         )
         self.edit(lambda editing: edits.with_keyframe(editing, keyframe))
 
+    def require_image(self) -> Image:
+        """Return the image of this frame; raises LabellingError where it has no depth."""
+        image = self.recording.image(self.frame)
+        if image is None or image.depth is None:
+            raise LabellingError("this frame has no depth: choose one that has")
+        return image
+
     def require_pose(self) -> Pose:
         """Return the pose that is shown; raises LabellingError where the object is absent."""
         if self.shown.pose is None:
             raise LabellingError("the object is absent here: delete the keyframe that says so")
         return self.shown.pose
 
-    def _axes(self) -> Array:
-        """Return along which axes (4,) the object is moved."""
-        name = self.panel.axes
-        if name == OBJECT_FRAME and self.shown.pose is not None:
-            return self.shown.pose[1]
-        part = None if name in (OBJECT_FRAME, "camera") else name
-        return part_basis(part, self.recording, self.frame)[1]
-
-    def _step(self, direction: Array, metres: float) -> None:
-        self.set_pose(moved(self.require_pose(), metres * direction, self._axes()))
-
-    def _turn(self, axis: Array, degrees: float) -> None:
-        turn = np.deg2rad(degrees) * axis
-        self.set_pose(turned(self.require_pose(), turn, self._axes(), self._middle()))
-
-    def _drag(self, before: Pose, now: Pose, phase: str) -> None:
-        if phase == "start" or self._dragging is None:
-            self._dragging = self.require_pose()
-        pose = dragged(self._dragging, before, now)
-        if phase == "end":
-            self._dragging = None
-            self.set_pose(pose)
-        else:
-            self.stage.move_object(pose)
-            self.panel.show_pose(pose)
-
-    def _type_pose(self) -> None:
-        self.set_pose((self.panel.place_m, self.panel.rotation))
-
-    def _copy_previous(self) -> None:
-        before = self.editing.before(self.frame)
-        if before is None or before.pose is None:
-            raise LabellingError("there is no pose in a keyframe before this frame")
-        self.set_pose(before.pose)
-
-    def _choose_part(self) -> None:
-        part, frame = self.panel.part, self.frame
-        self.edit(lambda editing: edits.relative_to(editing, part, frame))
-
     def _take_over(self) -> None:
         self.kept.take_over()
         self.editing = self.kept.load()
         self.refresh()
 
-    def _acts(self) -> Mapping[str, Act]:
-        page = DEFAULT_PAGE
-        acts: dict[str, Act] = {
+    def acts(self) -> Mapping[str, Act]:
+        """Return what keys and buttons do to what is looked at."""
+        return {
             "scrub": self._scrub,
             "back": lambda: self.go(self.frame - 1),
             "on": lambda: self.go(self.frame + 1),
@@ -271,22 +266,5 @@ class Desk:
             "look_3d": lambda: self._look("3-D"),
             "zoom": self._zoom,
             "redraw": self.refresh,
-            "type_pose": self._type_pose,
-            "choose_part": self._choose_part,
-            "set_keyframe": lambda: self.set_pose(self.require_pose()),
-            "delete_keyframe": lambda: self.edit(
-                lambda editing: edits.without_keyframe(editing, self.frame)
-            ),
-            "mark_absent": lambda: self.set_pose(None),
-            "copy_previous": self._copy_previous,
-            "undo": lambda: self.edit(edits.undone),
-            "redo": lambda: self.edit(edits.redone),
             "take_over": self._take_over,
         }
-        for name, direction in STEPS.items():
-            acts[name] = partial(self._step, direction, page.coarse_m)
-            acts[f"fine_{name}"] = partial(self._step, direction, page.fine_m)
-        for name, axis in TURNS.items():
-            acts[name] = partial(self._turn, axis, page.coarse_deg)
-            acts[f"fine_{name}"] = partial(self._turn, axis, page.fine_deg)
-        return acts

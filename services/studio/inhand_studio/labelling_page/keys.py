@@ -48,7 +48,7 @@ KEYS: tuple[Key, ...] = (
     Key("home", None, "first", "To the first frame"),
     Key("end", None, "last", "To the last frame"),
     Key("P", None, "play", "Play, and stop"),
-    Key("N", None, "set_keyframe", "Set a keyframe at the shown pose"),
+    Key("N", None, "set_keyframe", "Set a keyframe at the shown pose, refined or not"),
     Key("delete", None, "delete_keyframe", "Delete the keyframe"),
     Key("M", None, "mark_absent", "Mark the object as absent"),
     Key("C", None, "copy_previous", "Copy the pose of the keyframe before"),
@@ -65,6 +65,13 @@ KEYS: tuple[Key, ...] = (
         for held in (None, "shift")
         for key, name, about in _TURNS
     ),
+    Key("B", None, "snap", "Bring the object to the image"),
+    Key("7", None, "start_placing", "Place the object by one click"),
+    Key("8", None, "start_clicks", "Start by three clicks"),
+    Key("escape", None, "end_clicks", "End the clicks"),
+    Key("6", None, "estimate", "Take the tracker's estimate"),
+    Key("9", None, "assist", "Refine between keyframes"),
+    Key("0", None, "worst", "To the frame that is doubted most"),
     Key("V", None, "zoom", "Zoom to the object, and back"),
     Key("1", None, "look_colour", "Look at colours"),
     Key("2", None, "look_depth", "Look at depths"),

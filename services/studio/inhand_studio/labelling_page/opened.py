@@ -53,11 +53,11 @@ class OpenedRecording:
                 f"{self.path} has no camera {camera!r}: choose one of {', '.join(self.cameras)}"
             )
         self.camera = camera or self.cameras[0]
-        self._frames = FrameIndex(self._index, self.camera)
+        self.frames = FrameIndex(self._index, self.camera)
         self._pixels = self._index.messages(RGBD.stream, self.camera)
-        self.info = self._frames.camera_info()
-        alone = not len(self._frames)
-        self.times_ns = self._pixels.stamps.captured_ns if alone else self._frames.times_ns
+        self.info = self.frames.camera_info()
+        alone = not len(self.frames)
+        self.times_ns = self._pixels.stamps.captured_ns if alone else self.frames.times_ns
         self.image = lru_cache(IMAGES_KEPT)(self._read_image)
         self._all_joints: Array | None = None
         self.notes = tuple(self._find_notes())
@@ -71,7 +71,7 @@ class OpenedRecording:
         """Why its frames cannot be labelled; None where they can."""
         if self._index.note is not None:
             return f"{self._index.note}. It can be looked at, and labelled when it is whole."
-        if not len(self._frames):
+        if not len(self.frames):
             return (
                 "It has no skeletons, by which labels are counted: `inhand recording skeletons "
                 f"{self.path}` adds them from its pictures."
@@ -105,7 +105,7 @@ class OpenedRecording:
 
     def people(self, frame: int) -> tuple[Person, ...]:
         """Return everybody whom the camera saw in a frame; raises RecordingError."""
-        return self._frames.skeletons(frame).people if len(self._frames) else ()
+        return self.frames.skeletons(frame).people if len(self.frames) else ()
 
     def joints(self, frames: Sequence[int]) -> Array:
         """Return the joints (T, 20, 3) of whom labels are about in some frames, NaN where missing.
@@ -116,7 +116,7 @@ class OpenedRecording:
         if self._all_joints is None:
             seen = [self.people(frame) for frame in frames]
             if any(len(people) > 1 for people in seen):
-                self._all_joints = joints_between(self._frames, 0, len(self) - 1)
+                self._all_joints = joints_between(self.frames, 0, len(self) - 1)
         if self._all_joints is not None:
             return np.asarray(self._all_joints[list(frames)])
         nobody = np.full((20, 3), np.nan)
@@ -138,8 +138,8 @@ class OpenedRecording:
         return None
 
     def _pixels_of(self, frame: int) -> RgbdFrame | None:
-        if len(self._frames):
-            return self._frames.pixels(frame)
+        if len(self.frames):
+            return self.frames.pixels(frame)
         return RGBD.decode(self._pixels[frame].payload)
 
     def _find_notes(self) -> list[str]:

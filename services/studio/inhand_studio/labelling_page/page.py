@@ -5,12 +5,17 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from inhand_tracker.shape.shape import load_shape
+from inhand_tracker.shape.shape import ObjectShape, load_shape
 
+from inhand_studio.labelling_page.assistant import Eyes
 from inhand_studio.labelling_page.desk import Desk
+from inhand_studio.labelling_page.exporting import Exporting
+from inhand_studio.labelling_page.handling import Handling
+from inhand_studio.labelling_page.helping import Helping
 from inhand_studio.labelling_page.opened import OpenedRecording
-from inhand_studio.labelling_page.panel import put
+from inhand_studio.labelling_page.panel import Panel, put
 from inhand_studio.labelling_page.parameters import DEFAULT_PAGE
+from inhand_studio.labelling_page.stage import Stage
 from inhand_studio.visit import Visit
 
 NOTHING = "choose …"
@@ -36,6 +41,8 @@ class LabellingPage:
         self._add_choice()
         self._ticks = visit.action(lambda _: self._tick())
         threading.Thread(target=self._run_ticks, name="labelling", daemon=True).start()
+        if visit.studio.object_name in self._objects:
+            put(self._object, visit.studio.object_name)
         if visit.studio.recording is not None:
             put(self._recording, _named(visit.studio.recording, self._dataset))
             self._choose()
@@ -84,7 +91,7 @@ class LabellingPage:
             with self._container:
                 self._folder = self._gui.add_folder(shape.name)
             with self._folder:
-                self._desk = Desk(self._visit, recording, shape)
+                self._desk = lay_desk(self._visit, recording, shape, self._dataset)
             opened.pop_all()
 
     def _put_away(self) -> None:
@@ -107,6 +114,25 @@ class LabellingPage:
     def _tick(self) -> None:
         if self._desk is not None and not self._stopped.is_set():
             self._desk.tick()
+
+
+def lay_desk(visit: Visit, recording: OpenedRecording, shape: ObjectShape, dataset: Path) -> Desk:
+    """Open the keyframes of an object in a recording, and show both.
+
+    Raises LabellingError, RecordingError and DatasetError.
+    """
+    desk = Desk(visit, recording, shape)
+    try:
+        eyes, handling = Eyes(shape), Handling(desk)
+        helping = Helping(desk, eyes)
+        acts = {**desk.acts(), **handling.acts(), **helping.acts()}
+        panel = Panel(visit, len(recording), acts)
+        desk.begin(Stage(visit, recording, shape, handling.drag), panel)
+        Exporting(desk, dataset, eyes)
+    except BaseException:
+        desk.close()
+        raise
+    return desk
 
 
 def find_recordings(dataset: Path, also: Path | None = None) -> dict[str, Path]:

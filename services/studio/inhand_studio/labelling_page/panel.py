@@ -7,7 +7,6 @@ import numpy as np
 import viser
 from inhand_lab.labelling.equal_poses import Pose
 from inhand_tracker.body.anchors import ANCHORS
-from inhand_tracker.geometry.arrays import Array
 
 from inhand_studio.labelling_page import keys
 from inhand_studio.labelling_page.placing import from_degrees, to_degrees
@@ -33,10 +32,15 @@ class Panel:
         self._visit = visit
         self._acts = acts
         self.status = self._gui.add_markdown("")
+        self.said = self._gui.add_markdown("")
+        self._progress = self._gui.add_progress_bar(0.0, visible=False)
+        self._cancel = self._button("Cancel", "cancel")
+        self._cancel.visible = False
         self._take_over = self._button("Take over", "take_over")
         self._add_timeline(frames)
         self._add_pose()
         self._add_keyframes()
+        self._add_help()
         with self._gui.add_folder("Keys", expand_by_default=False):
             self._gui.add_markdown(keys.described())
         for key in keys.KEYS:
@@ -58,14 +62,10 @@ class Panel:
         return None if self._part.value == CAMERA_FRAME else str(self._part.value)
 
     @property
-    def place_m(self) -> Array:
-        """The translation (3,) that was typed, in metres."""
-        return 0.01 * np.array(self._place.value, float)
-
-    @property
-    def rotation(self) -> Array:
-        """The rotation (4,) that was typed."""
-        return from_degrees(np.array(self._turns.value, float))
+    def typed(self) -> Pose:
+        """The pose that its numbers say."""
+        place, turns = (np.array(one.value, float) for one in (self._place, self._turns))
+        return 0.01 * place, from_degrees(turns)
 
     @property
     def shows_labels(self) -> bool:
@@ -94,6 +94,14 @@ class Panel:
         """Let things be edited, or offer to take over."""
         self._take_over.visible = not claimed
 
+    def show_progress(self, doing: str | None, share: float) -> None:
+        """Show how much of what runs in the background is done, with a button that ends it."""
+        running = doing is not None
+        self._progress.visible = self._cancel.visible = running
+        if running:
+            self._progress.value = round(100.0 * share, 1)  # type: ignore[misc]
+            self._cancel.label = f"Cancel {doing}"
+
     def show_playing(self, playing: bool) -> None:
         self._play.label = "Stop" if playing else "Play"
 
@@ -121,15 +129,17 @@ class Panel:
         self._labels.on_update(self._by_browser("redraw"))
 
     def _add_pose(self) -> None:
-        with self._gui.add_folder("Pose"):
-            self._axes = self._gui.add_dropdown(
-                "Move along", (OBJECT_FRAME, CAMERA_FRAME, *ANCHORS), initial_value=CAMERA_FRAME
-            )
-            self._axes.on_update(self._by_browser("redraw"))
-            self._place = self._gui.add_vector3("Place (cm)", (0.0, 0.0, 0.0), step=0.1)
-            self._place.on_update(self._by_browser("type_pose"))
-            self._turns = self._gui.add_vector3("Turns (°)", (0.0, 0.0, 0.0), step=0.1)
-            self._turns.on_update(self._by_browser("type_pose"))
+        axes = (OBJECT_FRAME, CAMERA_FRAME, *ANCHORS)
+        self._axes = self._gui.add_dropdown("Move along", axes, initial_value=CAMERA_FRAME)
+        self._axes.on_update(self._by_browser("redraw"))
+        # A form: each key that is hit in a number changes what is shown, and Enter the keyframe.
+        form = self._gui.add_form("Pose in the camera's frame (Enter sets it)")
+        form.on_submit(self._acting("type_pose"))
+        with form:
+            self._place = self._gui.add_vector3("Place (cm)", (0.0, 0.0, 0.0), step=0.01)
+            self._place.on_update(self._by_browser("preview"))
+            self._turns = self._gui.add_vector3("Turns (°)", (0.0, 0.0, 0.0), step=0.01)
+            self._turns.on_update(self._by_browser("preview"))
 
     def _add_keyframes(self) -> None:
         with self._gui.add_folder("Keyframes"):
@@ -144,6 +154,18 @@ class Panel:
                 ("Copy previous", "copy_previous"),
                 ("Undo", "undo"),
                 ("Redo", "redo"),
+            ):
+                self._button(label, name)
+
+    def _add_help(self) -> None:
+        with self._gui.add_folder("Help"):
+            for label, name in (
+                ("Place by one click", "start_placing"),
+                ("Start by three clicks", "start_clicks"),
+                ("Bring to the image", "snap"),
+                ("Take the tracker's estimate", "estimate"),
+                ("Refine between keyframes", "assist"),
+                ("Go to the worst frame", "worst"),
             ):
                 self._button(label, name)
 

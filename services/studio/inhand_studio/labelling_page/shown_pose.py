@@ -22,8 +22,8 @@ Standing = Literal["keyframe", "between", "refined", "guess", "absent"]
 FIRST_M = 1.5
 """Metres before the camera at which an object stands of which nothing is known."""
 
-UPRIGHT = np.array([0.0, 1.0, 0.0, 0.0])
-"""A rotation with y up and z towards the camera, whose own y points down."""
+UPRIGHT = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
+"""A rotation with z up, as objects stand, where the camera's y points down."""
 
 
 @dataclass(frozen=True)
