@@ -43,3 +43,11 @@ def tab(browser: Browser, url: str, **options: Any) -> Iterator[Page]:
     page.goto(url)
     yield page
     context.close()
+
+
+def fill(page: Page, label: str, text: str) -> None:
+    """Write into a control of the panel that stands beside a label."""
+    row = page.locator(".mantine-Flex-root", has=page.get_by_text(label, exact=True))
+    control = row.locator("input:visible").first
+    control.fill(text)
+    control.press("Enter")

@@ -23,6 +23,11 @@ class Picture:
         self._lock = threading.Lock()
         self._colour: Bytes | None = None
 
+    @property
+    def message(self) -> RgbdFrame | Preview:
+        """The message that it came in."""
+        return self._message
+
     def colour(self, info: CameraInfo) -> Bytes | None:
         """Return its pixels (H, W, 3) RGB: its colours, else its depth, near ones brighter.
 

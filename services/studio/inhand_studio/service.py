@@ -40,7 +40,8 @@ def run(settings: Settings[StudioSettings]) -> None:
     check(settings)
     with running_daemon("studio", settings) as daemon:
         rig = Rig(daemon)
-        studio = Studio(chosen.dataset, daemon, rig=rig, models=models_of(settings.origin.path))
+        config = settings.origin.path
+        studio = Studio(chosen.dataset, daemon, rig=rig, models=models_of(config), config=config)
 
         def visit_of(client: viser.ClientHandle) -> Visit:
             return Visit(client, studio, PAGES, "Live")

@@ -15,7 +15,7 @@ class Studio:
     """The ``dataset`` that pages show and write, and the ``daemon`` whose rig they look at: None
     where a recording is looked at without a rig, as is ``rig``, what is heard of it. ``recording``
     is the one to begin with, and ``object_name`` the object, if any. ``models`` are the rig's, as
-    far as its settings name them."""
+    far as its settings name them, in the file ``config``."""
 
     dataset: Path
     daemon: Daemon | None = None
@@ -23,6 +23,7 @@ class Studio:
     object_name: str | None = None
     rig: Rig | None = None
     models: tuple[Path, ...] = ()
+    config: Path | None = None
 
     @cached_property
     def shapes(self) -> Shapes:

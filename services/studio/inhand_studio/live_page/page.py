@@ -66,6 +66,11 @@ class LivePage:
         self._thread = threading.Thread(target=self._run, name="live page", daemon=True)
         self._thread.start()
 
+    @property
+    def camera(self) -> str:
+        """The name of the camera that is chosen."""
+        return str(self._camera.value)
+
     def close(self) -> None:
         """Look at nothing any longer; called with the visit's lock held."""
         self._stop.set()

@@ -1,0 +1,1 @@
+"""The page on which training recordings of the rig are made."""

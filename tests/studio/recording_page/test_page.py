@@ -1,0 +1,68 @@
+"""The recording page of a studio, in Chromium."""
+
+from pathlib import Path
+
+import pytest
+from browser import chromium, fill, tab
+from inhand_lab.datasets.dataset import load_dataset
+from inhand_runtime.errors import InhandError
+from inhand_studio.recording_page.wishes import Wishes, record_arguments
+from running_rig import RunningRig, eventually
+
+WISHES = Wishes(" Ada B ", True, "drink", None, "front", 5.0, 0.0)
+
+
+def test_wishes_become_the_arguments_of_the_verb_and_names_are_needed() -> None:
+    arguments = record_arguments(WISHES, Path("/data set"), Path("rig.toml"))
+    assert arguments == [
+        "record",
+        "--dataset=/data set",
+        "--camera=front",
+        "--participant=Ada B",
+        "--interaction=drink",
+        "--left-handed",
+        "--countdown=5",
+        "--config=rig.toml",
+    ]
+    nobody = Wishes(" ", False, "drink", "mug", "front", 5.0, 9.0)
+    with pytest.raises(InhandError, match="Participant"):
+        record_arguments(nobody, Path(), None)
+
+
+@pytest.mark.long
+def test_a_recording_is_made_in_the_browser_and_is_in_the_dataset(
+    rig: RunningRig, tmp_path: Path
+) -> None:
+    dataset = tmp_path / "dataset"
+    rig.configure(
+        '[capture.front]\nsource = "simulator"\nwait_for_reader_s = 0\n'
+        f'[studio.desk]\ndataset = "{dataset}"\nport = 0\n'
+    )
+    capture = rig.inhand("capture", "--config", rig.config)
+    studio = rig.inhand("studio", "--config", rig.config)
+    studio.said("the studio is at ")
+    url = studio.stderr.split("the studio is at ")[1].split()[0]
+    with chromium() as browser, tab(browser, url) as page:
+        page.get_by_text("Record", exact=True).click()
+        page.get_by_role("button", name="Start recording").click()
+        page.get_by_text("write who is recorded (Participant)").wait_for()
+        fill(page, "Participant", "Ada")
+        fill(page, "Interaction", "drinkFromMug")
+        fill(page, "Countdown, s", "1")
+        fill(page, "Length, s", "0")
+        page.get_by_role("button", name="Start recording").click()
+        page.get_by_text("Ctrl-C ends it").wait_for()
+        page.screenshot(path=str(tmp_path / "recording.png"))
+        page.get_by_role("button", name="Stop recording").click()
+        page.get_by_text("0 lost").wait_for()
+        (entry,) = load_dataset(dataset).entries
+        assert (entry.participant, entry.interaction) == ("Ada", "drinkFromMug")
+
+        capture.stop()
+        page.get_by_text("No picture comes").first.wait_for()
+        page.get_by_role("button", name="Start recording").click()
+        page.get_by_role("button", name="Stop recording").wait_for()
+    # The tab is gone: what it recorded ends with it.
+    assert studio.stop() == 0
+    assert "Traceback" not in studio.stderr
+    eventually("no half a file", lambda: not list(dataset.glob("recordings/*.part")))
