@@ -166,7 +166,7 @@ def _record(look: Look, view: _View, wishes: TakeWishes) -> Take:
     view.begin()
     began = time.monotonic()
     with _whole_or_gone(wishes.folder, view) as file:
-        view.say("Recording" + ("; Ctrl-C ends it." if wishes.seconds is None else "."))
+        view.say("Recording" + (" until you stop it (Ctrl-C)." if wishes.seconds is None else "."))
         missing = _write_until_stopped(look, view, file, wishes.seconds)
         if not view.watch.skeletons:
             raise InhandError(

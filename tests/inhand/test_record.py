@@ -34,7 +34,7 @@ def test_takes_are_whole_and_in_the_dataset_or_nothing_of_them_is(
     told = tmp_path / "told.json"
     timed = _record(rig, folder, "--seconds", "2", "--json", told)
     stopped = _record(rig, folder, "--left-handed", "--participant", "Bob")
-    stopped.said("Ctrl-C ends it")
+    stopped.said("until you stop it")
     assert timed.wait() == 0, timed.stderr
     assert stopped.stop(signal.SIGINT) == 0, stopped.stderr
     entries = load_dataset(folder).entries

@@ -51,7 +51,7 @@ def test_a_recording_is_made_in_the_browser_and_is_in_the_dataset(
         fill(page, "Countdown, s", "1")
         fill(page, "Length, s", "0")
         page.get_by_role("button", name="Start recording").click()
-        page.get_by_text("Ctrl-C ends it").wait_for()
+        page.get_by_text("until you stop it").wait_for()
         page.screenshot(path=str(tmp_path / "recording.png"))
         page.get_by_role("button", name="Stop recording").click()
         page.get_by_text("0 lost").wait_for()
