@@ -18,7 +18,7 @@ from inhand_tracker.methods.darby2014.variants import TABLE_1
 from inhand_tracker.methods.registry import ALL_TERMS, FUSION, METHODS, MethodName
 from rich.console import Console
 
-from inhand.progress import progress_bar
+from inhand.progress import add_progress_option, progress_bar
 from inhand.results import write_json
 
 
@@ -45,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seeds", type=int, default=1, metavar="N", help="repetitions (1)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
     parser.add_argument("--report", type=Path, metavar="DIR", help="write tables and figures")
+    add_progress_option(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -54,7 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         prepare_report_folder(arguments.report)
     cores = usable_cores()
-    with progress_bar("evaluating", protocol.trials()) as advance:
+    lines = arguments.progress_lines
+    with progress_bar("evaluating", protocol.trials(), lines=lines) as advance:
         trials = evaluate(protocol, cores, advance)
     result = _result(protocol, trials, time.monotonic() - began)
     console = Console()

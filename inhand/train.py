@@ -19,7 +19,7 @@ from inhand_tracker.recognition.recogniser_file import save_recogniser
 from rich.console import Console
 from rich.table import Table
 
-from inhand.progress import progress_bars
+from inhand.progress import add_progress_option, progress_bars
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -47,6 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="MODEL",
         help="with --recogniser: learn from the dataset's images how each object is seen",
     )
+    add_progress_option(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -57,7 +58,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.recogniser:
         return _train_recogniser(dataset, arguments)
     entries = entries_for(dataset, arguments.object, arguments.without)
-    with progress_bars({**model_stages(len(entries)), "saving": 1}) as advance:
+    stages = {**model_stages(len(entries)), "saving": 1}
+    with progress_bars(stages, lines=arguments.progress_lines) as advance:
         model = train(dataset, entries, advance)
         save_model(model, arguments.output)
         advance("saving")
@@ -80,7 +82,8 @@ def _train_recogniser(dataset: Dataset, arguments: argparse.Namespace) -> int:
             f"no participant {unknown[0]!r}; there are: {', '.join(sorted(participants))}"
         )
     entries = [entry for entry in dataset.entries if entry.participant not in arguments.without]
-    with progress_bars({**recogniser_stages(len(entries)), "saving": 1}) as advance:
+    stages = {**recogniser_stages(len(entries)), "saving": 1}
+    with progress_bars(stages, lines=arguments.progress_lines) as advance:
         recogniser = train_recogniser(dataset, entries, advance)
         if arguments.models:
             models = _models_of(recogniser.actions, arguments.models)

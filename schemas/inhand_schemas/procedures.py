@@ -49,6 +49,20 @@ class ControlReply(Struct, frozen=True, kw_only=True):
     problem: Text | None = None
 
 
+class ReloadRequest(Struct, frozen=True, kw_only=True):
+    """Load the models that its settings name anew, of one tracker or of all."""
+
+    tracker: Name | None = None
+
+
+class ReloadReply(Struct, frozen=True, kw_only=True):
+    """Which objects a tracker follows from now on; ``problem`` is why it stays with what it had."""
+
+    tracker: Name
+    objects: Annotated[tuple[Name, ...], Meta(max_length=1024)]
+    problem: Text | None = None
+
+
 @dataclass(frozen=True)
 class Procedure(Generic[Q, R]):
     """One verb of a service, ``{realm}/@v1/{rig}/@rpc/{service}/{verb}``."""
@@ -87,3 +101,4 @@ def _decoded(data: bytes, kind: type[S]) -> S:
 
 SHUTTER = Procedure("capture", "shutter", ShutterRequest, ShutterReply)
 CONTROL = Procedure("capture", "control", ControlRequest, ControlReply)
+RELOAD = Procedure("tracker", "reload", ReloadRequest, ReloadReply)

@@ -24,7 +24,7 @@ from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import UNBOUNDED, Inbox, Lane, Received
 from inhand_runtime.logs import configure_logs
 from inhand_runtime.memory import give_libraries_back, give_memory_back
-from inhand_runtime.questions import Question, answer
+from inhand_runtime.questions import Question, answer, ask
 from inhand_runtime.session import (
     Publisher,
     Session,
@@ -143,6 +143,14 @@ class Daemon:
             return None if reply is None else procedure.encode(reply)
 
         self._questions.append(answer(self._session, procedure.key(self.site), receive))
+
+    def ask(self, procedure: Procedure[Q, R], request: Q, timeout_s: float) -> list[R]:
+        """Ask all instances that a procedure's request concerns; the replies that came in time.
+
+        Raises InhandError for one that fails, and MessageError for a reply that is none.
+        """
+        replies = ask(self._session, procedure.key(self.site), procedure.encode(request), timeout_s)
+        return [procedure.reply(data) for data in replies]
 
     def hear_namesakes(self, key: str) -> Subscription:
         """Note, as a trouble, that another process publishes on a key of this instance's own."""

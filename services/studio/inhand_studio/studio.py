@@ -8,6 +8,7 @@ from inhand_runtime.daemon import Daemon
 
 from inhand_studio.rig import Rig
 from inhand_studio.shapes import Shapes
+from inhand_studio.training_page.training import Trainings
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,11 @@ class Studio:
     rig: Rig | None = None
     models: tuple[Path, ...] = ()
     config: Path | None = None
+
+    @cached_property
+    def trainings(self) -> Trainings:
+        """The training that runs, or ran last, for whichever tab looks."""
+        return Trainings()
 
     @cached_property
     def shapes(self) -> Shapes:

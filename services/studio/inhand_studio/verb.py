@@ -51,6 +51,11 @@ class Verb:
         """Its exit code; None while it runs."""
         return None if self.running or self._process is None else self._process.returncode
 
+    def ended(self, timeout_s: float) -> bool:
+        """Wait for its end, for a time; whether it has come."""
+        self._thread.join(timeout_s)
+        return not self.running
+
     def interrupt(self) -> None:
         """Let it end as at Ctrl-C, which for a recording is its usual end."""
         self._send(signal.SIGINT)

@@ -6,11 +6,13 @@ from collections.abc import Callable, Sequence
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
+from inhand_runtime.errors import InhandError
 from inhand_runtime.inbox import UNBOUNDED, Received
 from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo, ObjectPose, RgbdFrame, Skeletons
+from inhand_schemas.procedures import RELOAD, ReloadReply, ReloadRequest
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
 
 from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
@@ -59,10 +61,10 @@ class TrackerService:
         method = METHODS[settings.method]
         terms = method.usual_terms if settings.likelihood is None else settings.likelihood
         self._needs = method.needs(terms)
-        self._people = PeopleWatched(new_watcher, settings.people)
-        self._publishers: dict[str, Publisher[ObjectPose]] = {
-            name: daemon.publisher(POSE, name) for name in self._people.names
-        }
+        self._most_people = settings.people
+        self._fresh: PeopleWatched | None = None
+        self._publishers: dict[str, Publisher[ObjectPose]] = {}
+        self._watch(PeopleWatched(new_watcher, settings.people))
         self._infos = InfoWatch(daemon.health)
         self._pictures = Shortfall(
             daemon.health,
@@ -90,6 +92,9 @@ class TrackerService:
         """Track until the daemon stops."""
         self._daemon.health.state = "running"
         while not self._daemon.stop.is_set():
+            if (fresh := self._fresh) is not None:
+                self._fresh = None
+                self._watch(fresh)
             self._take_what_came()
             moment = self._moments.next(self._now())
             if moment is not None:
@@ -99,6 +104,22 @@ class TrackerService:
                 if moment.skeleton.people:
                     self._adapt(self._now() - began)
         self._leave_what_waits()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The objects that are followed, or will be with the next frame."""
+        return (self._fresh or self._people).names
+
+    def follow_anew(self, new_watcher: Callable[[], Watcher]) -> None:
+        """Follow what these watchers do, with the next frame; from any thread."""
+        self._fresh = PeopleWatched(new_watcher, self._most_people)
+
+    def _watch(self, people: PeopleWatched) -> None:
+        """Follow these people and what they use from here on."""
+        self._people = people
+        for name in people.names:
+            if name not in self._publishers:
+                self._publishers[name] = self._daemon.publisher(POSE, name)
 
     def _subscribe(self, camera: str) -> None:
         """Let messages arrive: the newest, or all as far as there is memory."""
@@ -228,9 +249,34 @@ def run(settings: Settings[TrackerSettings]) -> None:
     first = check(settings)
     with running_daemon("tracker", settings) as daemon:
         log.info("tracking %s with %s", ", ".join(first.names), chosen.method)
-        loaded = [first]
+        service = TrackerService(daemon, chosen, _watchers(settings, first))
+        daemon.answer(RELOAD, lambda request: _reload(request, settings, service))
+        service.run()
 
-        def new_watcher() -> Watcher:
-            return loaded.pop() if loaded else load_watcher(settings.instance, chosen)
 
-        TrackerService(daemon, chosen, new_watcher).run()
+def _watchers(settings: Settings[TrackerSettings], first: Watcher) -> Callable[[], Watcher]:
+    """Return what makes a watcher for each person, of whom the first has one already."""
+    loaded = [first]
+
+    def new_watcher() -> Watcher:
+        return loaded.pop() if loaded else load_watcher(settings.instance, settings.service)
+
+    return new_watcher
+
+
+def _reload(
+    request: ReloadRequest, settings: Settings[TrackerSettings], service: TrackerService
+) -> ReloadReply | None:
+    """Load the models anew beside the work, and follow them; what cannot be loaded changes nothing.
+
+    None where another tracker is asked.
+    """
+    name = settings.instance
+    if request.tracker not in (None, name):
+        return None
+    try:
+        service.follow_anew(_watchers(settings, load_watcher(name, settings.service)))
+    except InhandError as error:
+        return ReloadReply(tracker=name, objects=service.names, problem=str(error))
+    log.info("loaded anew: %s", ", ".join(service.names))
+    return ReloadReply(tracker=name, objects=service.names)
