@@ -146,3 +146,19 @@ def test_what_is_labelled_trains(tmp_path: Path) -> None:
     table.write_text(table.read_text().replace(".mcap", ".labelled.mcap"))
     assert main(["train", str(folder), "-o", str(tmp_path / "box.model")]) == 0
     assert (tmp_path / "box.model").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--assisted"], "--assisted is for labels between keyframes: give --keyframes"),
+        (["--keyframes", "box.json"], "give --object NAME as well"),
+        (["--object", "mug"], "object.toml"),
+    ],
+)
+def test_options_that_do_not_belong_together_are_refused_before_a_page_is_served(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], said: str
+) -> None:
+    assert main(["label", str(dataset(tmp_path)), *options]) != 0
+    assert said in capsys.readouterr().err
+    assert main(["label", str(tmp_path / "none.mcap")]) == 2

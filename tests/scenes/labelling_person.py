@@ -74,6 +74,12 @@ class LabellingPerson:
         self._inputs(label).first.fill(text)
         self.page.wait_for_timeout(SENT_MS)
 
+    def choose(self, label: str, option: str) -> None:
+        """Choose from a list."""
+        self._inputs(label).first.click()
+        self.page.get_by_role("option", name=option, exact=True).click()
+        self.page.wait_for_timeout(SENT_MS)
+
     def tick(self, label: str) -> None:
         """Click on a checkbox."""
         self._inputs(label).first.click()

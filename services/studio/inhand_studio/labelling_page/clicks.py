@@ -65,7 +65,7 @@ def point_on(shape: ObjectShape, pose: Pose, origin: Array, direction: Array) ->
         turned = np.cross(offset, edges[0])
         second = turned @ along / determinants
         distances = (edges[1] * turned).sum(axis=1) / determinants
-    met = (first >= 0.0) & (second >= 0.0) & (first + second <= 1.0) & (distances > 0.0)
+        met = (first >= 0.0) & (second >= 0.0) & (first + second <= 1.0) & (distances > 0.0)
     if not met.any():
         raise LabellingError("that is beside the object: click on it where it is drawn")
     return np.asarray(start + distances[met].min() * along)

@@ -30,7 +30,7 @@ class Exporting:
             self._interaction = gui.add_text("Interaction", self._entry.interaction)
             self._participant = gui.add_text("Participant", self._entry.participant)
             self._handedness = gui.add_dropdown(
-                "Handedness", ("right", "left"), initial_value=self._entry.handedness
+                "Hand", ("right", "left"), initial_value=self._entry.handedness
             )
             self._assisted = gui.add_checkbox("Refined by the images", False)
             self._replace = gui.add_checkbox("Replace what is there", False)
