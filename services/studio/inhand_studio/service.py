@@ -1,6 +1,7 @@
 """The studio's daemon: serves the pages of a rig until it is stopped."""
 
 import logging
+import os
 from pathlib import Path
 
 import viser
@@ -21,6 +22,8 @@ from inhand_studio.visit import Visit
 log = logging.getLogger(__name__)
 
 IDLE_S = 0.1
+NICENESS = 10
+"""Where cores are few, capture and tracking go before those who watch them."""
 FOLDERS = {"dataset": "what the pages show and write (default: the setting)"}
 
 
@@ -38,6 +41,7 @@ def run(settings: Settings[StudioSettings]) -> None:
 
     chosen = settings.service
     check(settings)
+    os.setpriority(os.PRIO_PROCESS, 0, max(NICENESS, os.getpriority(os.PRIO_PROCESS, 0)))
     with running_daemon("studio", settings) as daemon:
         rig = Rig(daemon)
         config = settings.origin.path

@@ -5,14 +5,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from inhand_lab.datasets.tracks import Track, empty_track
+from inhand_lab.datasets.tracks import Track
 from inhand_runtime.errors import InhandError
 from inhand_tracker.model.model_file import load_model
 from inhand_tracker.shape.shape import ObjectShape
 
 from inhand_studio.review_page.errors import Estimate, errors_of
 from inhand_studio.review_page.parameters import ReviewParameters
-from inhand_studio.review_page.recording import OnProgress, ReviewedRecording
+from inhand_studio.review_page.recording import OnProgress, ReviewedRecording, empty_poses
 from inhand_studio.review_page.tracking_job import TrackedPoses, TrackingTask
 from inhand_studio.scene_parts import TRACKED, Colour
 from inhand_studio.shapes import Shapes
@@ -83,7 +83,7 @@ class Estimates:
         known = times_ns[frames] == tracked.times_ns
         if not known.any():
             raise InhandError("the poses are of no frame that is shown: choose the same camera")
-        track = empty_track(len(times_ns))
+        track = empty_poses(len(times_ns))
         track.translations[frames[known]] = tracked.track.translations[known]
         track.rotations[frames[known]] = tracked.track.rotations[known]
         shape = load_model(task.model).shape

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from inhand_lab.datasets.frame_index import FrameIndex
-from inhand_lab.datasets.tracks import Track, empty_track
+from inhand_lab.datasets.tracks import Track
 from inhand_runtime.recording import RecordingError
 from inhand_runtime.recording.message_index import IndexedMessages, RecordingIndex, open_index
 from inhand_schemas.messages import CameraInfo, ObjectPose, Person
@@ -117,7 +117,7 @@ class PosesByTime:
         Of several in a frame it is that of the person who is in ``people``, or the first. None
         where ``on_progress`` stops it.
         """
-        track, users = empty_track(len(times_ns)), dict[int, int]()
+        track, users = empty_poses(len(times_ns)), dict[int, int]()
         captured_ns = self._messages.stamps.captured_ns
         order = np.argsort(times_ns, kind="stable")
         places = np.searchsorted(times_ns, captured_ns, sorter=order)
@@ -142,6 +142,11 @@ class PosesByTime:
         if not isinstance(pose, ObjectPose) or self._camera not in ("", pose.camera):
             return None
         return pose
+
+
+def empty_poses(frames: int) -> Track:
+    """Return a track without any pose, nor room for covariances, which take most of a track's."""
+    return Track(np.full((frames, 3), np.nan), np.full((frames, 4), np.nan))
 
 
 def _numbers(captured_ns: Indices, time_ns: int) -> Indices:
