@@ -29,10 +29,14 @@ _FIELDS = {"SetCameraPositionMessage": "position", "SetCameraLookAtMessage": "lo
 
 @dataclass
 class Viewer:
-    """One viewer; it ``reads`` or is stuck. ``pictures`` and ``size`` (bytes) are what it got."""
+    """One viewer; it ``reads`` or is stuck, and ``answers`` when its camera is set or hangs then.
+
+    ``pictures`` and ``size`` (bytes) are what it got.
+    """
 
     url: str
     reads: bool = True
+    answers: bool = True
     pictures: int = 0
     size: int = 0
     camera: dict[str, Any] = field(default_factory=lambda: dict(CAMERA))
@@ -58,7 +62,7 @@ class Viewer:
             async for data in socket:
                 assert isinstance(data, bytes)
                 self.size += len(data)
-                if self._take(_messages(data)):
+                if self._take(_messages(data)) and self.answers:
                     await socket.send(msgspec.msgpack.encode(self.camera))
 
     def _take(self, messages: list[dict[str, Any]]) -> bool:

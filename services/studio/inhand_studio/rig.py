@@ -11,6 +11,7 @@ from typing import Any, Literal
 from inhand_runtime.daemon import Arrivals, Daemon
 from inhand_runtime.inbox import Received
 from inhand_runtime.roll import Roll
+from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.messages import CameraInfo, ObjectPose, Preview, RgbdFrame, Skeletons
 from inhand_schemas.topics import (
     HEALTH,
@@ -132,7 +133,11 @@ class Rig:
 
     def take(self, sample: Received) -> None:
         """Keep what a sample of the daemon's inbox says; for the main loop alone."""
-        topic, parsed = topic_of(sample.key)
+        try:
+            topic, parsed = topic_of(sample.key)
+        except KeyFormatError as error:
+            self._daemon.health.malformed(sample.key, error)
+            return
         if topic is HEALTH:
             if (health := self._daemon.decode(HEALTH, sample)) is not None:
                 self.roll.hear(health)

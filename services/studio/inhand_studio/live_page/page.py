@@ -9,7 +9,7 @@ import viser
 from inhand_runtime.errors import InhandError
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo, ObjectPose
-from inhand_tracker.geometry.camera import intrinsics_of
+from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 
 from inhand_studio.camera_view import CameraView
 from inhand_studio.drawn_scene import DrawnScene, PlacedObject
@@ -49,7 +49,7 @@ class LivePage:
         self._visit, self._rig, self._parameters = visit, rig, parameters
         self._looking = ExitStack()
         self._looked: tuple[str, Pictures | None] | None = None
-        self._info: CameraInfo | None = None
+        self._seen_from: tuple[str, Intrinsics] | None = None
         self._view: CameraView | None = None
         self._scene = DrawnScene(visit.client.scene)
         self._points = LivePoints(visit.client.scene, parameters)
@@ -133,8 +133,9 @@ class LivePage:
             self._looked, self._shown = wanted, None
             if wanted[1] is None and self._view is not None:
                 self._view.hide()
-        if self._view is None or info is not self._info:
-            self._info = info
+        seen_from = camera, intrinsics_of(info)
+        if self._view is None or self._seen_from != seen_from:
+            self._seen_from = seen_from
             self._view = CameraView(self._visit, intrinsics_of(info))
 
     def _show_camera(self, camera: str, info: CameraInfo, now: float) -> None:
