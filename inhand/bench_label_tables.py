@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from statistics import mean
 
-from inhand_lab.benchmarks.label_errors import KINDS, LabelCheck, LabelErrors
+from inhand_lab.benchmarks.label_errors import COUNTED_KINDS, KINDS, LabelCheck, LabelErrors
 from rich.console import Group
 from rich.table import Table
 
@@ -15,7 +15,21 @@ def labels_table(checks: Sequence[LabelCheck]) -> Group:
     return Group(
         _table("a third or more of the object is visible", [(c, c.visible) for c in checks]),
         _table("less of it is visible", [(c, c.hidden) for c in checks if c.hidden[0].frames]),
+        _needed_table(checks),
     )
+
+
+def _needed_table(checks: Sequence[LabelCheck]) -> Table:
+    """A row an interaction: how many keyframes each kind of labels needs."""
+    title = "fewest keyframes a recording that reach the aims (frames from one to the next)"
+    table = listing(("interaction",), COUNTED_KINDS, title)
+    for check in checks:
+        cells = (
+            "more" if one.every is None else f"{one.keyframes} ({one.every})"
+            for one in check.needed
+        )
+        table.add_row(check.interaction, *cells)
+    return table
 
 
 def _table(title: str, rows: Sequence[tuple[LabelCheck, Sequence[LabelErrors]]]) -> Table:

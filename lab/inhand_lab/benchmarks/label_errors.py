@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from inhand_tracker.geometry import rotations
-from inhand_tracker.geometry.arrays import Array, Flags
+from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.shape.viewpoints import Viewpoints, find_viewpoints
 from inhand_tracker.wire.poses import pose_message
@@ -19,6 +19,7 @@ from inhand_lab.datasets.recorded_frames import RecordedFrame, labelled_camera, 
 from inhand_lab.datasets.tracks import Track, true_track
 from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.labelling.assisted_labels import assist
+from inhand_lab.labelling.equal_poses import Pose
 from inhand_lab.labelling.interpolation import interpolate
 from inhand_lab.labelling.keyframes import Keyframe
 from inhand_lab.labelling.scene import Scene, load_scene
@@ -26,6 +27,10 @@ from inhand_lab.labelling.scene import Scene, load_scene
 KINDS = ("plain", "hand", "assisted", "both")
 """Names of how labels are made: interpolated in the camera's frame, or relative to the hand that a
 person prefers; and the same two refined by the images."""
+_BY_HAND, _BY_IMAGES = KINDS[1::2], KINDS[2:]
+
+COUNTED_KINDS = KINDS[:3]
+"""Those of which it is found how many keyframes they need."""
 
 
 @dataclass(frozen=True)
@@ -41,13 +46,25 @@ class LabelErrors:
 
 
 @dataclass(frozen=True)
+class KeyframesNeeded:
+    """The most frames from one keyframe to the next with which a kind of labels reaches the aims,
+    and how many keyframes these are in a recording; None where none of those tried does."""
+
+    kind: str
+    every: int | None
+    keyframes: int | None
+
+
+@dataclass(frozen=True)
 class LabelCheck:
     """An interaction's errors by ``KINDS``: of frames in which at least a third of the object is
-    ``visible``, and of the others, ``hidden``."""
+    ``visible``, and of the others, ``hidden``; and the keyframes ``needed`` by
+    ``COUNTED_KINDS``."""
 
     interaction: str
     visible: tuple[LabelErrors, ...]
     hidden: tuple[LabelErrors, ...]
+    needed: tuple[KeyframesNeeded, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -89,52 +106,91 @@ def check_labels(
     """Yield each interaction's errors; raises DatasetError, or LabellingError without images."""
     for interaction, entries in chosen_entries(dataset, parameters).items():
         shape = dataset.shape(str(entries[0].object))
-        viewpoints = find_viewpoints(shape)
-        measured: dict[str, list[_Measured]] = {kind: [] for kind in KINDS}
+        seen, gauge = (shape, find_viewpoints(shape)), ErrorGauge(shape)
+        measured: dict[int, dict[str, list[_Measured]]] = {}
+        frames = 0
         for number, entry in enumerate(entries):
-            random = np.random.default_rng((parameters.seed, number))
-            for kind, one in _measure(dataset, entry, shape, viewpoints, random, parameters):
-                measured[kind].append(one)
+            recording = _Labelled.of(dataset, entry, gauge)
+            frames = len(recording.visible)
+            for every in dict.fromkeys((parameters.every, *parameters.spacings)):
+                random = np.random.default_rng((parameters.seed, number))
+                placed = recording.inaccurate(every, random, parameters)
+                kinds = KINDS if every == parameters.every else COUNTED_KINDS
+                for kind in kinds:
+                    errors = recording.errors(kind, placed, seen)
+                    measured.setdefault(every, {}).setdefault(kind, []).append(errors)
             on_recording()
-        yield _check(interaction, measured, parameters)
+        yield _check(interaction, measured, frames, parameters)
 
 
-def _measure(
-    dataset: Dataset,
-    entry: DatasetEntry,
-    shape: ObjectShape,
-    viewpoints: Viewpoints,
-    random: np.random.Generator,
-    parameters: LabelCheckParameters,
-) -> Iterator[tuple[str, _Measured]]:
-    """Label a recording in every way, from the same keyframes."""
-    path = dataset.path(entry)
-    frames = load_frames(path, entry.object)
-    scene = load_scene(path, labelled_camera(frames) or "camera")
-    truth, gauge = true_track(frames), ErrorGauge(shape)
-    visible, placed = _visible(entry, frames), _inaccurate(truth, scene, random, parameters)
-    for relative, part in enumerate((None, f"{entry.handedness} hand")):
+@dataclass(frozen=True)
+class _Labelled:
+    """A recording with its truth, the share of the object that is ``visible`` in each frame (T,),
+    and the hand that the person prefers."""
+
+    scene: Scene
+    truth: Track
+    gauge: ErrorGauge
+    visible: Array
+    hand: str
+
+    @classmethod
+    def of(cls, dataset: Dataset, entry: DatasetEntry, gauge: ErrorGauge) -> "_Labelled":
+        """Read a recording of a dataset."""
+        path = dataset.path(entry)
+        frames = load_frames(path, entry.object)
+        scene = load_scene(path, labelled_camera(frames) or "camera")
+        hand = f"{entry.handedness} hand"
+        return cls(scene, true_track(frames), gauge, _visible(entry, frames), hand)
+
+    def inaccurate(
+        self, every: int, random: np.random.Generator, parameters: LabelCheckParameters
+    ) -> dict[int, Pose]:
+        """Return keyframes by frame: true poses, exactly a person's inaccuracy off."""
+        last = len(self.visible) - 1
+        placed = {}
+        for frame in keyframes_of(last, every):
+            shift, axis = (one / np.linalg.norm(one) for one in random.standard_normal((2, 3)))
+            turn = rotations.from_vector(parameters.keyframe_rad * axis)
+            placed[frame] = (
+                self.truth.translations[frame] + parameters.keyframe_m * shift,
+                rotations.multiply(turn, self.truth.rotations[frame]),
+            )
+        return placed
+
+    def errors(
+        self, kind: str, placed: dict[int, Pose], seen: tuple[ObjectShape, Viewpoints]
+    ) -> _Measured:
+        """Label in one way, and measure the frames between keyframes."""
         keyframes = [
             Keyframe(
                 frame=frame,
-                time_ns=int(scene.times_ns[frame]),
+                time_ns=int(self.scene.times_ns[frame]),
                 camera_from_object=pose_message(*pose),
-                relative_to=part,
+                relative_to=self.hand if kind in _BY_HAND else None,
             )
             for frame, pose in placed.items()
         ]
-        way = interpolate(keyframes, scene.times_ns, scene.joints, shape.symmetries)
+        scene = self.scene
+        way = interpolate(keyframes, scene.times_ns, scene.joints, seen[0].symmetries)
         between = np.isfinite(way.translations[:, 0])
         between[list(placed)] = False
-        nothing = np.full(len(frames), np.nan)
-        plain = Track(way.translations, way.rotations)
-        yield KINDS[relative], _errors(gauge, plain, truth, (nothing, visible), between)
-        found = assist(scene, keyframes, way, (shape, viewpoints))
-        refined = Track(found.labels.translations, found.labels.rotations)
-        yield (
-            KINDS[2 + relative],
-            _errors(gauge, refined, truth, (found.doubts, visible), between),
+        labels, doubts = Track(way.translations, way.rotations), np.full(len(between), np.nan)
+        if kind in _BY_IMAGES:
+            found = assist(scene, keyframes, way, seen)
+            labels, doubts = Track(found.labels.translations, found.labels.rotations), found.doubts
+        errors = self.gauge.compare(labels.of(between), self.truth.of(between))
+        return _Measured(
+            1e3 * errors.translation_m,
+            np.rad2deg(errors.rotation_rad),
+            doubts[between],
+            self.visible[between],
         )
+
+
+def keyframes_of(last: int, every: int) -> list[int]:
+    """Return the frames that get keyframes: one in so many, and the ``last``."""
+    return sorted({*range(0, last, every), last})
 
 
 def _visible(entry: DatasetEntry, frames: list[RecordedFrame]) -> Array:
@@ -148,39 +204,50 @@ def _visible(entry: DatasetEntry, frames: list[RecordedFrame]) -> Array:
     return np.array(shares, float)
 
 
-def _inaccurate(
-    truth: Track, scene: Scene, random: np.random.Generator, parameters: LabelCheckParameters
-) -> dict[int, tuple[Array, Array]]:
-    """Return keyframes by frame: true poses, exactly a person's inaccuracy off."""
-    last = len(scene.frames) - 1
-    placed = {}
-    for frame in sorted({*range(0, last, parameters.every), last}):
-        shift, axis = (one / np.linalg.norm(one) for one in random.standard_normal((2, 3)))
-        turn = rotations.from_vector(parameters.keyframe_rad * axis)
-        placed[frame] = (
-            truth.translations[frame] + parameters.keyframe_m * shift,
-            rotations.multiply(turn, truth.rotations[frame]),
-        )
-    return placed
+def _check(
+    interaction: str,
+    measured: dict[int, dict[str, list[_Measured]]],
+    frames: int,
+    parameters: LabelCheckParameters,
+) -> LabelCheck:
+    """Sum up an interaction, measured by frames between keyframes and by kind."""
+    errors = {every: _both(kinds, parameters) for every, kinds in measured.items()}
+    needed = []
+    for index, kind in enumerate(COUNTED_KINDS):
+        enough = [
+            every
+            for every in parameters.spacings
+            if reaches_aims(errors[every][0][index], errors[every][1][index], parameters)
+        ]
+        every = max(enough, default=None)
+        count = None if every is None else len(keyframes_of(frames - 1, every))
+        needed.append(KeyframesNeeded(kind, every, count))
+    return LabelCheck(interaction, *errors[parameters.every], tuple(needed))
 
 
-def _errors(
-    gauge: ErrorGauge, found: Track, truth: Track, told: tuple[Array, Array], between: Flags
-) -> _Measured:
-    errors = gauge.compare(found.of(between), truth.of(between))
-    return _Measured(
-        1e3 * errors.translation_m,
-        np.rad2deg(errors.rotation_rad),
-        told[0][between],
-        told[1][between],
+def reaches_aims(
+    visible: LabelErrors, hidden: LabelErrors, parameters: LabelCheckParameters
+) -> bool:
+    """Return whether errors are small enough, where the object is visible and where it is not;
+    where there are no frames nothing is asked."""
+    aims = (
+        (visible, parameters.visible_aim_mm, parameters.visible_aim_deg),
+        (hidden, parameters.hidden_aim_mm, parameters.hidden_aim_deg),
+    )
+    return all(
+        one.translation_mm is None
+        or one.rotation_deg is None
+        or (one.translation_mm <= millimetres and one.rotation_deg <= degrees)
+        for one, millimetres, degrees in aims
     )
 
 
-def _check(
-    interaction: str, measured: dict[str, list[_Measured]], parameters: LabelCheckParameters
-) -> LabelCheck:
+def _both(
+    kinds: dict[str, list[_Measured]], parameters: LabelCheckParameters
+) -> tuple[tuple[LabelErrors, ...], tuple[LabelErrors, ...]]:
+    """Return the errors of each kind where the object is visible, and where it is not."""
     rows: dict[bool, list[LabelErrors]] = {True: [], False: []}
-    for kind, some in measured.items():
+    for kind, some in kinds.items():
         millimetres, degrees, doubts, visible = (
             np.concatenate([getattr(one, name) for one in some])
             for name in ("translation_mm", "rotation_deg", "doubts", "visible")
@@ -188,7 +255,7 @@ def _check(
         for seen, row in rows.items():
             chosen = (visible >= parameters.visible_share) == seen
             row.append(_summary(kind, millimetres[chosen], degrees[chosen], doubts[chosen]))
-    return LabelCheck(interaction, tuple(rows[True]), tuple(rows[False]))
+    return tuple(rows[True]), tuple(rows[False])
 
 
 def _summary(kind: str, millimetres: Array, degrees: Array, doubts: Array) -> LabelErrors:

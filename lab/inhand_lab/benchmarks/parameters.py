@@ -243,6 +243,17 @@ class LabelCheckParameters:
     """Number of the dataset's people, the first ones, whose recordings are labelled."""
     every: int = 30
     """Frames from one keyframe to the next: a second."""
+    spacings: tuple[int, ...] = (60, 30, 15, 10)
+    """Frames from one keyframe to the next that are tried to find how many are needed, the most
+    first."""
+    visible_aim_mm: float = 5.0
+    """Greatest median error where the object is visible that is good enough, in mm."""
+    visible_aim_deg: float = 2.0
+    """Greatest median error of its turn there, in degrees."""
+    hidden_aim_mm: float = 10.0
+    """Greatest median error where it is not visible, in mm."""
+    hidden_aim_deg: float = 4.0
+    """Greatest median error of its turn there, in degrees."""
     keyframe_m: float = 0.005
     """Metres by which each keyframe is off, in a random direction."""
     keyframe_rad: float = float(np.deg2rad(3.0))

@@ -26,6 +26,7 @@ from inhand_lab.labelling.expectations import (
 from inhand_lab.labelling.looking import Look, Looker, unseen
 from inhand_lab.labelling.parameters import DEFAULT_LABELLING, LabellingParameters
 from inhand_lab.labelling.smoothing import Smoothed, Way, smooth
+from inhand_lab.labelling.stretch_views import Backwards
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class Shown:
         """Return the same, from the last frame to the first."""
         way = self.way
         back = Way(way.translations[::-1], way.rotations[::-1], way.times_s[::-1])
-        return Shown(back, self.views[::-1], self.pixels_per_m[::-1])
+        return Shown(back, Backwards(self.views), self.pixels_per_m[::-1])
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ def along_way(
     """Expect the object to move from where it was last as the way does between two frames, which it
     leaves slowly."""
     root = np.sqrt(seconds)
-    drift = _covariance(root * parameters.drift_m, root * parameters.drift_rad)
+    drift = _drift(root * parameters.drift_m, root * parameters.drift_rad, parameters)
     pose = carried((last.centre, last.rotation), *ways)
     return PoseGaussian(*pose, last.covariance + drift)
 
@@ -38,7 +38,7 @@ def near_way(
     root = np.sqrt(since_s * until_s / (since_s + until_s))
     known = _covariance(parameters.keyframe_m, parameters.keyframe_rad)
     return PoseGaussian(
-        *pose, known + _covariance(root * parameters.drift_m, root * parameters.drift_rad)
+        *pose, known + _drift(root * parameters.near_m, root * parameters.near_rad, parameters)
     )
 
 
@@ -68,6 +68,14 @@ def fused(first: PoseGaussian, second: PoseGaussian) -> tuple[PoseGaussian, floa
     rotation = rotations.multiply(rotations.from_vector(step[3:]), first.rotation)
     product = PoseGaussian(first.centre + step[:3], rotation, 0.5 * (covariance + covariance.T))
     return product, float(np.sqrt(square))
+
+
+def _drift(metres: float, radians: float, parameters: LabellingParameters) -> Array:
+    """Return the covariance (6, 6) of what an object does beside the way, of which less is along
+    the line of sight where its depth is not measured."""
+    covariance = _covariance(metres, radians)
+    covariance[2, 2] *= parameters.sight_share**2
+    return covariance
 
 
 def _covariance(metres: float, radians: float) -> Array:

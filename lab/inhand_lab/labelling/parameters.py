@@ -23,12 +23,17 @@ class LabellingParameters:
     """Root mean square in metres of a person's inaccuracy in placing a keyframe."""
     keyframe_rad: float = float(np.deg2rad(3.0))
     """Root mean square in radians of a person's inaccuracy in turning it."""
+    near_m: float = 0.15
+    """Root mean square in metres by which an object is usually off the interpolated way a second
+    from both keyframes; it grows with the square root of time."""
+    near_rad: float = 0.2
+    """Root mean square in radians of the same."""
     drift_m: float = 0.3
-    """Root mean square in metres by which an object leaves the interpolated way within a second; it
-    grows with the square root of time."""
+    """Root mean square in metres by which an object leaves, within a second, a way beside the
+    interpolated one; it grows with the square root of time."""
     drift_rad: float = 0.5
     """Root mean square in radians of the same."""
-    far_factor: float = 3.0
+    far_factor: float = 5.0
     """Number of times as far that some objects leave the way: a swing does within a second."""
     acceleration_m: float = 5.0
     """Usual acceleration of an object away from the interpolated way, in m/s²."""
@@ -39,6 +44,11 @@ class LabellingParameters:
     smoothed together."""
     smooth_drift_rad: float = 2.5
     """Root mean square in radians of the same."""
+    sight_share: float = 1.0
+    """Share of all these distances that an object goes along the line of sight."""
+    unmeasured_sight_share: float = 0.5
+    """The same of an object of which hardly any depth is measured: an image shows that way by the
+    object's size alone, often less exactly than interpolation does."""
     smoothing_steps: int = 5
     """Number of Gauss-Newton steps in which a stretch is smoothed."""
 
@@ -69,6 +79,11 @@ class LabellingParameters:
     """Root mean square in metres of a pose that a person set by eye, or by clicks."""
     given_rad: float = float(np.deg2rad(12.0))
     """Root mean square in radians of the same."""
+
+    # How much stays in memory (stretch_views).
+    views_kept: int = 60
+    """Number of images between keyframes that stay in memory, some 8 MB each of 640 × 480; of
+    longer stretches the others are read up to three times."""
 
     # How an image is looked at (looking, assistance).
     drawn: int = 300

@@ -81,6 +81,7 @@ def _terms(way: Way, guide: Way, parameters: LabellingParameters) -> Iterator[_T
     rate = 1.0 / seconds
     aside = guide.deviations(way)
     spread = np.repeat([parameters.acceleration_m, parameters.acceleration_rad], 3) / np.sqrt(3.0)
+    spread[2] *= parameters.sight_share
     yield _Term(
         np.hstack((rate[:-1], -rate[:-1] - rate[1:], rate[1:])),
         np.diff(np.diff(aside, axis=0) * rate, axis=0),
@@ -88,6 +89,7 @@ def _terms(way: Way, guide: Way, parameters: LabellingParameters) -> Iterator[_T
     )
     ones = np.ones_like(seconds)
     drift = np.repeat([parameters.smooth_drift_m, parameters.smooth_drift_rad], 3) / np.sqrt(3.0)
+    drift[2] *= parameters.sight_share
     yield _Term(np.hstack((-ones, ones)), np.diff(aside, axis=0), np.sqrt(seconds) * drift)
 
 

@@ -13,15 +13,14 @@ from inhand_runtime.recording import SEQUENCE_MASK
 from inhand_schemas.errors import MessageError
 from inhand_schemas.topics import POSE
 from inhand_tracker.geometry.arrays import Array, Flags
-from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS, new_tracker
 from inhand_tracker.model.model import Model
-from inhand_tracker.wire.conversion import Need, image_of
 
 from inhand_lab.datasets.frame_index import FrameIndex, FrameStamp, open_frames
 from inhand_lab.datasets.frame_pixels import FrameMatcher
 from inhand_lab.labelling.keyframes import LabellingError
 from inhand_lab.labelling.scene import Scene
+from inhand_lab.labelling.stretch_views import image_at
 
 
 @dataclass(frozen=True)
@@ -104,7 +103,7 @@ def tracked_suggestions(
                 tracker.restart()
             before = before if person is None else person
             joints = None if person is None else scene.joints[frame]
-            image = _image(frames, frame, scene, needs)
+            image = image_at(scene, frames, frame, needs)
             estimate = tracker.step(joints, int(scene.times_ns[frame]), image)
             if estimate.translation is not None and estimate.rotation is not None:
                 pose = estimate.translation, estimate.rotation
@@ -120,11 +119,3 @@ def _nothing(first: int, last: int) -> Suggestions:
     return Suggestions(
         first, np.full((count, 3), np.nan), np.full((count, 4), np.nan), np.zeros(count)
     )
-
-
-def _image(frames: FrameIndex, frame: int, scene: Scene, needs: tuple[Need, ...]) -> Image | None:
-    """Decode the image of a frame; None where there is none, or a damaged one."""
-    with suppress(MessageError):
-        pixels = frames.pixels(frame)
-        return None if pixels is None else image_of(pixels, scene.info, needs)
-    return None

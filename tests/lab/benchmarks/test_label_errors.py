@@ -4,12 +4,15 @@ from pathlib import Path
 
 import pytest
 from inhand_lab.benchmarks.label_errors import (
+    COUNTED_KINDS,
     KINDS,
     LabelCheck,
     LabelErrors,
     check_labels,
     chosen_entries,
+    reaches_aims,
 )
+from inhand_lab.benchmarks.parameters import DEFAULT_LABEL_CHECK
 from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from waving import write_dataset
@@ -42,6 +45,7 @@ def test_all_kinds_of_labels_are_measured_on_the_same_frames(tmp_path: Path) -> 
     for visible, hidden in zip(check.visible, check.hidden, strict=True):
         assert visible.frames + hidden.frames == 41 - 3
         assert visible.translation_mm is not None
+    assert [one.kind for one in check.needed] == list(COUNTED_KINDS)
     assert check.visible[2].doubt_correlation is not None
     assert check.visible[0].doubt_correlation is None
 
@@ -50,5 +54,22 @@ def test_a_table_shows_hidden_frames_where_there_are_some() -> None:
     row = tuple(LabelErrors(kind, 10, 4.0, 1.5, None) for kind in KINDS)
     none = tuple(LabelErrors(kind, 0) for kind in KINDS)
     group = labels_table([LabelCheck("a", row, none), LabelCheck("b", row, row)])
-    visible, hidden = group.renderables
-    assert (visible.row_count, hidden.row_count) == (2, 1)  # type: ignore[union-attr]
+    assert [table.row_count for table in group.renderables] == [2, 1, 2]  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(
+    ("visible", "hidden", "reached"),
+    [
+        ((5.0, 2.0), (None, None), True),
+        ((5.0, 2.0), (10.0, 4.0), True),
+        ((5.1, 2.0), (10.0, 4.0), False),
+        ((5.0, 2.1), (10.0, 4.0), False),
+        ((5.0, 2.0), (10.1, 4.0), False),
+        ((5.0, 2.0), (10.0, 4.1), False),
+    ],
+)
+def test_aims_are_reached_in_place_and_in_turn_wherever_there_are_frames(
+    visible: tuple[float, float], hidden: tuple[float | None, float | None], reached: bool
+) -> None:
+    shown, covered = (LabelErrors("plain", 9, *one) for one in (visible, hidden))
+    assert reaches_aims(shown, covered, DEFAULT_LABEL_CHECK) == reached

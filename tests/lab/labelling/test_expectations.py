@@ -1,5 +1,7 @@
 """What is expected of a pose between keyframes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inhand_lab.labelling.expectations import along_way, carried, fused, near_way
@@ -56,3 +58,13 @@ def test_a_way_is_left_the_more_the_longer_it_takes() -> None:
         for seconds in (0.03, 0.3)
     )
     assert at(0.0).covariance[0, 0] < soon < late
+
+
+def test_less_is_expected_along_the_line_of_sight_where_depth_is_not_measured() -> None:
+    unmeasured = replace(DEFAULT_LABELLING, sight_share=0.5)
+    pose = np.array([0.0, 0.0, 2.0]), np.array([1.0, 0.0, 0.0, 0.0])
+    usual, less = (near_way(pose, 1.0, 1.0, one) for one in (DEFAULT_LABELLING, unmeasured))
+    shares = np.sqrt(np.diagonal(less.covariance) / np.diagonal(usual.covariance))
+    across, along = shares[0], shares[2]
+    assert across == 1.0
+    assert 0.5 <= along < 0.52
