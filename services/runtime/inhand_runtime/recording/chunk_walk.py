@@ -42,14 +42,13 @@ _CHECKSUMS = struct.pack("<I", len(CHECKSUMS_RECORD)) + CHECKSUMS_RECORD.encode(
 
 
 class WalkedTable:
-    """What a walk through an open file of ``size`` bytes found; ``walked`` is where it ended: the
-    file's end, or a record that is damaged or cut off."""
+    """What a walk through an open file of ``size`` bytes found, up to its end, or to a record that
+    is damaged; of a chunk that is cut off, the messages that are whole."""
 
     def __init__(self, descriptor: int, size: int) -> None:
         self._descriptor, self._size = descriptor, size_without_zeros(descriptor, size)
         self.channels: dict[int, Channel] = {}
         self._found: dict[int, list[tuple[int, int, int]]] = {}
-        self.walked = len(MCAP0_MAGIC)
         self.chunks = self._walk()
 
     def count(self, channel: int) -> int:
@@ -76,8 +75,6 @@ class WalkedTable:
                 checksums = start if named and end <= self._size else -1
             elif opcode in (Opcode.MESSAGE, Opcode.CHANNEL) and end <= self._size:
                 self._take_one(0, start, os.pread(self._descriptor, end - start, start))
-            if end <= self._size:
-                self.walked = end
         return chunks_of(rows)
 
     def _records(self) -> Iterator[tuple[int, int, int]]:

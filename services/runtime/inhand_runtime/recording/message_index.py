@@ -218,9 +218,7 @@ def _table(path: Path, descriptor: int, size: int) -> tuple[ChunkTable, str | No
         raise RecordingError(f"{path} was cut off before any message: there is nothing to show")
     if finished:
         return walked, None
-    lost = size - walked.walked
-    left = f"; its last {lost} bytes hold no whole record" if lost else ""
-    return walked, f"{path} was cut off: `inhand recording recover {path}` saves what is left{left}"
+    return walked, f"{path} was cut off: `inhand recording recover {path}` saves what is left"
 
 
 def _keys(table: ChunkTable) -> list[_Key]:
