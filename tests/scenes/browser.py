@@ -12,6 +12,9 @@ from playwright.sync_api import Browser, Page, sync_playwright
 REQUIRED = "INHAND_CHROMIUM_REQUIRED"
 """Set where a machine without Chromium is a fault, as in CI."""
 
+WINDOW = (1280, 800)
+"""Width and height of a tab in pixels."""
+
 # Software rendering, for a machine without a graphics card or a sandbox for root.
 ARGUMENTS = (
     "--no-sandbox",
@@ -38,7 +41,7 @@ def chromium() -> Iterator[Browser]:
 @contextmanager
 def tab(browser: Browser, url: str, **options: Any) -> Iterator[Page]:
     """Open a page in a context of its own, and close it with the block."""
-    context = browser.new_context(viewport={"width": 1280, "height": 800}, **options)
+    context = browser.new_context(viewport={"width": WINDOW[0], "height": WINDOW[1]}, **options)
     page = context.new_page()
     page.goto(url)
     yield page

@@ -36,6 +36,10 @@ class LabellingPerson:
         found = re.search(r"Frame (\d+) of", self.status)
         return int(found[1]) if found else -1
 
+    def wait_for(self, text: str, minutes: float = 10.0) -> None:
+        """Wait until the panel says something, which may take long on a busy machine."""
+        self.page.get_by_text(text).first.wait_for(timeout=60_000 * minutes)
+
     def leave_controls(self) -> None:
         """Click beside everything, so that keys are no longer for a control."""
         self.page.mouse.click(20, 780)

@@ -38,7 +38,7 @@ from inhand_tracker.geometry import rotations
 from inhand_tracker.shape.shape import load_shape
 from labelling_person import LabellingPerson, labelling
 from overload import finish, replayed
-from running_rig import RunningRig, eventually
+from running_rig import RunningRig
 
 NAME, INTERACTION = "kettle", "pourKettle"
 RATE_HZ = 30
@@ -132,7 +132,7 @@ def label_by_hand(taught: Taught, number: int, random: np.random.Generator) -> N
         person.choose("Hand", taught.people[number].person.handedness)
         person.tick("Refined by the images")
         person.click("Write labels")
-        eventually("the labels", lambda: "dataset.toml names it" in person.status)
+        person.wait_for("dataset.toml names it")
 
 
 def label_truly(taught: Taught, folder: Path) -> list[Path]:

@@ -6,11 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import chromium, tab
+from browser import WINDOW, chromium, tab
 from inhand_lab.datasets.dataset import load_dataset
 from inhand_lab.labelling.keyframes import load_keyframes
+from inhand_studio.eye import whole_eye
 from inhand_studio.labelling_page.autosave import keyframes_path
+from inhand_studio.labelling_page.clicks import point_on
+from inhand_studio.labelling_page.opened import OpenedRecording
 from inhand_studio.labelling_page.shown_pose import UPRIGHT
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
+from inhand_tracker.shape.shape import load_shape
 from labelling_person import LabellingPerson, labelling
 from running_rig import eventually
 
@@ -84,6 +90,49 @@ def test_what_a_person_sets_is_saved_at_once_survives_a_kill_and_trains(recordin
         assert entries[0].file == "recordings/drinkFromMug_p00.labelled.mcap"
         dataset, model = recording.parent.parent, recording.parent.parent / "model"
         assert main(["train", str(dataset), "-o", str(model)]) == 0
+
+
+@pytest.mark.long
+def test_three_clicks_and_the_image_place_the_object_and_refine_between(recording: Path) -> None:
+    recording = recording.with_name("drinkFromMug_p01.mcap")
+    opened = OpenedRecording(recording)
+    assert opened.info is not None
+    camera, shape = intrinsics_of(opened.info), load_shape(recording.parents[1] / "objects" / "mug")
+    truth = opened.label("mug", 0)
+    assert truth is not None
+    turned = rotations.multiply(rotations.from_vector(np.array([0.0, 0.15, 0.1])), truth[1])
+    away = truth[0] + np.array([-0.25, -0.1, -0.1]), turned
+    pixels = camera.project(truth[0]) + np.array([(-4.0, -7.0), (5.0, -5.0), (0.0, 8.0)])
+    points = [
+        point_on(shape, truth, np.zeros(3), ray)
+        for ray in camera.unproject(np.asarray(pixels), np.ones(3))
+    ]
+    with labelling(recording) as (url, _), chromium() as browser, tab(browser, url) as page:
+        person = LabellingPerson(page)
+        person.type_pose(*away)
+        person.press("8")
+        for number, point in enumerate(points, 1):
+            for pose, asked in ((away, "point"), (truth, "where point")):
+                person.wait_for(f"Click on {asked} {number}")
+                page.wait_for_timeout(500)
+                page.mouse.click(*_place_of(rotations.rotate(pose[1], point) + pose[0], camera))
+        person.wait_for("The image moved it")
+        placed = _saved(recording)[0]
+        assert np.linalg.norm(placed - truth[0]) < 0.01
+
+        person.press("End", "c", "9")
+        person.wait_for("Least sure is frame")
+        person.press("0")
+        eventually("a refined frame", lambda: re.search("s: refined: it may be", person.status))
+        person.press("n")
+        eventually("it is kept", lambda: len(_saved(recording)) == 3)
+
+
+def _place_of(point: np.ndarray, camera: Intrinsics) -> tuple[float, float]:
+    """Return where a point is seen in a window that shows all of the picture."""
+    lens = whole_eye(camera, WINDOW[0] / WINDOW[1], WINDOW[1]).lens
+    x, y = lens.project(point).tolist()
+    return x, y
 
 
 def _drag_handles(person: LabellingPerson) -> None:

@@ -42,6 +42,7 @@ class Desk:
         self.kept = KeptKeyframes(keyframes_path(recording.path, shape.name, camera), empty)
         try:
             self.editing = self.kept.load()
+            self._check_keyframes()
         except LabellingError:
             self.kept.close()
             raise
@@ -52,6 +53,16 @@ class Desk:
         self.shown = ShownPose(None, "guess")
         self.background = Background(visit)
         self.assistance: Assistance | None = None
+
+    def _check_keyframes(self) -> None:
+        """Raise LabellingError where keyframes are of another recording of that name."""
+        times_ns = self.recording.times_ns
+        for one in self.editing.keyframes:
+            if one.frame >= len(times_ns) or one.time_ns != times_ns[one.frame]:
+                raise LabellingError(
+                    f"{self.kept.path} has a keyframe of frame {one.frame} at {one.time_ns}, which "
+                    "this recording does not have: it is of another one; move the file away"
+                )
 
     def begin(self, stage: Stage, panel: Panel) -> None:
         """Show all on a stage and a panel."""

@@ -66,11 +66,13 @@ class Helping:
     def _listen(self) -> None:
         if not self._listening:
             self._listening = True
+            self._desk.stage.await_clicks(True)
             self._visit.client.scene.on_click()(self._visit.action(self._clicked))
 
     def _end_clicks(self) -> None:
         if self._listening:
             self._listening = False
+            self._desk.stage.await_clicks(False)
             self._visit.client.scene.remove_click_callback("all")
         self._picking, self._placing = None, False
         self._desk.ask("")

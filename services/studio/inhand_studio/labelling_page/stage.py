@@ -84,6 +84,7 @@ class Stage:
         )
         self._handles_pose: Pose = np.zeros(3), SAME_ROTATION
         self._standing: Standing = "guess"
+        self._clicking = False
 
         def moved(event: object) -> None:
             phase = str(getattr(event, "phase", "update"))
@@ -118,7 +119,7 @@ class Stage:
     def show_object(self, pose: Pose | None, standing: Standing, axes: Array) -> None:
         """Show the object at a pose, or not at all, and its handles along axes (4,)."""
         self._object.visible = pose is not None
-        self._handles.visible = pose is not None
+        self._handles.visible = pose is not None and not self._clicking
         if standing != self._standing:
             self._standing, self._object.color = standing, COLOURS[standing]
         if pose is None:
@@ -129,6 +130,11 @@ class Stage:
         self._handles.position, self._handles.wxyz = middle, axes
         if self._zoomed is not None:
             self._follow(middle)
+
+    def await_clicks(self, clicking: bool) -> None:
+        """Take the handles away, which would take clicks on the object, or bring them back."""
+        self._clicking = clicking
+        self._handles.visible = self._object.visible and not clicking
 
     def move_object(self, pose: Pose) -> None:
         """Show the object elsewhere while its handles are dragged."""
