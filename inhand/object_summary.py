@@ -1,8 +1,8 @@
 """A table of what a new object is."""
 
 import numpy as np
+from inhand_lab.new_objects.description import axis_name, describe_symmetry
 from inhand_lab.new_objects.proposal import Proposal
-from inhand_tracker.shape.shape import Symmetry
 from rich.table import Table
 
 
@@ -15,28 +15,18 @@ def summarise(proposal: Proposal) -> Table:
     table.add_row("faces", f"{len(shape.faces):,}")
     table.add_row("marked vertices, cm", "\n".join(map(_centimetres, shape.marked_vertices)))
     table.add_row("plane of symmetry", _mirror(proposal))
-    table.add_row("looks the same", "\n".join(map(_turns, shape.symmetries)) or "never when turned")
+    table.add_row(
+        "looks the same", "\n".join(map(describe_symmetry, shape.symmetries)) or "never when turned"
+    )
     return table
 
 
 def _mirror(proposal: Proposal) -> str:
     away = f"its mirror image misses it by {1000.0 * proposal.mirror_miss_m:.1f} mm"
-    normal = f"normal {_named(proposal.shape.mirror_normal)}"
+    normal = f"normal {axis_name(proposal.shape.mirror_normal)}"
     if proposal.mirrored:
         return f"{normal}; {away}"
     return f"none is found, {normal} is taken; {away}: left-handed use is learned less well"
-
-
-def _turns(symmetry: Symmetry) -> str:
-    turn = "any angle" if symmetry.order == 0 else f"{360 / symmetry.order:g}°"
-    return f"turned about {_named(symmetry.axis)} by {turn}"
-
-
-def _named(direction: tuple[float, float, float] | np.ndarray) -> str:
-    for name, axis in zip("xyz", np.eye(3), strict=True):
-        if abs(float(np.dot(direction, axis))) > 1.0 - 1e-6:
-            return name
-    return f"({', '.join(f'{value:.2f}' for value in direction)})"
 
 
 def _centimetres(point: np.ndarray) -> str:

@@ -54,3 +54,10 @@ def fill(page: Page, label: str, text: str) -> None:
     control = row.locator("input:visible").first
     control.fill(text)
     control.press("Enter")
+
+
+def choose(page: Page, label: str, choice: str) -> None:
+    """Choose of the menu of the panel that stands beside a label."""
+    row = page.locator(".mantine-Flex-root", has=page.get_by_text(label, exact=True))
+    row.locator("input:visible").first.click()
+    page.get_by_role("option", name=choice, exact=True).click()

@@ -4,8 +4,16 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Literal
 
+import viser
+
 _COLOURS = {"wrong": "#e8590c", "note": "inherit"}
 _BASE = "padding: 0.3em 0.7em; font-size: 0.8em; line-height: 1.4;"
+
+
+def write(element: viser.GuiHtmlHandle, text: str) -> None:
+    """Let an element of a tab show a text; nothing is sent where it does already."""
+    if element.content != text:
+        element.content = text
 
 
 def lines_html(lines: Iterable[str], kind: Literal["wrong", "note"]) -> str:

@@ -15,7 +15,8 @@ from inhand_studio.live_page.page import LivePage
 from inhand_studio.recording_page.parameters import DEFAULT_RECORDING_PAGE
 from inhand_studio.recording_page.wishes import Wishes, record_arguments
 from inhand_studio.rig import Rig
-from inhand_studio.texts import lines_html
+from inhand_studio.shapes import object_names
+from inhand_studio.texts import lines_html, write
 from inhand_studio.verb import Verb
 from inhand_studio.visit import Page, Visit
 
@@ -60,7 +61,9 @@ class RecordingPage:
         self._participant = gui.add_text("Participant", "", hint="Who is recorded")
         self._left = gui.add_checkbox("Left-handed", False)
         self._interaction = gui.add_text("Interaction", "", hint="What is done, such as drink")
-        self._object = gui.add_dropdown("Object", (NO_OBJECT, *self._objects()))
+        self._object = gui.add_dropdown(
+            "Object", (NO_OBJECT, *object_names(self._visit.studio.dataset))
+        )
         self._countdown = gui.add_number(
             "Countdown, s", numbers.countdown_s, min=0.5, max=numbers.longest_s, step=0.5
         )
@@ -78,10 +81,6 @@ class RecordingPage:
         self._stop_button.on_click(self._visit.action(lambda _: self._end()))
         self._missing = gui.add_html("")
         self._said = gui.add_html("")
-
-    def _objects(self) -> tuple[str, ...]:
-        folder = self._visit.studio.dataset / "objects"
-        return tuple(sorted(one.parent.name for one in folder.glob("[!.]*/object.toml")))
 
     def _start(self) -> None:
         if self._verb is not None and self._verb.running:
@@ -115,9 +114,9 @@ class RecordingPage:
         running = self._verb is not None and self._verb.running
         self._start_button.visible, self._stop_button.visible = not running, running
         missing = self._missing_now(time.monotonic())
-        _write(self._missing, lines_html(missing, "wrong"))
+        write(self._missing, lines_html(missing, "wrong"))
         if self._verb is not None:
-            _write(self._said, _told(self._verb))
+            write(self._said, _told(self._verb))
 
     def _missing_now(self, now_s: float) -> list[str]:
         """Say what the camera that is looked at does not show."""
@@ -147,8 +146,3 @@ def _told(verb: Verb) -> str:
         return lines_html(["Stopped in the countdown: nothing was recorded."], "wrong")
     lines = verb.lines[-DEFAULT_RECORDING_PAGE.lines_shown :]
     return lines_html(lines, "note" if verb.code in (None, DONE) else "wrong")
-
-
-def _write(element: viser.GuiHtmlHandle, text: str) -> None:
-    if element.content != text:
-        element.content = text

@@ -6,7 +6,7 @@ from typing import Any
 import viser
 from inhand_runtime.errors import InhandError
 
-from inhand_studio.texts import lines_html
+from inhand_studio.texts import lines_html, write
 from inhand_studio.training_page.lessons import Lesson, lessons_of
 from inhand_studio.training_page.rollout import Place, how_to_add, places_of, roll_out
 from inhand_studio.training_page.told import progress_lines
@@ -94,9 +94,9 @@ class TrainingPage:
         if self._stop.is_set() or progress is None:
             return
         self._start.visible, self._cancel.visible = not progress.running, progress.running
-        _write(self._told, lines_html(progress_lines(progress), "note"))
+        write(self._told, lines_html(progress_lines(progress), "note"))
         failure = [] if progress.failure is None else [progress.failure]
-        _write(self._failed, lines_html(failure, "wrong"))
+        write(self._failed, lines_html(failure, "wrong"))
         ready = progress.model is not None and not progress.running
         if ready and not self._put.visible:
             self._offer_places()
@@ -127,8 +127,3 @@ class TrainingPage:
         else:
             text = roll_out(progress.model, self._places[self._place.value], daemon)
         self._rolled_out.content = lines_html([text], "note")
-
-
-def _write(element: viser.GuiHtmlHandle, text: str) -> None:
-    if element.content != text:
-        element.content = text

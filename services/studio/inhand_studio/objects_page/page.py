@@ -1,0 +1,100 @@
+"""A tab that makes objects of the dataset, and shows each beside a hand."""
+
+import threading
+from typing import Any
+
+from inhand_runtime.errors import InhandError
+
+from inhand_studio.objects_page.display import described, show_object
+from inhand_studio.objects_page.making import Making
+from inhand_studio.objects_page.panel import Panel
+from inhand_studio.shapes import object_names
+from inhand_studio.texts import lines_html, write
+from inhand_studio.visit import Page, Visit
+
+PERIOD_S = 0.3
+NEW = "(a new one)"
+
+
+def open_page(visit: Visit) -> Page:
+    """Make objects of the studio's dataset; raises InhandError where it cannot be written."""
+    return ObjectsPage(visit, Making(visit.studio.dataset))
+
+
+class ObjectsPage:
+    """Looks at objects that are there, and makes new ones, which are saved when they were seen."""
+
+    def __init__(self, visit: Visit, making: Making) -> None:
+        self._visit, self._making = visit, making
+        self._gui = visit.client.gui
+        self._waiting = False
+        self._stop = threading.Event()
+        self._add_controls()
+        self._thread = threading.Thread(target=self._run, name="objects page", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Remove what was not saved."""
+        self._stop.set()
+        self._making.close()
+
+    def _add_controls(self) -> None:
+        act = self._visit.action
+        self._there = self._gui.add_dropdown(
+            "Object", (NEW, *object_names(self._visit.studio.dataset))
+        )
+        self._there.on_update(act(lambda _: self._look_at()))
+        self._folder = self._gui.add_folder("A new object")
+        with self._folder:
+            self._panel = Panel(self._visit, self._making)
+            self._gui.add_button("Make and show").on_click(act(lambda _: self._make()))
+            self._save = self._gui.add_button("Save to the dataset", visible=False)
+            self._save.on_click(act(lambda _: self._keep()))
+        self._said = self._gui.add_html("")
+        self._about = self._gui.add_html("")
+
+    def _look_at(self) -> None:
+        name = self._there.value
+        self._folder.visible = name == NEW
+        if name == NEW:
+            return
+        shape, why = self._visit.studio.shapes.find(name)
+        if shape is None:
+            raise InhandError(why or f"there is no object {name}")
+        write(self._said, "")
+        show_object(self._visit, shape)
+        write(self._about, lines_html(described(shape), "note"))
+
+    def _make(self) -> None:
+        self._save.visible = False
+        self._making.begin(self._panel.wishes())
+        self._visit.clear()
+        write(self._about, "")
+        self._waiting = True
+
+    def _keep(self) -> None:
+        folder = self._making.save()
+        self._save.visible = False
+        self._there.options = (NEW, *object_names(self._visit.studio.dataset))
+        write(self._said, lines_html([f"saved {folder}"], "note"))
+
+    def _run(self) -> None:
+        step = self._visit.action(self._step)
+        while not self._stop.wait(PERIOD_S) and not self._visit.closed:
+            step(None)
+
+    def _step(self, _event: Any) -> None:
+        """Show what is being made, and what became of it."""
+        if self._stop.is_set() or not self._waiting:
+            return
+        self._waiting = self._making.running
+        if self._waiting:
+            write(self._said, lines_html(["It is being made …"], "note"))
+            return
+        failed = self._making.failed
+        write(self._said, lines_html(self._making.said, "wrong" if failed else "note"))
+        shape = self._making.result()
+        if shape is not None:
+            show_object(self._visit, shape)
+            write(self._about, lines_html(described(shape), "note"))
+            self._save.visible = True
