@@ -30,8 +30,13 @@ class Heard:
 class Roll:
     """Keeps who lives and what they last said; thread-safe."""
 
-    def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self, now: Callable[[], float] = time.monotonic, *, patience_s: float = 0.0
+    ) -> None:
+        """``patience_s`` is how long one that has just come may say nothing: whoever looks once
+        has seen nobody come, and waits for all to speak."""
         self._now = now
+        self._patience_s = patience_s
         self._lock = threading.Lock()
         self._living: dict[Instance, float] = {}
         self._heard: dict[Instance, Heard] = {}
@@ -41,8 +46,11 @@ class Roll:
         """Take note of a liveliness token."""
         with self._lock:
             self._changed = self._now()
-            if lives:
-                self._living.setdefault((service, instance), self._changed)
+            if lives and (service, instance) not in self._living:
+                self._living[service, instance] = self._changed
+                self._heard.pop((service, instance), None)  # another process of that name said it
+            elif lives:
+                return
             else:
                 self._living.pop((service, instance), None)
 
@@ -68,7 +76,7 @@ class Roll:
 
     def silent(self) -> list[Instance]:
         """The instances that live and have not spoken for long."""
-        return [one for one, heard in self.living().items() if not self._speaks(heard)]
+        return [one for one, heard in self.living().items() if self._is_silent(one, heard)]
 
     def troubles(self) -> list[str]:
         """What is wrong with those who live, a line each: who hangs, and what each says."""
@@ -76,11 +84,15 @@ class Roll:
         lines = []
         for instance, heard in living.items():
             who = " ".join(instance)
-            if not self._speaks(heard):
+            if self._is_silent(instance, heard):
                 lines.append(self._silence(who, heard))
             if heard is not None:
                 lines += [f"{who}: {text}" for text in heard.health.troubles[:MOST_PROBLEMS_OF_ONE]]
         return lines + _published_twice(living)
+
+    def _is_silent(self, instance: Instance, heard: Heard | None) -> bool:
+        came = self._living.get(instance, self._now())
+        return not self._speaks(heard) and self._now() - came >= self._patience_s
 
     def _speaks(self, heard: Heard | None) -> bool:
         return heard is not None and self._now() - heard.at < SILENT_AFTER_S

@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from inhand_runtime.daemon import Arrivals, Daemon
 from inhand_runtime.inbox import Received
-from inhand_runtime.roll import Roll
+from inhand_runtime.roll import SILENT_AFTER_S, Roll
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.messages import CameraInfo, ObjectPose, Preview, RgbdFrame, Skeletons
 from inhand_schemas.topics import (
@@ -73,7 +73,7 @@ class Rig:
     """
 
     def __init__(self, daemon: Daemon) -> None:
-        self.roll = Roll()
+        self.roll = Roll(patience_s=SILENT_AFTER_S)
         self._daemon = daemon
         self._changed = threading.Condition()
         self._news = 0

@@ -17,7 +17,7 @@ from inhand_studio.live_page.conditions import conditions_of, no_camera
 from inhand_studio.live_page.moment import Moment, moment_of, newest_poses
 from inhand_studio.live_page.parameters import DEFAULT_LIVE, LiveParameters
 from inhand_studio.live_page.points import LivePoints
-from inhand_studio.live_page.rates import Rate
+from inhand_studio.live_page.rates import Rate, rate_of
 from inhand_studio.live_page.texts import objects_html, processes_html, shown_html
 from inhand_studio.pace import Pace
 from inhand_studio.picture import Picture
@@ -58,7 +58,7 @@ class LivePage:
         self._unknown: list[str] = []
         self._shown: Picture | None = None
         self._damage: str | None = None
-        self._shown_rate, self._came_rate = Rate(), Rate()
+        self._shown_rate = Rate()
         self._texts_at = self._processes_at = 0.0
         self._stop = threading.Event()
         self._add_controls(visit.client.gui)
@@ -154,7 +154,7 @@ class LivePage:
         lines += [] if self._damage is None else [self._damage]
         self._write(self._wrong, lines_html(lines, "wrong"))
         self._write(self._objects, objects_html(newest_poses(news.poses), self._parameters))
-        came_hz = self._came_rate.of(news.pictures[-1].sequence if news.pictures else None, now)
+        came_hz = rate_of([picture.arrived for picture in news.pictures], now)
         self._write(self._rates, shown_html(self._shown_rate.at(now), came_hz))
 
     def _draw(self, moment: Moment, info: CameraInfo, now: float) -> None:
