@@ -1,6 +1,8 @@
 """``inhand record``: makes a training recording of a running rig and adds it to a dataset."""
 
 import argparse
+import os
+import sys
 from pathlib import Path
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError, load_dataset
@@ -80,7 +82,11 @@ def _check(folder: Path, arguments: argparse.Namespace) -> None:
 
 
 def _say(line: str) -> None:
-    print(line, flush=True)
+    """Print a line as long as anybody reads; where nobody does, the recording goes on."""
+    try:
+        print(line, flush=True)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _report(done: Take) -> None:

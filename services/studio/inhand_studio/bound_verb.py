@@ -1,25 +1,33 @@
 """``python -m inhand_studio.bound_verb PARENT SIGNAL VERB …``: a verb that ends with its parent.
 
-It gets the signal when the thread that started it ends, however that comes; ``verb`` starts it.
+It gets the signal when the process that started it has ended, however that came; ``verb`` starts
+it. The kernel's own such signal comes once for each thread of the parent, and twice is too often
+for a verb that ends well at the first Ctrl-C and at once at the second.
 """
 
-import ctypes
 import os
 import runpy
-import signal
 import sys
+import threading
+import time
 
-_PR_SET_PDEATHSIG = 1
+LOOK_EVERY_S = 0.2
 
 
 def main() -> None:
-    """Bind this process to its parent, and run the verb."""
+    """Run the verb, and watch the parent beside it."""
     parent, number, *arguments = sys.argv[1:]
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(number))
-    if os.getppid() != int(parent):  # it ended before
-        os.kill(os.getpid(), signal.SIGKILL)
+    watch = threading.Thread(target=_end_with, args=(int(parent), int(number)), daemon=True)
+    watch.start()
     sys.argv = ["inhand", *arguments]
     runpy.run_module("inhand", run_name="__main__", alter_sys=True)
+
+
+def _end_with(parent: int, number: int) -> None:
+    """Send this process a signal, once, when the parent is gone."""
+    while os.getppid() == parent:
+        time.sleep(LOOK_EVERY_S)
+    os.kill(os.getpid(), number)
 
 
 if __name__ == "__main__":

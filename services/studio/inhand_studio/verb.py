@@ -26,7 +26,6 @@ class Verb:
         self._process: subprocess.Popen[str] | None = None
         self._failure: OSError | None = None
         started = threading.Event()
-        # The process is bound to the thread that starts it, which therefore waits for its end.
         self._thread = threading.Thread(
             target=self._run, args=(list(arguments), bound, started), name=f"verb {arguments[0]}"
         )
