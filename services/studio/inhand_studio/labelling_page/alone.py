@@ -2,6 +2,7 @@
 
 import threading
 from contextlib import ExitStack
+from importlib import import_module
 from pathlib import Path
 
 import viser
@@ -22,6 +23,7 @@ def serve_alone(dataset: Path, recording: Path, object_name: str | None) -> None
 
     It is on a studio's usual port, or a free one where that is taken.
     """
+    import_module(PAGES["Label"])  # seconds, which the first tab would wait for
     studio = Studio(dataset, None, recording, object_name)
 
     def visit_of(client: viser.ClientHandle) -> Visit:

@@ -59,10 +59,11 @@ class Exporting:
                 refined = assistance(scene, contents.keyframes, self._eyes, advance)
             symmetries = desk.shape.symmetries
             chosen = refined if assisted else None
-            return export_labels(scene, contents, symmetries, chosen, replace=replace)
+            written = export_labels(scene, contents, symmetries, chosen, replace=replace)
+            write_entry(self._dataset, recording.path, entry)  # also where the tab is closed by now
+            return written
 
         def done(written: Exported) -> None:
-            write_entry(self._dataset, recording.path, entry)
             lines = [
                 f"**{written.path.name}**: {counted(written.posed, 'frame')} with a pose, "
                 f"{written.absent} without the object; dataset.toml names it, and `inhand train` "
