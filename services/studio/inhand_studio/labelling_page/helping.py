@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from inhand_lab.labelling.equal_poses import Pose
 from inhand_lab.labelling.keyframes import LabellingError
 from inhand_lab.labelling.pose_refinement import RefinedPose
 from inhand_lab.labelling.pose_start import pose_at_click, pose_from_clicks
 from inhand_lab.labelling.scene import load_scene
-from inhand_lab.labelling.suggestions import recorded_suggestions
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_studio.labelling_page.assistant import (
@@ -20,6 +20,14 @@ from inhand_studio.labelling_page.assistant import (
 from inhand_studio.labelling_page.background import Advance
 from inhand_studio.labelling_page.clicks import Picking, pixel_along, point_on
 from inhand_studio.labelling_page.desk import Desk
+from inhand_studio.labelling_page.estimates import (
+    find_models,
+    has_estimates,
+    model_of,
+    recorded_estimate,
+    tracked_estimate,
+)
+from inhand_studio.labelling_page.export import proposed_entry
 from inhand_studio.labelling_page.panel import Act
 
 
@@ -145,10 +153,24 @@ class Helping:
         self._desk.go(frame)
 
     def _take_estimate(self) -> None:
-        """Take what a tracker said of this frame when it was recorded."""
-        desk, frame = self._desk, self._desk.frame
-        said = recorded_suggestions(desk.recording.frames, desk.shape.name, frame, frame)
-        if not said.given[0]:
-            raise LabellingError("the tracker had no pose of the object in this frame")
-        desk.set_pose((said.translations[0], said.rotations[0]))
-        desk.ask(f"The tracker's confidence was {100 * said.confidences[0]:.0f} %.")
+        """Take what a tracker said of this frame when it was recorded, or what a model says now."""
+        desk, frame, name = self._desk, self._desk.frame, self._desk.shape.name
+        desk.require_editable()
+
+        def done(said: tuple[Pose, float]) -> None:
+            desk.go(frame)
+            desk.set_pose(said[0])
+            desk.ask(f"The tracker's confidence is {100 * said[1]:.0f} %.")
+
+        if has_estimates(desk.recording, name):
+            done(recorded_estimate(desk.recording, name, frame))
+            return
+        studio, path, camera = self._visit.studio, desk.recording.path, desk.recording.camera
+        models = find_models(studio.dataset, studio.models)
+        left_handed = proposed_entry(studio.dataset, path, name).handedness == "left"
+
+        def work(advance: Advance) -> tuple[Pose, float]:
+            model = model_of(name, models)
+            return tracked_estimate(path, camera, model, frame, advance, left_handed=left_handed)
+
+        self._background.start("following with a model", work, done)
