@@ -9,6 +9,7 @@ from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import Origin
 from inhand_studio.access.settings import AccessSettings
 from inhand_studio.access.terms import terms_of
+from running_rig import RunningRig
 
 
 def test_on_this_machine_alone_no_password_is_needed(caplog: pytest.LogCaptureFixture) -> None:
@@ -115,3 +116,18 @@ def test_a_password_is_in_no_text_of_settings_terms_or_faults() -> None:
             Origin().checked(values, AccessSettings)
         assert "secret" not in str(refused.value)
         assert PASSWORD not in str(refused.value)
+
+
+@pytest.mark.long
+def test_the_daemon_takes_its_password_from_the_environment_and_does_not_start_without(
+    rig: RunningRig,
+) -> None:
+    rig.configure('[studio.desk]\nhost = "0.0.0.0"\nport = 0\n')
+    refused = rig.done("studio", "--config", rig.config)
+    assert refused.popen.returncode == 2
+    assert "give it a password_file" in refused.stderr
+    given = rig.inhand("studio", "--config", rig.config, INHAND_STUDIO__DESK__PASSWORD=PASSWORD)
+    given.said("the studio is at http://0.0.0.0:")
+    assert given.stop() == 0
+    assert "is not encrypted" in given.stderr
+    assert PASSWORD not in given.stderr + given.stdout

@@ -98,9 +98,9 @@ class TrainingPage:
         failure = [] if progress.failure is None else [progress.failure]
         write(self._failed, lines_html(failure, "wrong"))
         ready = progress.model is not None and not progress.running
-        if ready and not self._put.visible:
+        begins, self._put.visible = ready and not self._put.visible, ready
+        if begins:
             self._offer_places()
-        self._put.visible = ready
         self._place.visible = ready and bool(self._places)
 
     def _offer_places(self) -> None:
