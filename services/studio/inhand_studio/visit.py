@@ -130,15 +130,15 @@ class Visit:
             self._page = import_module(self._pages[title]).open_page(self)
 
     def _leave(self) -> None:
-        if self._page is None:
-            return
-        self._page.close()
-        self._page = None
-        if self._closed:
+        """Take away the page, or what there is of one that could not be opened."""
+        if self._page is not None:
+            self._page.close()
+            self._page = None
+        if self._closed or self._folder is None:
             return
         self.clear()
-        if self._folder is not None:
-            self._folder.remove()
+        self._folder.remove()
+        self._folder = None
 
 
 def _nothing(_event: Any) -> None:

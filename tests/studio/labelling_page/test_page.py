@@ -109,6 +109,12 @@ def test_three_clicks_and_the_image_place_the_object_and_refine_between(recordin
     ]
     with labelling(recording) as (url, _), chromium() as browser, tab(browser, url) as page:
         person = LabellingPerson(page)
+        person.click("Live")
+        person.wait_for("looks at no rig")
+        person.click("Label")
+        person = LabellingPerson(page)
+        names = page.get_by_text("Live", exact=True)
+        assert names.count() == 1, "what could not be opened stays beside the next page"
         person.type_pose(*away)
         person.press("8")
         for number, point in enumerate(points, 1):
