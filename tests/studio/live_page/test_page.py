@@ -13,8 +13,8 @@ import pytest
 from browser import chromium, tab
 from examples import PERSON
 from inhand_runtime.pixels import encode_colour
-from inhand_schemas.messages import CameraInfo, Health, ObjectPose, Pose, RgbdFrame, Skeletons
-from inhand_schemas.topics import HEALTH, INFO, POSE, RGBD, SKELETONS
+from inhand_schemas.messages import CameraInfo, ObjectPose, Pose, RgbdFrame, Skeletons
+from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
 from playwright.sync_api import Page
 from running_rig import Process, RunningRig, eventually
 from wire import Wire
@@ -112,25 +112,27 @@ def test_a_tab_shows_the_rig_says_what_is_missing_and_asks_no_other_machine(
                 published.tracking = True
                 page.get_by_text("No tracker runs").wait_for(state="detached")
 
-                trouble = Health(
-                    sequence=0,
-                    time_ns=1,
-                    service="capture",
-                    instance="front",
-                    state="degraded",
-                    uptime_s=1.0,
-                    resident_bytes=1,
-                    troubles=("the lens <b>cap</b> is on",),
-                )
-                # Nobody lives by that name, so that nothing is said of it.
-                wire.publisher(HEALTH, "front").put(trouble)
-                assert published.frames.wanted()
+                side = wire.publisher(INFO, "side")
+                side.put(INFO_OF_FRONT)
+                _choose(page, "Camera", "side")
+                page.get_by_text("No picture of side came yet").wait_for()
+                eventually("nobody who looks at front", lambda: not published.frames.wanted())
+                _choose(page, "Camera", "front")
+                eventually("the picture again", lambda: _painted(page))
+                _choose(page, "Pictures", "none")
+                eventually("nobody who looks", lambda: not published.frames.wanted())
+                _choose(page, "Pictures", "all")
+                eventually("the picture once more", lambda: _painted(page))
             page.get_by_text("No picture of front came for").wait_for()
             page.get_by_text("its process has ended, or cannot be reached").first.wait_for()
-            assert page.get_by_text("cap").count() == 0
         assert {urlparse(one).hostname for one in asked if not _within(one)} == {"127.0.0.1"}
         frames = published.frames
         eventually("nobody who looks", lambda: not frames.wanted())
+
+
+def _choose(page: Page, menu: str, option: str) -> None:
+    page.get_by_role("combobox", name=menu).click()
+    page.get_by_role("option", name=option, exact=True).click()
 
 
 def _within(url: str) -> bool:
