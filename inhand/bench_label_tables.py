@@ -21,15 +21,23 @@ def labels_table(checks: Sequence[LabelCheck]) -> Group:
 
 def _needed_table(checks: Sequence[LabelCheck]) -> Table:
     """A row an interaction: how many keyframes each kind of labels needs."""
-    title = "fewest keyframes a recording that reach the aims (frames from one to the next)"
+    title = (
+        "fewest keyframes a recording that reach the aims in place, and in place and turn "
+        "(frames from one to the next)"
+    )
     table = listing(("interaction",), COUNTED_KINDS, title)
     for check in checks:
         cells = (
-            "more" if one.every is None else f"{one.keyframes} ({one.every})"
+            f"{_count(one.keyframes_for_place, one.every_for_place)}, "
+            f"{_count(one.keyframes, one.every)}"
             for one in check.needed
         )
         table.add_row(check.interaction, *cells)
     return table
+
+
+def _count(keyframes: int | None, every: int | None) -> str:
+    return "more" if every is None else f"{keyframes} ({every})"
 
 
 def _table(title: str, rows: Sequence[tuple[LabelCheck, Sequence[LabelErrors]]]) -> Table:

@@ -4,7 +4,7 @@ Keyframes are the truth with a person's inaccuracy; only the frames between them
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from inhand_tracker.geometry import rotations
@@ -48,11 +48,14 @@ class LabelErrors:
 @dataclass(frozen=True)
 class KeyframesNeeded:
     """The most frames from one keyframe to the next with which a kind of labels reaches the aims,
-    and how many keyframes these are in a recording; None where none of those tried does."""
+    and with which it reaches those in place, without those in turn; None where none of those tried
+    does. ``keyframes`` and ``keyframes_for_place`` are how many these are in a recording."""
 
     kind: str
     every: int | None
     keyframes: int | None
+    every_for_place: int | None
+    keyframes_for_place: int | None
 
 
 @dataclass(frozen=True)
@@ -212,16 +215,20 @@ def _check(
 ) -> LabelCheck:
     """Sum up an interaction, measured by frames between keyframes and by kind."""
     errors = {every: _both(kinds, parameters) for every, kinds in measured.items()}
+    place_alone = replace(parameters, visible_aim_deg=np.inf, hidden_aim_deg=np.inf)
     needed = []
     for index, kind in enumerate(COUNTED_KINDS):
-        enough = [
-            every
-            for every in parameters.spacings
-            if reaches_aims(errors[every][0][index], errors[every][1][index], parameters)
-        ]
-        every = max(enough, default=None)
-        count = None if every is None else len(keyframes_of(frames - 1, every))
-        needed.append(KeyframesNeeded(kind, every, count))
+        found: list[int | None] = []
+        for aims in (parameters, place_alone):
+            enough = [
+                every
+                for every in parameters.spacings
+                if reaches_aims(errors[every][0][index], errors[every][1][index], aims)
+            ]
+            every = max(enough, default=None)
+            count = None if every is None else len(keyframes_of(frames - 1, every))
+            found += [every, count]
+        needed.append(KeyframesNeeded(kind, *found))
     return LabelCheck(interaction, *errors[parameters.every], tuple(needed))
 
 
