@@ -48,6 +48,7 @@ def test_a_file_that_takes_no_entry_at_its_end_stays_as_it_is_and_the_entry_is_s
     assert path.read_text() == text
 
 
+@pytest.mark.long
 def test_on_a_full_disk_the_file_stays_as_it_is(tmp_path: Path) -> None:
     add_entry(tmp_path, _entry(tmp_path, 1))
     path = tmp_path / "dataset.toml"

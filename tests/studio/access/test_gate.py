@@ -104,6 +104,7 @@ def test_a_socket_carries_text_bytes_and_the_chosen_protocol_both_ways_and_its_e
         assert ended.value.rcvd.code == 4001
 
 
+@pytest.mark.long
 def test_a_browser_that_does_not_read_makes_nothing_grow_and_slows_nobody() -> None:
     with gated() as (inner, url):
         stuck = _socket(url, "/flood", max_queue=1)
@@ -174,6 +175,7 @@ def test_with_a_certificate_pages_sockets_and_the_cookie_are_encrypted(tmp_path:
             _ask(url.replace("https", "http"))
 
 
+@pytest.mark.long
 def test_a_gate_ends_at_once_with_sockets_open_that_nobody_reads() -> None:
     with inner_server() as (_, address):
         with gate(AccessSettings(port=0), address) as url:
