@@ -18,6 +18,7 @@ from typing import Literal, TypeAlias
 from inhand_runtime.recording import RecordingError
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD, parse_digests
 from inhand_runtime.recording.chunk_walk import size_without_zeros
+from inhand_runtime.recording.opening import opening
 from mcap.opcode import Opcode
 from mcap.records import (
     Channel,
@@ -69,20 +70,13 @@ def opened(path: Path) -> Iterator[Bytes]:
 
     Zeros at the end, where a power cut left room without data, are not handed out.
     """
-    try:
-        with path.open("rb") as file:
-            size = size_without_zeros(file.fileno(), os.fstat(file.fileno()).st_size)
-            if size == 0:
-                raise RecordingError(f"{path} is empty: nothing was recorded into it; delete it")
-            with mmap.mmap(file.fileno(), size, access=mmap.ACCESS_READ) as data:
-                _require_recording(path, data)
-                yield data
-    except FileNotFoundError:
-        raise RecordingError(f"{path} does not exist: check the path") from None
-    except OSError as error:
-        raise RecordingError(
-            f"cannot read {path}: {error.strerror}: give a file that you may read"
-        ) from error
+    with opening(path), path.open("rb") as file:
+        size = size_without_zeros(file.fileno(), os.fstat(file.fileno()).st_size)
+        if size == 0:
+            raise RecordingError(f"{path} is empty: nothing was recorded into it; delete it")
+        with mmap.mmap(file.fileno(), size, access=mmap.ACCESS_READ) as data:
+            _require_recording(path, data)
+            yield data
 
 
 def _require_recording(path: Path, data: Bytes) -> None:

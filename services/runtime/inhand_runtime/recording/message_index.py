@@ -30,6 +30,7 @@ from inhand_runtime.recording.layout import (
     RecordingError,
 )
 from inhand_runtime.recording.message_reader import MessageReader
+from inhand_runtime.recording.opening import opening
 from inhand_runtime.recording.reading import (
     choose_channels,
     explaining_damage,
@@ -176,14 +177,8 @@ def open_index(path: Path) -> Iterator[RecordingIndex]:
 
     Raises RecordingError for a file that is missing, foreign or damaged, and UnknownVersionError.
     """
-    try:
+    with opening(path):
         descriptor = os.open(path, os.O_RDONLY)
-    except FileNotFoundError:
-        raise RecordingError(f"{path} does not exist: check the path") from None
-    except OSError as error:
-        raise RecordingError(
-            f"cannot read {path}: {error.strerror}: give a file that you may read"
-        ) from error
     try:
         yield RecordingIndex(path, descriptor)
     finally:

@@ -25,6 +25,7 @@ from inhand_runtime.recording.layout import (
     RecordedMessage,
     RecordingError,
 )
+from inhand_runtime.recording.opening import opening
 
 Item = TypeVar("Item")
 
@@ -117,14 +118,8 @@ def in_order_of_reception(timed: Iterable[tuple[int, Item]]) -> Iterator[Item]:
 
 @contextmanager
 def _open(path: Path) -> Iterator[SeekingReader]:
-    try:
+    with opening(path):
         file = path.open("rb")
-    except FileNotFoundError:
-        raise RecordingError(f"{path} does not exist: check the path") from None
-    except OSError as error:
-        raise RecordingError(
-            f"cannot read {path}: {error.strerror}: give a file that you may read"
-        ) from error
     with file:
         _require_whole(path, file)
         yield SeekingReader(file, validate_crcs=True)
