@@ -22,7 +22,7 @@ from inhand_studio.visit import Visit
 log = logging.getLogger(__name__)
 
 IDLE_S = 0.1
-NICENESS = 5
+NICENESS = 10
 """Where cores are few, capture and tracking go before those who watch them."""
 FOLDERS = {"dataset": "what the pages show and write (default: the setting)"}
 
