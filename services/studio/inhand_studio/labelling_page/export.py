@@ -60,9 +60,7 @@ def export_labels(
     }
     if not replace:
         require_wanted(scene, name, output)
-        write_labels(scene, name, labels, output, about)
-    else:
-        _replacing(output, lambda path: write_labels(scene, name, labels, path, about))
+    _put_whole(output, lambda path: write_labels(scene, name, labels, path, about))
     return Exported(output, int(labels.given.sum()), int(labels.absent.sum()), way.notes)
 
 
@@ -75,8 +73,9 @@ def require_wanted(scene: Scene, name: str, output: Path) -> None:
     require_labels_wanted(scene, name, output)
 
 
-def _replacing(output: Path, write: Callable[[Path], None]) -> None:
-    """Write a file under another name first, so that what is there stays until it is whole."""
+def _put_whole(output: Path, write: Callable[[Path], None]) -> None:
+    """Write a file elsewhere first: what is there stays until it is whole, and what is left of one
+    that was killed is in nobody's way."""
     with tempfile.TemporaryDirectory(dir=output.parent, prefix=".labelled-") as folder:
         path = Path(folder) / output.name
         write(path)
