@@ -108,6 +108,6 @@ class CameraView:
 
     def _make_eye(self) -> Eye:
         aspect, height = self._client.camera.aspect, self._parameters.eye_height
-        if self._target is None:
-            return whole_eye(self.camera, aspect, height)
+        if self._target is None:  # more rows than the camera has would show no more
+            return whole_eye(self.camera, aspect, min(height, self.camera.height))
         return eye_towards(*self._target, aspect, height)

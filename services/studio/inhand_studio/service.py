@@ -10,6 +10,7 @@ from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import Settings, instance_settings, load_rig_file
 from inhand_tracker.settings import TrackerSettings
 
+from inhand_studio.access.gate import gate
 from inhand_studio.access.listening import secluded_address
 from inhand_studio.access.terms import terms_of
 from inhand_studio.pages import PAGES
@@ -37,8 +38,6 @@ def run(settings: Settings[StudioSettings]) -> None:
 
     Raises SettingsError before anything starts, and InhandError where there is no session or port.
     """
-    from inhand_studio.access.gate import gate  # asks for aiohttp, which no other start needs
-
     chosen = settings.service
     check(settings)
     os.setpriority(os.PRIO_PROCESS, 0, max(NICENESS, os.getpriority(os.PRIO_PROCESS, 0)))

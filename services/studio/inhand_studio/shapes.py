@@ -61,12 +61,6 @@ class Shapes:
         return shapes
 
 
-def object_names(dataset: Path) -> tuple[str, ...]:
-    """Return the names of the objects that a dataset has."""
-    folders = (dataset / "objects").glob("[!.]*/object.toml")
-    return tuple(sorted(one.parent.name for one in folders))
-
-
 def _changed_ns(folder: Path) -> int | None:
     """Return when an object's description was changed; None where there is none."""
     try:

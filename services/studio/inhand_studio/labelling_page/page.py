@@ -7,19 +7,20 @@ from typing import Any
 
 from inhand_tracker.shape.shape import ObjectShape, load_shape
 
+from inhand_studio.controls import put
+from inhand_studio.dataset_files import find_objects, find_recordings, recording_name
 from inhand_studio.labelling_page.assistant import Eyes
 from inhand_studio.labelling_page.desk import Desk
 from inhand_studio.labelling_page.exporting import Exporting
 from inhand_studio.labelling_page.handling import Handling
 from inhand_studio.labelling_page.helping import Helping
 from inhand_studio.labelling_page.opened import OpenedRecording
-from inhand_studio.labelling_page.panel import Panel, put
+from inhand_studio.labelling_page.panel import Panel
 from inhand_studio.labelling_page.parameters import DEFAULT_PAGE
 from inhand_studio.labelling_page.stage import Stage
 from inhand_studio.visit import Visit
 
 NOTHING = "choose …"
-SUFFIXES = (".mcap", ".mcap.part")
 
 
 def open_page(visit: Visit) -> "LabellingPage":
@@ -36,7 +37,9 @@ class LabellingPage:
         self._dataset = visit.studio.dataset
         self._desk: Desk | None = None
         self._stopped = threading.Event()
-        self._recordings = find_recordings(self._dataset, visit.studio.recording)
+        self._recordings = find_recordings(
+            self._dataset, visit.studio.recording, labelled_copies=False
+        )
         self._objects = find_objects(self._dataset)
         self._add_choice()
         self._ticks = visit.action(lambda _: self._tick())
@@ -44,7 +47,7 @@ class LabellingPage:
         if visit.studio.object_name in self._objects:
             put(self._object, visit.studio.object_name)
         if visit.studio.recording is not None:
-            put(self._recording, _named(visit.studio.recording, self._dataset))
+            put(self._recording, recording_name(visit.studio.recording, self._dataset))
             self._choose()
 
     def close(self) -> None:
@@ -133,30 +136,6 @@ def lay_desk(visit: Visit, recording: OpenedRecording, shape: ObjectShape, datas
         desk.close()
         raise
     return desk
-
-
-def find_recordings(dataset: Path, also: Path | None = None) -> dict[str, Path]:
-    """Return the recordings of a dataset's folder by their names, labelled copies not, and the
-    one that is given besides."""
-    found = sorted(
-        path
-        for path in (dataset / "recordings").glob("*")
-        if path.name.endswith(SUFFIXES) and not path.name.endswith(".labelled.mcap")
-    )
-    named = {_named(path, dataset): path for path in found}
-    if also is not None:
-        named.setdefault(_named(also, dataset), also)
-    return named
-
-
-def find_objects(dataset: Path) -> dict[str, Path]:
-    """Return the folders of a dataset's objects by their names."""
-    return {path.parent.name: path.parent for path in sorted(dataset.glob("objects/*/object.toml"))}
-
-
-def _named(path: Path, dataset: Path) -> str:
-    folder = dataset / "recordings"
-    return path.name if path.parent.absolute() == folder.absolute() else str(path)
 
 
 def _missing(dataset: Path, recordings: dict[str, Path], objects: dict[str, Path]) -> str:

@@ -8,6 +8,7 @@ import viser
 from inhand_lab.labelling.equal_poses import Pose
 from inhand_tracker.body.anchors import ANCHORS
 
+from inhand_studio.controls import put
 from inhand_studio.labelling_page import keys
 from inhand_studio.labelling_page.placing import from_degrees, to_degrees
 from inhand_studio.labelling_page.stage import LOOKS
@@ -17,11 +18,6 @@ CAMERA_FRAME = "camera"
 OBJECT_FRAME = "object"
 
 Act = Callable[[], None]
-
-
-def put(control: viser.GuiInputHandle[Any], value: Any) -> None:
-    """Give a control a value; what is done when a person changes it is not done."""
-    control.value = value  # type: ignore[misc]  # mypy takes viser's property for read-only
 
 
 class Panel:

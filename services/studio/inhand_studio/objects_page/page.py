@@ -5,10 +5,10 @@ from typing import Any
 
 from inhand_runtime.errors import InhandError
 
+from inhand_studio.dataset_files import find_objects
 from inhand_studio.objects_page.display import described, show_object
 from inhand_studio.objects_page.making import Making
 from inhand_studio.objects_page.panel import Panel
-from inhand_studio.shapes import object_names
 from inhand_studio.texts import lines_html, write
 from inhand_studio.visit import Page, Visit
 
@@ -41,7 +41,7 @@ class ObjectsPage:
     def _add_controls(self) -> None:
         act = self._visit.action
         self._there = self._gui.add_dropdown(
-            "Object", (NEW, *object_names(self._visit.studio.dataset))
+            "Object", (NEW, *find_objects(self._visit.studio.dataset))
         )
         self._there.on_update(act(lambda _: self._look_at()))
         self._folder = self._gui.add_folder("A new object")
@@ -75,7 +75,7 @@ class ObjectsPage:
     def _keep(self) -> None:
         folder = self._making.save()
         self._save.visible = False
-        self._there.options = (NEW, *object_names(self._visit.studio.dataset))
+        self._there.options = (NEW, *find_objects(self._visit.studio.dataset))
         write(self._said, lines_html([f"saved {folder}"], "note"))
 
     def _run(self) -> None:

@@ -11,11 +11,11 @@ from inhand_lab.new_recordings.view_watch import ViewWatch
 from inhand_runtime.errors import InhandError
 from inhand_runtime.exit_codes import DONE, INTERRUPTED
 
+from inhand_studio.dataset_files import find_objects
 from inhand_studio.live_page.page import LivePage
 from inhand_studio.recording_page.parameters import DEFAULT_RECORDING_PAGE
 from inhand_studio.recording_page.wishes import Wishes, record_arguments
 from inhand_studio.rig import Rig
-from inhand_studio.shapes import object_names
 from inhand_studio.texts import lines_html, write
 from inhand_studio.verb import Verb
 from inhand_studio.visit import Page, Visit
@@ -62,7 +62,7 @@ class RecordingPage:
         self._left = gui.add_checkbox("Left-handed", False)
         self._interaction = gui.add_text("Interaction", "", hint="What is done, such as drink")
         self._object = gui.add_dropdown(
-            "Object", (NO_OBJECT, *object_names(self._visit.studio.dataset))
+            "Object", (NO_OBJECT, *find_objects(self._visit.studio.dataset))
         )
         self._countdown = gui.add_number(
             "Countdown, s", numbers.countdown_s, min=0.5, max=numbers.longest_s, step=0.5

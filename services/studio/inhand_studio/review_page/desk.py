@@ -7,7 +7,7 @@ from contextlib import ExitStack
 import viser
 from inhand_lab.datasets.dataset import DatasetEntry
 
-from inhand_studio.labelling_page.panel import put
+from inhand_studio.controls import put
 from inhand_studio.pace import Pace
 from inhand_studio.review_page.drawing import Drawing
 from inhand_studio.review_page.estimates import Estimates

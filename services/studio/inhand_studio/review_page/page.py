@@ -7,8 +7,8 @@ from typing import Any
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError, load_dataset
 from inhand_runtime.errors import InhandError
 
-from inhand_studio.labelling_page.page import find_recordings
-from inhand_studio.labelling_page.panel import put
+from inhand_studio.controls import put
+from inhand_studio.dataset_files import find_recordings
 from inhand_studio.review_page.desk import Desk
 from inhand_studio.review_page.recording import ReviewedRecording
 from inhand_studio.texts import lines_html
