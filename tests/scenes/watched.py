@@ -27,6 +27,7 @@ from inhand_runtime.recording import RecordingWriter
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import CameraInfo, Message, ObjectPose, Pose, RgbdFrame, Skeletons
 from inhand_schemas.topics import HEALTH, INFO, LABEL, POSE, RGBD, SKELETONS, Topic
+from inhand_studio.labelling_page.opened import OpenedRecording
 from inhand_studio.review_page.estimates import Estimates
 from inhand_studio.review_page.parameters import DEFAULT_REVIEW
 from inhand_studio.review_page.recording import ReviewedRecording
@@ -186,6 +187,11 @@ def _measure_recording(folder: Path, hours: float) -> None:
     reading.join()
     print(f"all labels and poses were read {time.monotonic() - opened:.0f} s after it was opened")
     recording.close()
+    began = time.monotonic()
+    labelled = OpenedRecording(path)
+    assert labelled.image(len(labelled) // 2) is not None
+    print(f"for labelling it was open, with a frame, in {time.monotonic() - began:.2f} s")
+    labelled.close()
 
 
 def _jump(recording: ReviewedRecording, frame: int) -> None:
