@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 REQUIRED = "CHROMIUM_REQUIRED"
-"""Set where a machine without Chromium is a fault, as in CI. (Settings alone begin with INHAND_.)"""
+"""Set where a machine without Chromium is a fault, as in CI; INHAND_… would be a setting."""
 
 WINDOW = (1280, 800)
 """Width and height of a tab in pixels."""
