@@ -13,6 +13,7 @@ import argparse
 import itertools
 import sys
 import tempfile
+import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -172,10 +173,17 @@ def main() -> int:
             print("made the kettle, and four people who pour", flush=True)
             truly = label_truly(taught, rig.folder / "truly")
             for number in range(3):
+                began = time.monotonic()
                 label_by_hand(taught, number, random)
-                print(f"labelled p{number} by {MOST_KEYFRAMES} keyframes", flush=True)
+                took_s = time.monotonic() - began
+                print(
+                    f"labelled p{number} by {MOST_KEYFRAMES} keyframes in {took_s:.0f} s",
+                    flush=True,
+                )
             by_hand, by_truth = rig.folder / "taught.model", rig.folder / "true.model"
+            began = time.monotonic()
             finish(rig.inhand("train", taught.folder, "-o", by_hand))
+            print(f"trained in {time.monotonic() - began:.0f} s", flush=True)
             finish(rig.inhand("train", rig.folder / "truly", "-o", by_truth, "--without", "p3"))
             errors = {
                 name: replayed(rig, name, model, truly[3], 1.0).error_cm
