@@ -3,8 +3,8 @@
 import contextlib
 import math
 import time
-from collections import Counter
-from collections.abc import Callable, Iterator
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -182,9 +182,9 @@ def _record(look: Look, view: _View, wishes: TakeWishes) -> Take:
 
 def _write_until_stopped(
     look: Look, view: _View, file: RecordingFile, seconds: float | None
-) -> Counter[str]:
+) -> Mapping[str, float]:
     """Write what comes; returns for how many seconds each kind of thing was missing."""
-    missing: Counter[str] = Counter()
+    missing: defaultdict[str, float] = defaultdict(float)
     before = next_sync = time.monotonic()
     file.repeat(entry_of(view.info))
     with contextlib.suppress(KeyboardInterrupt):  # the usual end
@@ -194,7 +194,7 @@ def _write_until_stopped(
             view.tell()
             now = time.monotonic()
             for one in view.watch.missing:
-                missing[one.kind] += now - before  # type: ignore[assignment]
+                missing[one.kind] += now - before
             before = now
             if now >= next_sync:
                 file.sync()

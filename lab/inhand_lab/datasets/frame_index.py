@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from inhand_runtime.recording.message_index import IndexedMessages, RecordingIndex, open_index
 from inhand_schemas.messages import CameraInfo, RgbdFrame, Skeletons
-from inhand_schemas.topics import INFO, RGBD, SKELETONS
+from inhand_schemas.topics import INFO, RGBD, SKELETONS, AnyTopic
 from inhand_tracker.geometry.arrays import Indices
 
 from inhand_lab.datasets.dataset import DatasetError
@@ -104,6 +104,18 @@ def _same(times_ns: Indices, captured_ns: Indices) -> Indices | None:
     return frames if (times_ns[frames] == captured_ns).all() else None
 
 
+def cameras_of(index: RecordingIndex) -> tuple[str, ...]:
+    """Return the cameras of a recording with skeletons, or else those with pictures."""
+    for topic in (SKELETONS, RGBD):
+        if names := _named(index, topic):
+            return names
+    return ()
+
+
+def _named(index: RecordingIndex, topic: AnyTopic) -> tuple[str, ...]:
+    return tuple(sorted(name for name, count in index.counts(topic.stream).items() if count))
+
+
 @contextmanager
 def open_frames(path: Path, camera: str | None = None) -> Iterator[FrameIndex]:
     """Open a recording for random access to the frames of one camera while a block runs.
@@ -112,7 +124,7 @@ def open_frames(path: Path, camera: str | None = None) -> Iterator[FrameIndex]:
     DatasetError where the camera is not to be had.
     """
     with open_index(path) as index:
-        tracked = sorted(name for name, count in index.counts(SKELETONS.stream).items() if count)
+        tracked = _named(index, SKELETONS)
         if not tracked and index.note is not None:
             raise DatasetError(f"{index.note}; it holds no skeletons")
         if not tracked:

@@ -1,13 +1,12 @@
 """Adds a recording to ``dataset.toml``, or puts it in place of another; all else there stays."""
 
 import contextlib
-import fcntl
-import os
 import re
 import tomllib
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection
 from pathlib import Path
 
+from inhand_runtime.locked_folder import locked_folder
 from inhand_runtime.recording.part_file import PART_SUFFIX, PartFile
 
 from inhand_lab.datasets.dataset import FORMAT, VERSION, DatasetEntry, DatasetError, load_dataset
@@ -32,7 +31,7 @@ def put_entry(folder: Path, entry: DatasetEntry, files: Collection[str]) -> None
     path = folder / FILE
     lines = "\n".join(entry_toml(entry))
     try:
-        with _alone(folder):
+        with locked_folder(folder):
             text = path.read_text(encoding="utf-8") if path.exists() else _beginning()
             grown = _put(text, lines, lambda block: _is_of(block, entry, files))
             _require_toml(path, grown, lines)
@@ -72,17 +71,6 @@ def _is_of(block: str, entry: DatasetEntry, files: Collection[str]) -> bool:
     if not isinstance(tables, list) or len(tables) != 1:
         return False
     return tables[0].get("file") in files and tables[0].get("object") in (None, entry.object)
-
-
-@contextlib.contextmanager
-def _alone(folder: Path) -> Iterator[None]:
-    """Keep other processes from adding meanwhile; the lock goes with the process."""
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(descriptor)
 
 
 def _beginning() -> str:

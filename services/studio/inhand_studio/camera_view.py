@@ -5,12 +5,16 @@ and the image goes; it comes back when the browser looks through the camera agai
 """
 
 import numpy as np
+from inhand_schemas.messages import CameraInfo
 from inhand_tracker.geometry.arrays import Array, Bytes, Singles
-from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 
 from inhand_studio.eye import Eye, eye_towards, whole_eye
 from inhand_studio.parameters import DEFAULT_STUDIO, StudioParameters
 from inhand_studio.visit import Visit
+
+UNKNOWN_CAMERA = Intrinsics(525.0, 525.0, 319.5, 239.5, 640, 480)
+"""A usual camera, through which a recording is looked at that does not describe its own."""
 
 
 class CameraView:
@@ -111,3 +115,8 @@ class CameraView:
         if self._target is None:  # more rows than the camera has would show no more
             return whole_eye(self.camera, aspect, min(height, self.camera.height))
         return eye_towards(*self._target, aspect, height)
+
+
+def seen_by(info: CameraInfo | None) -> Intrinsics:
+    """Return the camera that a recording describes, or a usual one where it describes none."""
+    return UNKNOWN_CAMERA if info is None else intrinsics_of(info)

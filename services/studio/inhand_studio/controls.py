@@ -2,9 +2,10 @@
 
 from typing import Any
 
-import viser
 
+def put(control: Any, value: Any) -> None:
+    """Give a control of viser, also a progress bar, a value.
 
-def put(control: viser.GuiInputHandle[Any], value: Any) -> None:
-    """Give a control a value; what is done when a person changes it is not done."""
-    control.value = value  # type: ignore[misc]  # mypy takes viser's property for read-only
+    What is done when a person changes it is not done. (mypy takes viser's property for read-only.)
+    """
+    control.value = value

@@ -14,6 +14,8 @@ BONE_PIXELS = 3.0
 BONE: Colour = (255, 210, 60)
 TRUE: Colour = (60, 220, 90)
 TRACKED: Colour = (250, 70, 60)
+UPRIGHT = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
+"""A rotation with z up, as objects stand: to -y, for the scene's y points down."""
 
 
 def add_object(
@@ -37,13 +39,6 @@ def bones(joints: Array) -> Singles:
     return np.asarray(ends[whole], np.float32)
 
 
-def add_skeleton(
-    scene: viser.SceneApi, name: str, joints: Array, colour: Colour = BONE
-) -> viser.LineSegmentsHandle:
-    """Draw a person's joints (20, 3); ``bones(…)`` assigned to its handle's ``points`` moves it."""
-    return add_bones(scene, name, bones(joints), colour)
-
-
 def add_bones(
     scene: viser.SceneApi, name: str, ends: Singles, colour: Colour
 ) -> viser.LineSegmentsHandle:
@@ -62,14 +57,18 @@ def add_points(
     )
 
 
-def points_of(depth: Singles, colour: Bytes | None, camera: Intrinsics) -> tuple[Singles, Bytes]:
-    """Return the measured points (N, 3) of a depth image (H, W) in metres, and their colours.
+def points_of(
+    depth: Singles, colour: Bytes | None, camera: Intrinsics, step: int
+) -> tuple[Singles, Bytes]:
+    """Return the points (N, 3) of a depth image (H, W) in metres, and their colours (N, 3).
 
-    ``camera`` took the depth image. ``colour`` (h, w, 3) is RGB of the same view, of any size.
+    They are those of one pixel in ``step``, along rows and columns, where anything was measured.
+    ``camera`` took the image, and ``colour`` (h, w, 3), RGB of the same view, of any size.
     """
-    rows, columns = np.nonzero(depth)
+    rows, columns = step * np.array(np.nonzero(depth[::step, ::step]))
     pixels = np.column_stack((columns, rows)).astype(float)
-    points = camera.unproject(pixels, depth[rows, columns].astype(float))
+    of_depth = camera.scaled_to(depth.shape[1], depth.shape[0])
+    points = of_depth.unproject(pixels, depth[rows, columns].astype(float))
     if colour is None:
         return points.astype(np.float32), np.full(points.shape, 128, np.uint8)
     height, width = colour.shape[:2]

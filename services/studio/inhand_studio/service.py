@@ -73,5 +73,5 @@ def models_of(path: Path | None) -> tuple[Path, ...]:
         except SettingsError as error:
             log.warning("its models are not known here: %s", error)
             continue
-        models += chosen.models if chosen.model is None else (chosen.model,)
+        models += chosen.model_files
     return tuple(dict.fromkeys(one for one in models if one.is_file()))

@@ -5,6 +5,7 @@ from functools import cached_property
 from pathlib import Path
 
 from inhand_runtime.daemon import Daemon
+from inhand_runtime.errors import InhandError
 
 from inhand_studio.rig import Rig
 from inhand_studio.shapes import Shapes
@@ -30,6 +31,14 @@ class Studio:
     def trainings(self) -> Trainings:
         """The training that runs, or ran last, for whichever tab looks."""
         return Trainings()
+
+    def require_rig(self) -> Rig:
+        """Return what is heard of the rig; raises InhandError where there is none."""
+        if self.rig is None:
+            raise InhandError(
+                "this studio looks at no rig: start `inhand studio` with the rig's --config"
+            )
+        return self.rig
 
     @cached_property
     def shapes(self) -> Shapes:

@@ -85,6 +85,18 @@ class Visit:
 
         return done
 
+    def every(self, period_s: float, act: Action) -> Callable[[], None]:
+        """Do an action every so often, until the tab is gone or what is returned is called."""
+        stop = threading.Event()
+        do = self.action(lambda event: None if stop.is_set() else act(event))
+
+        def run() -> None:
+            while not stop.wait(period_s) and not self._closed:
+                do(None)
+
+        threading.Thread(target=run, name=f"every {period_s:g} s", daemon=True).start()
+        return stop.set
+
     def command(self, label: str, key: str, act: Action, modifier: str | None = None) -> None:
         """Let a key do something while the page is shown; it is listed in the tab's palette.
 

@@ -78,7 +78,7 @@ def load_models(instance: str, settings: TrackerSettings) -> dict[str, Model]:
     where = f"[tracker.{instance}]"
     if settings.model is not None and settings.models:
         raise SettingsError(f'{where} has model and models: put all in models = ["FILE", …]')
-    files = settings.models if settings.model is None else (settings.model,)
+    files = settings.model_files
     if not files:
         raise SettingsError(
             f'{where} names no model: write model = "FILE"; `inhand train` makes one'

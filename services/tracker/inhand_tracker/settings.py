@@ -1,5 +1,7 @@
 """What a settings file says of a tracker."""
 
+from pathlib import Path
+
 from inhand_runtime.settings import FilePath, Section
 from inhand_schemas.messages import Name
 from pydantic import Field, PositiveInt
@@ -26,3 +28,8 @@ class TrackerSettings(Section):
     people: PositiveInt = 1
     every_frame: bool = False
     seed: int = Field(default=0, ge=0)
+
+    @property
+    def model_files(self) -> tuple[Path, ...]:
+        """The files of the models, however the settings name them."""
+        return self.models if self.model is None else (self.model,)

@@ -13,7 +13,7 @@ from inhand_studio.eye import whole_eye
 from inhand_studio.labelling_page.autosave import keyframes_path
 from inhand_studio.labelling_page.clicks import point_on
 from inhand_studio.labelling_page.opened import OpenedRecording
-from inhand_studio.labelling_page.shown_pose import UPRIGHT
+from inhand_studio.scene_parts import UPRIGHT
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 from inhand_tracker.shape.shape import load_shape

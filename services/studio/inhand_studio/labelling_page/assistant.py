@@ -77,7 +77,7 @@ class Eyes:
 
     def look(
         self,
-        image: Image | None,
+        image: Image,
         pose: Pose,
         joints: Array,
         samples: Sequence[AppearanceSample],
@@ -85,8 +85,6 @@ class Eyes:
     ) -> RefinedPose:
         """Bring a pose to where an image shows the object; raises LabellingError where it says
         nothing of it."""
-        if image is None or image.depth is None:
-            raise LabellingError("this frame has no depth: choose a frame that has")
         sight = Sight(self.shape, self.viewpoints(advance), learn_appearance(self.shape, samples))
         refined = refine_pose(sight, image, pose, joints)
         if not refined.shown:

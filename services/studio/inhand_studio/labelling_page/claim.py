@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from inhand_lab.labelling.keyframes import LabellingError
+from inhand_runtime.locked_folder import locked_folder
 
 
 class Claim:
@@ -30,7 +31,7 @@ class Claim:
     def held(self) -> Iterator[None]:
         """Keep others from taking over while the block runs; raises LabellingError where somebody
         did already."""
-        with _guarded(self._lock.parent):
+        with locked_folder(self._lock.parent):
             if not self.mine:
                 raise LabellingError(
                     "another tab or studio has taken over: take over again, or leave it to that one"
@@ -41,7 +42,7 @@ class Claim:
         """Let others write."""
         if self._descriptor is None:
             return
-        with contextlib.suppress(OSError), _guarded(self._lock.parent):
+        with contextlib.suppress(OSError), locked_folder(self._lock.parent):
             if self.mine:
                 self._lock.unlink()
         os.close(self._descriptor)
@@ -56,7 +57,7 @@ def claim(path: Path, *, take_over: bool = False) -> Claim | None:
     """
     lock = lock_path(path)
     try:
-        with _guarded(lock.parent):
+        with locked_folder(lock.parent):
             return _claim(lock, take_over)
     except OSError as error:
         raise LabellingError(
@@ -99,14 +100,3 @@ def _is_at(descriptor: int, path: Path) -> bool:
     except FileNotFoundError:
         return False
     return (mine.st_ino, mine.st_dev) == (there.st_ino, there.st_dev)
-
-
-@contextlib.contextmanager
-def _guarded(folder: Path) -> Iterator[None]:
-    """Let one at a time look at a folder's lock files and change them."""
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(descriptor)

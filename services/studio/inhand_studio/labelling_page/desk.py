@@ -10,6 +10,7 @@ from inhand_runtime.wording import counted
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.shape.shape import ObjectShape
+from inhand_tracker.wire.poses import pose_message
 
 from inhand_studio.labelling_page import editing as edits
 from inhand_studio.labelling_page.assistant import Assistance
@@ -18,10 +19,10 @@ from inhand_studio.labelling_page.background import Background
 from inhand_studio.labelling_page.opened import OpenedRecording
 from inhand_studio.labelling_page.panel import CAMERA_FRAME, OBJECT_FRAME, Act, Panel
 from inhand_studio.labelling_page.parameters import DEFAULT_PAGE
-from inhand_studio.labelling_page.placing import message_of
 from inhand_studio.labelling_page.shown_pose import ShownPose, part_basis, shown_pose
 from inhand_studio.labelling_page.stage import Look, Stage
 from inhand_studio.labelling_page.strip import strip
+from inhand_studio.player import Player
 from inhand_studio.visit import Visit
 
 
@@ -48,7 +49,7 @@ class Desk:
             raise
         self.frame = 0
         self._drawn = -1
-        self._playing: tuple[float, int] | None = None
+        self._player = Player(recording.times_ns)
         self._tried_s = time.monotonic()
         self.shown = ShownPose(None, "guess")
         self.background = Background(visit)
@@ -79,8 +80,13 @@ class Desk:
     # Looking.
 
     def go(self, frame: int) -> None:
-        """Show a frame."""
-        self.frame = int(np.clip(frame, 0, len(self.recording) - 1))
+        """Show a frame, and play no longer."""
+        self._player.jump(frame)
+        self._show(self._player.frame(time.monotonic()))
+
+    def _show(self, frame: int) -> None:
+        self.frame = frame
+        self.panel.show_playing(self.playing)
         self.refresh()
 
     def refresh(self) -> None:
@@ -147,15 +153,8 @@ class Desk:
     def tick(self) -> None:
         """Do what time asks for: play, write again what could not be written, look at others."""
         self.panel.show_progress(self.background.doing, self.background.share)
-        if self._playing is not None:
-            started_s, first = self._playing
-            times_ns = self.recording.times_ns
-            until_ns = times_ns[first] + round(1e9 * (time.monotonic() - started_s))
-            frame = int(np.searchsorted(times_ns, until_ns, side="right")) - 1
-            if frame >= len(times_ns) - 1:
-                self.play()
-            if frame != self.frame:
-                self.go(frame)
+        if self.playing and (frame := self._player.frame(time.monotonic())) != self.frame:
+            self._show(frame)
         if time.monotonic() - self._tried_s > DEFAULT_PAGE.retry_s:
             self._tried_s = time.monotonic()
             self._look_at_disk()
@@ -173,14 +172,17 @@ class Desk:
 
     @property
     def playing(self) -> bool:
-        return self._playing is not None
+        """Whether frames are shown one after another, as they were taken."""
+        return self._player.playing
 
     def play(self) -> None:
         """Play from this frame on, or stop."""
-        if self._playing is None and self.frame >= len(self.recording) - 1:
-            self.go(0)
-        self._playing = None if self._playing else (time.monotonic(), self.frame)
-        self.panel.show_playing(self.playing)
+        now = time.monotonic()
+        if self.playing:
+            self._player.stop(now)
+        else:
+            self._player.play(1.0, now)
+        self._show(self._player.frame(now))
 
     def _jump(self, keyframe: Keyframe | None) -> None:
         if keyframe is not None:
@@ -188,8 +190,6 @@ class Desk:
 
     def _scrub(self) -> None:
         if self.panel.frame != self.frame:
-            self._playing = None
-            self.panel.show_playing(False)
             self.go(self.panel.frame)
 
     def _zoom(self) -> None:
@@ -236,7 +236,7 @@ class Desk:
         keyframe = Keyframe(
             frame=self.frame,
             time_ns=int(self.recording.times_ns[self.frame]),
-            camera_from_object=None if pose is None else message_of(pose),
+            camera_from_object=None if pose is None else pose_message(*pose),
             relative_to=None if pose is None else self.editing.part,
         )
         self.edit(lambda editing: edits.with_keyframe(editing, keyframe))

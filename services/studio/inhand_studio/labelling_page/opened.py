@@ -10,14 +10,14 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-from inhand_lab.datasets.frame_index import FrameIndex
+from inhand_lab.datasets.frame_index import FrameIndex, cameras_of
 from inhand_lab.labelling.equal_poses import Pose
 from inhand_lab.labelling.keyframes import LabellingError
 from inhand_lab.labelling.scene import joints_between
 from inhand_runtime.recording.message_index import open_index
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import ObjectPose, Person, RgbdFrame
-from inhand_schemas.topics import LABEL, RGBD, SKELETONS
+from inhand_schemas.topics import LABEL, RGBD
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.wire.conversion import image_of, joints_of
@@ -37,9 +37,7 @@ class OpenedRecording:
         self._files = ExitStack()
         try:
             self._index = self._files.enter_context(open_index(path))
-            self.cameras = _cameras(self._index.counts(SKELETONS.stream)) or _cameras(
-                self._index.counts(RGBD.stream)
-            )
+            self.cameras = cameras_of(self._index)
             self._open_camera(camera)
         except BaseException:
             self._files.close()
@@ -156,7 +154,3 @@ class OpenedRecording:
     def _has_depth(self) -> bool:
         """Whether the first picture has depth."""
         return RGBD.decode(self._pixels[0].payload).depth is not None
-
-
-def _cameras(counts: dict[str, int]) -> tuple[str, ...]:
-    return tuple(sorted(name for name, count in counts.items() if count))

@@ -95,7 +95,7 @@ class Panel:
         running = doing is not None
         self._progress.visible = self._cancel.visible = running
         if running:
-            self._progress.value = round(100.0 * share, 1)  # type: ignore[misc]
+            put(self._progress, round(100.0 * share, 1))
             self._cancel.label = f"Cancel {doing}"
 
     def show_playing(self, playing: bool) -> None:

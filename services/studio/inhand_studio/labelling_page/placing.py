@@ -5,7 +5,6 @@ A frame is a Pose too: ``camera_from_frame``, whose axes are what steps go along
 
 import numpy as np
 from inhand_lab.labelling.equal_poses import Pose
-from inhand_schemas.messages import Pose as PoseMessage
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 
@@ -61,10 +60,3 @@ def from_degrees(turns: Array) -> Array:
     """Return the rotation (4,) of turns (3,) in degrees about the fixed axes x, y, z."""
     about = rotations.from_vector(np.diag(np.deg2rad(turns)))
     return np.asarray(rotations.multiply(about[2], rotations.multiply(about[1], about[0])))
-
-
-def message_of(pose: Pose) -> PoseMessage:
-    """Return a pose as messages and files hold it."""
-    x, y, z = pose[0].tolist()
-    w, i, j, k = pose[1].tolist()
-    return PoseMessage((x, y, z), (w, i, j, k))

@@ -16,14 +16,12 @@ from inhand_tracker.shape.shape import Symmetry
 from inhand_studio.labelling_page.editing import Editing
 from inhand_studio.labelling_page.opened import OpenedRecording
 from inhand_studio.labelling_page.placing import SAME_ROTATION
+from inhand_studio.scene_parts import UPRIGHT
 
 Standing = Literal["keyframe", "between", "refined", "guess", "absent"]
 
 FIRST_M = 1.5
 """Metres before the camera at which an object stands of which nothing is known."""
-
-UPRIGHT = np.array([np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0])
-"""A rotation with z up, as objects stand, where the camera's y points down."""
 
 
 @dataclass(frozen=True)

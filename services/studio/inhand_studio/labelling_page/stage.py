@@ -9,15 +9,14 @@ from typing import Literal
 import cv2
 import numpy as np
 from inhand_lab.labelling.equal_poses import Pose
-from inhand_schemas.messages import CameraInfo
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Bytes, Singles
-from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
+from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.shape.shape import ObjectShape
-from inhand_tracker.wire.conversion import joints_of
 
-from inhand_studio.camera_view import CameraView
+from inhand_studio.camera_view import CameraView, seen_by
+from inhand_studio.drawn_scene import DrawnScene
 from inhand_studio.labelling_page.opened import OpenedRecording
 from inhand_studio.labelling_page.parameters import DEFAULT_PAGE, LabellingPageParameters
 from inhand_studio.labelling_page.placing import SAME_ROTATION
@@ -27,8 +26,6 @@ from inhand_studio.scene_parts import (
     Colour,
     add_object,
     add_points,
-    add_skeleton,
-    bones,
     points_of,
 )
 from inhand_studio.visit import Visit
@@ -67,14 +64,13 @@ class Stage:
         self._parameters = parameters
         self._middle = 0.5 * (shape.vertices.min(axis=0) + shape.vertices.max(axis=0))
         self.radius = float(np.linalg.norm(shape.vertices - self._middle, axis=1).max())
-        self._view = CameraView(visit, _camera_of(recording))
+        self._view = CameraView(visit, seen_by(recording.info))
         self._look: Look = "colour"
         self._zoomed: Array | None = None
         self._object = add_object(self._scene, "/object", shape, COLOURS["guess"], 0.55)
         self._true = add_object(self._scene, "/labelled", shape, TRUE, 0.35)
         self._true.visible = False
-        nobody = np.full((20, 3), np.nan)
-        self._people = add_skeleton(self._scene, "/people", nobody)
+        self._drawn = DrawnScene(self._scene)
         self._cloud = add_points(
             self._scene, "/points", np.zeros((1, 3), np.float32), np.zeros((1, 3), np.uint8)
         )
@@ -105,12 +101,9 @@ class Stage:
     def show_frame(self, frame: int) -> None:
         """Show the image, or the points, and the people of a frame; raises RecordingError."""
         image = self._recording.image(frame)
-        shown = [joints_of(person) for person in self._recording.people(frame)]
-        parts = [bones(joints) for joints in shown]
+        people = self._recording.people(frame)
         with self._client.atomic():
-            self._people.points = (
-                np.concatenate(parts) if parts else np.zeros((0, 2, 3), np.float32)
-            )
+            self._drawn.draw_people(people)
             self._cloud.visible = self._look == "3-D" and image is not None
             if self._look == "3-D" and image is not None:
                 self._show_points(image)
@@ -125,7 +118,7 @@ class Stage:
         if pose is None:
             return
         self.move_object(pose)
-        middle = pose[0] + rotations.rotate(pose[1], self._middle)
+        middle = self.middle_of(pose)
         self._handles_pose = middle, axes
         self._handles.position, self._handles.wxyz = middle, axes
         if self._zoomed is not None:
@@ -214,13 +207,9 @@ class Stage:
         if image.depth is None:
             self._cloud.visible = False
             return
-        step = self._parameters.cloud_step
-        depth = image.depth.copy()
-        kept = np.zeros(depth.shape, bool)
-        kept[::step, ::step] = True
-        depth[~kept] = 0.0
-        camera = self._view.camera.scaled_to(depth.shape[1], depth.shape[0])
-        self._cloud.points, self._cloud.colors = points_of(depth, image.colour, camera)
+        self._cloud.points, self._cloud.colors = points_of(
+            image.depth, image.colour, self._view.camera, self._parameters.cloud_step
+        )
 
 
 def false_colours(depth: Singles, deepest_m: float) -> Bytes:
@@ -229,9 +218,3 @@ def false_colours(depth: Singles, deepest_m: float) -> Bytes:
     colours = cv2.applyColorMap((255.0 * shares).astype(np.uint8), cv2.COLORMAP_TURBO)
     colours[depth <= 0.0] = 0
     return np.ascontiguousarray(colours[..., ::-1], np.uint8)
-
-
-def _camera_of(recording: OpenedRecording) -> Intrinsics:
-    """Return the recording's camera, or a usual one where its own is not known."""
-    info: CameraInfo | None = recording.info
-    return Intrinsics(525.0, 525.0, 319.5, 239.5, 640, 480) if info is None else intrinsics_of(info)

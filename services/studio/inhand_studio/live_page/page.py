@@ -6,7 +6,6 @@ from contextlib import ExitStack
 from typing import Any
 
 import viser
-from inhand_runtime.errors import InhandError
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo, ObjectPose
 from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
@@ -22,7 +21,7 @@ from inhand_studio.live_page.texts import objects_html, processes_html, shown_ht
 from inhand_studio.pace import Pace
 from inhand_studio.picture import Picture
 from inhand_studio.rig import CameraNews, Pictures, Rig
-from inhand_studio.texts import lines_html
+from inhand_studio.texts import lines_html, write
 from inhand_studio.visit import Page, Visit
 
 NO_CAMERA = "(no camera yet)"
@@ -35,11 +34,7 @@ PICTURES: dict[str, Pictures | None] = {
 
 def open_page(visit: Visit) -> Page:
     """Watch the studio's rig; raises InhandError where it has none."""
-    if visit.studio.rig is None:
-        raise InhandError(
-            "this studio looks at no rig: start `inhand studio` with the rig's --config"
-        )
-    return LivePage(visit, visit.studio.rig)
+    return LivePage(visit, visit.studio.require_rig())
 
 
 class LivePage:
@@ -115,13 +110,13 @@ class LivePage:
             self._camera.options = cameras
         info = infos.get(self._camera.value)
         if info is None:
-            self._write(self._wrong, lines_html([no_camera(self._rig)], "wrong"))
+            write(self._wrong, lines_html([no_camera(self._rig)], "wrong"))
         else:
             self._look_at(self._camera.value, info)
             self._show_camera(self._camera.value, info, now)
         if now - self._processes_at > self._parameters.processes_period_s:
             self._processes_at = now
-            self._write(self._processes, processes_html(self._rig.roll))
+            write(self._processes, processes_html(self._rig.roll))
 
     def _look_at(self, camera: str, info: CameraInfo) -> None:
         """Let what the menus choose come, and nothing else."""
@@ -152,10 +147,10 @@ class LivePage:
             *conditions_of(camera, info, pictures, self._rig, self._parameters),
         ]
         lines += [] if self._damage is None else [self._damage]
-        self._write(self._wrong, lines_html(lines, "wrong"))
-        self._write(self._objects, objects_html(newest_poses(news.poses), self._parameters))
+        write(self._wrong, lines_html(lines, "wrong"))
+        write(self._objects, objects_html(newest_poses(news.poses), self._parameters))
         came_hz = rate_of([picture.arrived for picture in news.pictures], now)
-        self._write(self._rates, shown_html(self._shown_rate.at(now), came_hz))
+        write(self._rates, shown_html(self._shown_rate.at(now), came_hz))
 
     def _draw(self, moment: Moment, info: CameraInfo, now: float) -> None:
         """Draw a moment, unless its picture is drawn already."""
@@ -196,10 +191,6 @@ class LivePage:
     def _look_through(self) -> None:
         if self._view is not None:
             self._view.look_through()
-
-    def _write(self, element: viser.GuiHtmlHandle, text: str) -> None:
-        if element.content != text:
-            element.content = text
 
 
 def _slot(pose: ObjectPose) -> str:

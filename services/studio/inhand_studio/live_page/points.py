@@ -30,10 +30,7 @@ class LivePoints:
         depth = picture.depth(info)
         if depth is None:
             return
-        step = self._parameters.points_step
-        camera = intrinsics_of(info).scaled_to(depth.shape[1], depth.shape[0])
-        thinned = depth[::step, ::step]
         points, colours = points_of(
-            thinned, picture.colour(info), camera.scaled_to(thinned.shape[1], thinned.shape[0])
+            depth, picture.colour(info), intrinsics_of(info), self._parameters.points_step
         )
         self._handle = add_points(self._scene, "/points", points, colours)

@@ -6,14 +6,14 @@ import numpy as np
 import viser
 from inhand_lab.new_objects.description import describe_symmetry
 from inhand_lab.new_objects.drawn_hand import HAND_BREADTH, HAND_LENGTH, open_hand
+from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.shape.shape import ObjectShape
 
+from inhand_studio.scene_parts import UPRIGHT
 from inhand_studio.visit import Visit
 
-UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-"""Turns z, which points up of an object, to -y, which points up in a tab's scene."""
-SEEN_FROM = UPRIGHT @ np.array([0.75, 1.0, 0.55])
+SEEN_FROM = rotations.rotate(UPRIGHT, np.array([0.75, 1.0, 0.55]))
 """Direction from which an object is seen at first: from ahead and above."""
 DISTANCE = 2.2
 """Distance from which it is seen at first, in sizes of what is shown."""
@@ -54,9 +54,7 @@ def described(shape: ObjectShape) -> Iterator[str]:
 
 
 def _draw_axes(scene: viser.SceneApi, shape: ObjectShape, size: float) -> None:
-    scene.add_frame(
-        "/shown/axes", axes_length=0.75 * size, axes_radius=0.006 * size, wxyz=_quaternion()
-    )
+    scene.add_frame("/shown/axes", axes_length=0.75 * size, axes_radius=0.006 * size, wxyz=UPRIGHT)
     ends = []
     for symmetry in shape.symmetries:
         half = 0.5 * AXIS_SHARE * size * np.array(symmetry.axis)
@@ -89,10 +87,4 @@ def _look(client: viser.ClientHandle, size: float) -> None:
 
 def _turned(points: Array) -> Array:
     """Turn points (..., 3) of an object upright in the scene."""
-    return np.asarray(points @ UPRIGHT.T, np.float32)
-
-
-def _quaternion() -> tuple[float, float, float, float]:
-    """Return ``UPRIGHT`` as a quaternion: a quarter turn about x."""
-    half = float(np.sqrt(0.5))
-    return (half, half, 0.0, 0.0)
+    return np.asarray(rotations.rotate(UPRIGHT, points), np.float32)

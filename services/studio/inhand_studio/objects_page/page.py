@@ -1,6 +1,5 @@
 """A tab that makes objects of the dataset, and shows each beside a hand."""
 
-import threading
 from typing import Any
 
 from inhand_runtime.errors import InhandError
@@ -28,14 +27,12 @@ class ObjectsPage:
         self._visit, self._making = visit, making
         self._gui = visit.client.gui
         self._waiting = False
-        self._stop = threading.Event()
         self._add_controls()
-        self._thread = threading.Thread(target=self._run, name="objects page", daemon=True)
-        self._thread.start()
+        self._stop = visit.every(PERIOD_S, self._step)
 
     def close(self) -> None:
         """Remove what was not saved."""
-        self._stop.set()
+        self._stop()
         self._making.close()
 
     def _add_controls(self) -> None:
@@ -78,14 +75,9 @@ class ObjectsPage:
         self._there.options = (NEW, *find_objects(self._visit.studio.dataset))
         write(self._said, lines_html([f"saved {folder}"], "note"))
 
-    def _run(self) -> None:
-        step = self._visit.action(self._step)
-        while not self._stop.wait(PERIOD_S) and not self._visit.closed:
-            step(None)
-
     def _step(self, _event: Any) -> None:
         """Show what is being made, and what became of it."""
-        if self._stop.is_set() or not self._waiting:
+        if not self._waiting:
             return
         self._waiting = self._making.running
         if self._waiting:

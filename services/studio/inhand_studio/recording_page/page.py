@@ -1,14 +1,12 @@
 """A tab that makes training recordings: the live picture, who does what, and what is missing."""
 
 import signal
-import threading
 import time
 from contextlib import ExitStack
 from typing import Any
 
 import viser
 from inhand_lab.new_recordings.view_watch import ViewWatch
-from inhand_runtime.errors import InhandError
 from inhand_runtime.exit_codes import DONE, INTERRUPTED
 
 from inhand_studio.dataset_files import find_objects
@@ -25,11 +23,7 @@ NO_OBJECT = "(none)"
 
 def open_page(visit: Visit) -> Page:
     """Record the studio's rig; raises InhandError where it has none."""
-    if visit.studio.rig is None:
-        raise InhandError(
-            "this studio looks at no rig: start `inhand studio` with the rig's --config"
-        )
-    return RecordingPage(visit, visit.studio.rig)
+    return RecordingPage(visit, visit.studio.require_rig())
 
 
 class RecordingPage:
@@ -42,15 +36,13 @@ class RecordingPage:
         self._watch = ViewWatch(time.monotonic())
         self._seen = (-1, -1)
         self._looking = ExitStack()
-        self._stop = threading.Event()
         self._add_controls(visit.client.gui)
         self._live = LivePage(visit, rig)
-        self._thread = threading.Thread(target=self._run, name="recording page", daemon=True)
-        self._thread.start()
+        self._stop = visit.every(DEFAULT_RECORDING_PAGE.period_s, self._step)
 
     def close(self) -> None:
         """End the recording, which is kept as at Stop, and the live picture."""
-        self._stop.set()
+        self._stop()
         if self._verb is not None:
             self._verb.interrupt()
         self._looking.close()
@@ -103,14 +95,7 @@ class RecordingPage:
         if self._verb is not None:
             self._verb.interrupt()
 
-    def _run(self) -> None:
-        step = self._visit.action(self._step)
-        while not self._stop.wait(DEFAULT_RECORDING_PAGE.period_s) and not self._visit.closed:
-            step(None)
-
     def _step(self, _event: Any) -> None:
-        if self._stop.is_set():
-            return
         running = self._verb is not None and self._verb.running
         self._start_button.visible, self._stop_button.visible = not running, running
         missing = self._missing_now(time.monotonic())

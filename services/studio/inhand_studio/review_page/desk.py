@@ -9,10 +9,10 @@ from inhand_lab.datasets.dataset import DatasetEntry
 
 from inhand_studio.controls import put
 from inhand_studio.pace import Pace
+from inhand_studio.player import RATES, Player
 from inhand_studio.review_page.drawing import Drawing
 from inhand_studio.review_page.estimates import Estimates
 from inhand_studio.review_page.parameters import DEFAULT_REVIEW, ReviewParameters
-from inhand_studio.review_page.player import RATES, Player
 from inhand_studio.review_page.plot import marker_html, plot_html, worst_frame
 from inhand_studio.review_page.recording import ReviewedRecording
 from inhand_studio.review_page.texts import frame_text, legend_html
@@ -184,7 +184,7 @@ class Desk:
             nonlocal written
             if time.monotonic() - written > self._parameters.progress_s:
                 written = time.monotonic()
-                self._progress.value = 100.0 * share  # type: ignore[misc]  # as in ``put``
+                put(self._progress, 100.0 * share)
             return not self._stop.is_set()
 
         def read(_event: object) -> None:

@@ -2,22 +2,16 @@
 
 import numpy as np
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import CameraInfo, ObjectPose
-from inhand_tracker.geometry.camera import intrinsics_of
+from inhand_schemas.messages import ObjectPose
 from inhand_tracker.wire.poses import pose_message
 
-from inhand_studio.camera_view import CameraView
+from inhand_studio.camera_view import CameraView, seen_by
 from inhand_studio.drawn_scene import DrawnScene, PlacedObject
 from inhand_studio.review_page.estimates import Estimates
 from inhand_studio.review_page.recording import ReviewedRecording
 from inhand_studio.review_page.texts import pose_text
 from inhand_studio.scene_parts import TRACKED, TRUE
 from inhand_studio.visit import Visit
-
-UNKNOWN_CAMERA = CameraInfo(
-    sequence=0, time_ns=0, width=640, height=480, fx=550.0, fy=550.0, cx=319.5, cy=239.5
-)
-"""Looks at a recording that describes no camera, and so has no picture that could be drawn over."""
 
 
 class Drawing:
@@ -27,7 +21,7 @@ class Drawing:
         self._recording, self._estimates = recording, estimates
         self._client = visit.client
         self._scene = DrawnScene(visit.client.scene)
-        self._view = CameraView(visit, intrinsics_of(recording.info or UNKNOWN_CAMERA))
+        self._view = CameraView(visit, seen_by(recording.info))
         self._opacity = 0.55
 
     def look_through(self) -> None:

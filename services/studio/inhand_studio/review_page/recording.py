@@ -5,12 +5,12 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
-from inhand_lab.datasets.frame_index import FrameIndex
+from inhand_lab.datasets.frame_index import FrameIndex, cameras_of
 from inhand_lab.datasets.tracks import Track
 from inhand_runtime.recording import RecordingError
-from inhand_runtime.recording.message_index import IndexedMessages, RecordingIndex, open_index
-from inhand_schemas.messages import CameraInfo, ObjectPose, Person
-from inhand_schemas.topics import INFO, LABEL, POSE, RGBD, SKELETONS, Topic
+from inhand_runtime.recording.message_index import IndexedMessages, open_index
+from inhand_schemas.messages import ObjectPose, Person
+from inhand_schemas.topics import LABEL, POSE, RGBD, Topic
 from inhand_tracker.geometry.arrays import Indices
 
 from inhand_studio.picture import Picture
@@ -38,12 +38,12 @@ class ReviewedRecording:
         try:
             self._index = self._files.enter_context(open_index(path))
             self.note = self._index.note
-            self.cameras = _cameras(self._index)
+            self.cameras = cameras_of(self._index)
             self.camera = camera or (self.cameras[0] if self.cameras else "")
             self._frames = FrameIndex(self._index, self.camera)
             self._pixels = self._index.messages(RGBD.stream, self.camera)
             self.times_ns = self._find_times()
-            self.info = _info(self._index, self.camera)
+            self.info = self._frames.camera_info()
             self.labels = self._poses_by_time(LABEL.stream)
             self.poses = self._poses_by_time(POSE.stream)
         except BaseException:
@@ -152,18 +152,3 @@ def empty_poses(frames: int) -> Track:
 def _numbers(captured_ns: Indices, time_ns: int) -> Indices:
     """Return the numbers of the messages of a time."""
     return np.flatnonzero(captured_ns == time_ns)
-
-
-def _cameras(index: RecordingIndex) -> tuple[str, ...]:
-    """Return the cameras with skeletons, or else those with pictures."""
-    for topic in (SKELETONS, RGBD):
-        names = [name for name, count in index.counts(topic.stream).items() if count]
-        if names:
-            return tuple(sorted(names))
-    return ()
-
-
-def _info(index: RecordingIndex, camera: str) -> CameraInfo | None:
-    if not camera or not len(infos := index.messages(INFO.stream, camera)):
-        return None
-    return INFO.decode(infos[0].payload)

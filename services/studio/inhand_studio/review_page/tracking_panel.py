@@ -8,6 +8,7 @@ from inhand_lab.datasets.dataset import DatasetEntry
 from inhand_runtime.errors import InhandError
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS
 
+from inhand_studio.controls import put
 from inhand_studio.review_page.estimates import Estimates, known_models
 from inhand_studio.review_page.parameters import DEFAULT_REVIEW
 from inhand_studio.review_page.recording import ReviewedRecording
@@ -54,7 +55,7 @@ class TrackingPanel:
         if job is None or time.monotonic() - self._written < DEFAULT_REVIEW.progress_s:
             return
         self._written = time.monotonic()
-        self._bar.value = 100.0 * job.share  # type: ignore[misc]  # mypy takes it for read-only
+        put(self._bar, 100.0 * job.share)
         if not job.running:
             self._end()
             self._estimates.add_tracked(job.task, job.result())

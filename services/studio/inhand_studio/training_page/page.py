@@ -1,11 +1,11 @@
 """A tab that trains: what to learn of which recordings, how far it is, and what came of it."""
 
-import threading
 from typing import Any
 
 import viser
 from inhand_runtime.errors import InhandError
 
+from inhand_studio.controls import put
 from inhand_studio.texts import lines_html, write
 from inhand_studio.training_page.lessons import Lesson, lessons_of
 from inhand_studio.training_page.rollout import Place, how_to_add, places_of, roll_out
@@ -34,14 +34,12 @@ class TrainingPage:
         self._gui = visit.client.gui
         self._places: dict[str, Place] = {}
         self._boxes: list[tuple[viser.GuiCheckboxHandle, Any]] = []
-        self._stop = threading.Event()
         self._add_controls()
-        self._thread = threading.Thread(target=self._run, name="training page", daemon=True)
-        self._thread.start()
+        self._stop = visit.every(PERIOD_S, self._step)
 
     def close(self) -> None:
         """Look no longer; what is trained goes on."""
-        self._stop.set()
+        self._stop()
 
     def _add_controls(self) -> None:
         act = self._visit.action
@@ -84,14 +82,9 @@ class TrainingPage:
         self._rolled_out.content = ""
         self._visit.studio.trainings.start(self._visit.studio.dataset, lesson, entries)
 
-    def _run(self) -> None:
-        step = self._visit.action(self._step)
-        while not self._stop.wait(PERIOD_S) and not self._visit.closed:
-            step(None)
-
     def _step(self, _event: Any) -> None:
         progress = self._visit.studio.trainings.progress
-        if self._stop.is_set() or progress is None:
+        if progress is None:
             return
         self._start.visible, self._cancel.visible = not progress.running, progress.running
         write(self._told, lines_html(progress_lines(progress), "note"))
@@ -112,7 +105,7 @@ class TrainingPage:
         self._places = {one.title: one for one in places}
         if self._places:
             self._place.options = tuple(self._places)
-            self._place.value = next(iter(self._places))  # type: ignore[misc]
+            put(self._place, next(iter(self._places)))
 
     def _object_trained(self) -> str:
         progress = self._visit.studio.trainings.progress

@@ -38,7 +38,7 @@ def places_of(config: Path | None) -> list[Place]:
     places = []
     for name in rig_file.tracker:
         chosen = instance_settings(rig_file, config, "tracker", TrackerSettings, name).service
-        for file in chosen.models if chosen.model is None else (chosen.model,):
+        for file in chosen.model_files:
             places.append(Place(name, file, _object_of(file)))
     return places
 

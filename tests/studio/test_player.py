@@ -1,7 +1,7 @@
 """Which frame is played when."""
 
 import numpy as np
-from inhand_studio.review_page.player import Player
+from inhand_studio.player import Player
 
 TIMES_NS = 10**18 + 100_000_000 * np.arange(10)
 
