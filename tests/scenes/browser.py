@@ -15,6 +15,10 @@ REQUIRED = "CHROMIUM_REQUIRED"
 WINDOW = (1280, 800)
 """Width and height of a tab in pixels."""
 
+SENT_MS = 150
+"""Milliseconds until a browser has sent what was typed: of what all controls of a panel send within
+50 ms, only the first and the last are sent (findings/viser-controls-within-50-ms.sh)."""
+
 # Software rendering, for a machine without a graphics card or a sandbox for root.
 ARGUMENTS = (
     "--no-sandbox",
@@ -54,6 +58,7 @@ def fill(page: Page, label: str, text: str) -> None:
     control = row.locator("input:visible").first
     control.fill(text)
     control.press("Enter")
+    page.wait_for_timeout(SENT_MS)
 
 
 def choose(page: Page, label: str, choice: str) -> None:
@@ -61,3 +66,4 @@ def choose(page: Page, label: str, choice: str) -> None:
     row = page.locator(".mantine-Flex-root", has=page.get_by_text(label, exact=True))
     row.locator("input:visible").first.click()
     page.get_by_role("option", name=choice, exact=True).click()
+    page.wait_for_timeout(SENT_MS)

@@ -9,12 +9,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+from browser import SENT_MS
 from inhand_studio.labelling_page.placing import to_degrees
 from playwright.sync_api import Page
 from running_rig import eventually
-
-SENT_MS = 150
-"""Milliseconds until a browser has sent what was typed: it sends one thing in 50."""
 
 
 class LabellingPerson:
