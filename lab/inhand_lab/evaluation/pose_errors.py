@@ -14,7 +14,7 @@ import numpy as np
 import trimesh
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Flags
-from inhand_tracker.prior.learning import CHI_SQUARE_90
+from inhand_tracker.prior.calibration import CHI_SQUARE_90
 from inhand_tracker.shape.shape import ObjectShape, Symmetry
 from scipy.spatial import KDTree
 

@@ -6,12 +6,8 @@ import numpy as np
 import pytest
 from inhand_tracker.body import skeleton as body
 from inhand_tracker.mapping.learning import LabelledSequence
-from inhand_tracker.prior.learning import (
-    CHI_SQUARE_90,
-    calibration_of,
-    learn_prior,
-    persistence_of,
-)
+from inhand_tracker.prior.calibration import CHI_SQUARE_90, calibration_of
+from inhand_tracker.prior.learning import learn_prior, persistence_of
 from people import sequence, unseen_wave, wedge
 from predictions import deviations, predictions, strangers
 from scipy.special import ndtri, stdtrit

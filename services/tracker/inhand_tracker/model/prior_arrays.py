@@ -6,18 +6,22 @@ from itertools import count, takewhile
 import numpy as np
 
 from inhand_tracker.model.archive import Arrays
+from inhand_tracker.prior.hold import Hold
 from inhand_tracker.prior.kernel_ridge import KernelRidge
 from inhand_tracker.prior.prior import Prior
 
 
 def prior_to_arrays(prior: Prior) -> Arrays:
-    """Take a prior apart; regression v's arrays are named ``regressionv.…``."""
-    names = [field.name for field in fields(Prior) if field.name != "regressions"]
+    """Take a prior apart; regression v's arrays are named ``regressionv.…``, a hold's ``hold.…``."""
+    names = [field.name for field in fields(Prior) if field.name not in ("regressions", "hold")]
     arrays: Arrays = {name: np.asarray(getattr(prior, name)) for name in names}
     for view, regression in enumerate(prior.regressions):
         for field in fields(KernelRidge):
             value = getattr(regression, field.name)
             arrays[f"regression{view}.{field.name}"] = np.asarray(value)
+    if prior.hold is not None:
+        for field in fields(Hold):
+            arrays[f"hold.{field.name}"] = np.asarray(getattr(prior.hold, field.name))
     return arrays
 
 
@@ -33,6 +37,16 @@ def prior_from_arrays(arrays: Arrays) -> Prior:
         arrays["errors"],
         float(arrays["calibration"]),
         float(arrays["persistence_s"]),
+        _hold(arrays) if "hold.holder" in arrays else None,
+    )
+
+
+def _hold(arrays: Arrays) -> Hold:
+    return Hold(
+        int(arrays["hold.holder"]),
+        arrays["hold.place"],
+        arrays["hold.rotation"],
+        arrays["hold.covariance"],
     )
 
 

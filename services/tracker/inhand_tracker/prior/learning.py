@@ -1,31 +1,20 @@
 """Learning the prior from labelled sequences."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtri, stdtrit
 
-from inhand_tracker.body.anchors import ANCHORS, Anchors, find_anchors
-from inhand_tracker.body.skeleton import has_pelvis, stature_of
-from inhand_tracker.body.window import (
-    VIEWS,
-    describe_bodies,
-    earlier_frames,
-    remember_places,
-    trunk_places,
-)
-from inhand_tracker.geometry import rotations
+from inhand_tracker.body.window import VIEWS
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
 from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.prior import combination
+from inhand_tracker.prior.calibration import calibration_of
+from inhand_tracker.prior.hold_learning import learn_hold
 from inhand_tracker.prior.kernel_ridge import KernelRidge, fit
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR_LEARNING, PriorLearningParameters
 from inhand_tracker.prior.prior import TARGETS, Prior
+from inhand_tracker.prior.samples import Samples, samples_of
 from inhand_tracker.shape.shape import ObjectShape
-
-CHI_SQUARE_90 = 10.645
-"""Square of the radius of a normal distribution's 90 % region in six dimensions."""
 
 
 def learn_prior(
@@ -40,7 +29,7 @@ def learn_prior(
     centre = shape.marked_vertices.mean(axis=0)
     offsets = shape.marked_vertices - centre
     spread = offsets.T @ offsets / len(offsets)
-    samples = _samples(sequences, shape, centre, parameters.groups)
+    samples = samples_of(sequences, shape, centre, parameters.groups)
     spaced = np.linspace(0, len(samples.heights) - 1, parameters.landmarks)
     rows = np.unique(spaced.round().astype(np.int64))
     regressions, residuals = _regressions(samples, rows, parameters)
@@ -61,110 +50,12 @@ def learn_prior(
         persistence_of(
             errors, landmarks.sequences, landmarks.times, parameters.longest_persistence_s
         ),
+        learn_hold(samples, spread, parameters),
     )
-
-
-@dataclass(frozen=True)
-class _Samples:
-    """The usable frames (N,) of all sequences; those of one of ``groups`` are held out together."""
-
-    descriptions: list[Singles]
-    targets: Singles
-    anchors: Anchors
-    heights: Array
-    centres: Array
-    rotations: Array
-    groups: Indices
-    sequences: Indices
-    times: Array
-
-    @staticmethod
-    def joined(parts: "Sequence[_Samples]") -> "_Samples":
-        """The samples of parts, one after the other."""
-        return _Samples(
-            descriptions=[
-                np.concatenate([part.descriptions[view] for part in parts]) for view in range(VIEWS)
-            ],
-            anchors=Anchors(
-                np.concatenate([part.anchors.origins for part in parts]),
-                np.concatenate([part.anchors.axes for part in parts]),
-            ),
-            **{name: np.concatenate([getattr(part, name) for part in parts]) for name in _ROWS},
-        )
-
-    def take(self, rows: Indices) -> "_Samples":
-        """The samples with these indices, in this order."""
-        return _Samples(
-            descriptions=[description[rows] for description in self.descriptions],
-            anchors=Anchors(self.anchors.origins[rows], self.anchors.axes[rows]),
-            **{name: getattr(self, name)[rows] for name in _ROWS},
-        )
-
-
-_ROWS = ("targets", "heights", "centres", "rotations", "groups", "sequences", "times")
-"""Names of the samples' plain arrays."""
-
-
-def _samples(
-    sequences: Sequence[LabelledSequence], shape: ObjectShape, centre: Array, groups: int
-) -> _Samples:
-    names = dict.fromkeys(sequence.participant for sequence in sequences)
-    owners = {name: number for number, name in enumerate(names)}
-    parts = []
-    for number, sequence in enumerate(sequences):
-        group = (number if len(owners) == 1 else owners[sequence.participant]) % groups
-        parts.append(_samples_of(sequence, shape, centre, group, number))
-    return _Samples.joined(parts)
-
-
-def _samples_of(
-    sequence: LabelledSequence, shape: ObjectShape, centre: Array, group: int, number: int
-) -> _Samples:
-    """The usable frames of the sequence of a number, which is held out with a group."""
-    usable = _usable_frames(sequence)
-    right_handed = sequence.right_handed(shape.mirror_normal)
-    joints = right_handed.joints[usable]
-    height = stature_of(joints)
-    turns = rotations.to_matrix(right_handed.rotations[usable])
-    centres = right_handed.translations[usable] + turns @ centre
-    anchors = find_anchors(joints)
-    times = usable / sequence.frame_rate
-    remembered = remember_places(trunk_places(joints, height), times, 1.0 / sequence.frame_rate)
-    earlier = joints[earlier_frames(usable, sequence.frame_rate)]
-    return _Samples(
-        describe_bodies(joints, earlier, remembered, height),
-        _targets(anchors, centres, turns, height),
-        anchors,
-        np.full(len(usable), height),
-        centres,
-        turns,
-        np.full(len(usable), group),
-        np.full(len(usable), number),
-        times,
-    )
-
-
-def _usable_frames(sequence: LabelledSequence) -> Indices:
-    """The frames in which the whole body and the object's label are known."""
-    return np.flatnonzero(
-        np.isfinite(sequence.joints).all(axis=(1, 2))
-        & np.isfinite(sequence.translations).all(axis=1)
-        & np.isfinite(sequence.rotations).all(axis=1)
-        & (np.linalg.norm(sequence.rotations, axis=1) > 0.0)
-        & np.array([has_pelvis(frame) for frame in sequence.joints])
-    )
-
-
-def _targets(anchors: Anchors, centres: Array, turns: Array, height: float) -> Singles:
-    """What regressions shall predict, (N, A * 12): the object in each anchor."""
-    away = np.einsum("taji,taj->tai", anchors.axes, centres[:, None] - anchors.origins) / height
-    within = np.swapaxes(anchors.axes, -1, -2) @ turns[:, None]
-    targets = np.concatenate([away, within.reshape(len(turns), len(ANCHORS), 9)], axis=-1)
-    return targets.reshape(len(turns), -1).astype(np.float32)
 
 
 def _regressions(
-    samples: _Samples, rows: Indices, parameters: PriorLearningParameters
+    samples: Samples, rows: Indices, parameters: PriorLearningParameters
 ) -> tuple[tuple[KernelRidge, ...], Array]:
     """A regression for each view, on landmarks in rows (L,), and all held-out residuals
     (L, E, 12)."""
@@ -176,7 +67,7 @@ def _regressions(
     return tuple(regression for regression, _ in fitted), np.concatenate(residuals, axis=1)
 
 
-def _products(residuals: Array, landmarks: _Samples, spread: Array) -> tuple[Singles, Singles]:
+def _products(residuals: Array, landmarks: Samples, spread: Array) -> tuple[Singles, Singles]:
     """Inner products (L, E, E) of errors (L, E, 12): of translations in metres, and of rotations by
     how far they take the marked vertices."""
     axes = np.tile(landmarks.anchors.axes, (1, VIEWS, 1, 1))
@@ -190,7 +81,7 @@ def _products(residuals: Array, landmarks: _Samples, spread: Array) -> tuple[Sin
 
 
 def _errors(
-    landmarks: _Samples,
+    landmarks: Samples,
     residuals: Array,
     local: Array,
     products: tuple[Singles, Singles],
@@ -215,18 +106,6 @@ def _errors(
     return np.concatenate(
         [np.einsum("lji,lj->li", axes, moved), np.einsum("lji,lj->li", axes, turned)], axis=1
     )
-
-
-def calibration_of(covariances: Array, errors: Array, groups: Indices) -> float:
-    """The factor on covariances (L, 6, 6) by which they hold nine in ten errors (L, 6).
-
-    A few people say less of the next one than it seems, as Student's t has it: one person's errors
-    go together.
-    """
-    solved = np.linalg.solve(covariances, errors[..., None])[..., 0]
-    of_these = np.quantile(np.einsum("li,li->l", errors, solved), 0.9) / CHI_SQUARE_90
-    people = len(np.unique(groups))
-    return float(of_these * np.square(stdtrit(people, 0.95) / ndtri(0.95)))
 
 
 def persistence_of(errors: Array, sequences: Indices, times: Array, longest_s: float) -> float:

@@ -24,9 +24,15 @@ class PriorParameters:
     most_stretched: float = 3.0
     """Factor, at the most, by which the guess's deviation is stretched as well."""
     new_kernel: float = 0.7
-    """Kernel below which, at all landmarks, a body is new, the more so the smaller it is: what
-    carries the object along then says more than where it was usual."""
-
+    """Kernel below which, at all landmarks, a body is new: what holds the object then says more
+    than where it was usual. One in twenty poses of simulated people who were not learned from is
+    below 0.77, and three in four of real ones (`docs/real_bodies.md`)."""
+    strange_kernel: float = 0.5
+    """Kernel below which, at all landmarks, nothing but what holds the object counts."""
+    held_doubt: float = 0.2
+    """Share of the square of what two expectations of a new body differ by, the usual one and that
+    by what holds the object, in the variance of what is stated. Chosen on four people of
+    UTD-MHAD."""
 
 DEFAULT_PRIOR = PriorParameters()
 
@@ -47,6 +53,21 @@ class PriorLearningParameters:
     """Number added to the diagonal of the landmarks' kernel, so that equal landmarks do no harm."""
     longest_persistence_s: float = 10.0
     """Seconds that an error lasts, at the most."""
+
+    # How what holds an object is learned (hold_learning).
+    carried_way_m: float = 0.02
+    """Metres that marked vertices go, in the mean, within twice ``carried_window_s`` where somebody
+    carries the object."""
+    carried_window_s: float = 0.17
+    """Seconds before and after a frame between which that way is taken."""
+    carried_margin_s: float = 0.33
+    """Seconds before and after such a frame in which the object is carried too, as in a pause."""
+    other_holder_ratio: float = 1.1
+    """Factor on the errors of a holder that is not the dominant hand: that one keeps its grip where
+    the other slides along, which people in training may not have done."""
+    upright_holder_ratio: float = 1.5
+    """Factor on the errors of a holder that keeps the trunk's directions: where people do the same
+    again and again, objects seem to be kept upright that turn with the arm."""
 
 
 DEFAULT_PRIOR_LEARNING = PriorLearningParameters()

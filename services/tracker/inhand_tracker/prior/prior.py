@@ -8,24 +8,24 @@ out.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from inhand_tracker.body.anchors import Anchors
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
-from inhand_tracker.geometry.pose_gaussian import turn_blocks
 from inhand_tracker.prior.combination import (
     TINY,
     combination_weights,
     covariance_at,
     fuse,
     locality,
-    rotation_error,
 )
+from inhand_tracker.prior.hold import Hold, held_in
 from inhand_tracker.prior.kernel_ridge import KernelRidge
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
+from inhand_tracker.prior.prediction import Prediction, between, in_camera
 
 TARGETS = 12
 """Numbers that are predicted in each anchor: the object's centre, in body heights, then its
@@ -42,7 +42,8 @@ class Prior:
     at each landmark; ``errors`` (L, 6) those of the fused estimate, translation of the centre in
     body heights and rotation vector on the left, in the trunk's axes. ``calibration`` scales the
     covariance so that nine in ten held-out errors lie within its 90 % region. ``persistence_s``
-    is how long an error lasts.
+    is how long an error lasts. ``hold`` is how the object is held or worn; None where nobody was
+    seen to move it, or in priors of older releases.
     """
 
     centre: Array
@@ -53,6 +54,7 @@ class Prior:
     errors: Array
     calibration: float
     persistence_s: float
+    hold: Hold | None = None
 
     @cached_property
     def _lower(self) -> tuple[Indices, Indices]:
@@ -74,25 +76,6 @@ class Prior:
         expected[:, *self._lower] = (local.astype(np.float32) @ self._triangles).reshape(2, -1)
         return expected
 
-    @cached_property
-    def landmark_targets(self) -> Array:
-        """(L, V A, 12): the object in each anchor at each landmark, as each regression has it."""
-        fitted = [one.predict(one.landmarks) for one in self.regressions]
-        return np.concatenate([one.reshape(len(one), -1, TARGETS) for one in fitted], axis=1)
-
-
-@dataclass(frozen=True)
-class Prediction:
-    """The expected pose of the object's centre, in the camera frame of right-handed people.
-
-    ``centre`` (3,), ``rotation`` (3, 3), and ``covariance`` (6, 6) of (translation of the centre,
-    rotation vector on the left).
-    """
-
-    centre: Array
-    rotation: Array
-    covariance: Array
-
 
 def predict(
     prior: Prior,
@@ -110,59 +93,24 @@ def predict(
     nearest = [float(kernel.max()) for kernel in kernels]
     stretches = [max(parameters.farthest_kernel / max(one, TINY), 1.0) for one in nearest]
     local, nearness = locality(kernels[0])
-    here = _Predictions(
-        _predicted(prior, kernels, stretches),
-        anchors,
-        height,
-        prior.products_at(local),
-    )
-    centre, rotation = here.fused(prior.spread, parameters.distrust)
+    weights = combination_weights(prior.products_at(local), parameters.distrust)
+    predicted = _predicted(prior, kernels, stretches)
+    centre, rotation = fuse(predicted, anchors, height, (weights[0], weights[1]), prior.spread)
     doubt = min(max(stretches[0], 1.0), parameters.most_stretched) ** 2
     covariance = covariance_at(local, nearness, prior.errors, parameters.everywhere_share)
-    scale = doubt * prior.calibration
-    usual = Prediction(centre, rotation, _in_camera(scale * covariance, anchors.axes[0], height))
-    novelty = 1.0 - nearest[0] / parameters.new_kernel
-    if novelty <= 0.0:
+    scaled = doubt * prior.calibration * covariance
+    usual = Prediction(centre, rotation, in_camera(scaled, anchors.axes[0], height))
+    novelty = _novelty(nearest[0], parameters)
+    if novelty == 0.0 or prior.hold is None:
         return usual
-    targets = prior.landmark_targets
-    at_nearest = (local @ targets.reshape(len(local), -1)).reshape(targets.shape[1:])
-    taken = here.taken_along(novelty, at_nearest)
-    return _doubted(usual, *taken.fused(prior.spread, parameters.distrust))
+    held = held_in(prior.hold, anchors, height)
+    return between(usual, held, novelty, parameters.held_doubt)
 
 
-@dataclass(frozen=True)
-class _Predictions:
-    """All predictions for one body, E of them.
-
-    ``predicted`` (E, 12) in ``anchors`` (A,), and the lower triangles (2, E, E) of the expected
-    inner ``products`` of the errors of translations and rotations.
-    """
-
-    predicted: Array
-    anchors: Anchors
-    height: float
-    products: Array
-
-    def fused(self, spread: Array, distrust: float) -> tuple[Array, Array]:
-        """The centre (3,) and rotation (3, 3) of their best combination."""
-        weights = combination_weights(self.products, distrust)
-        return fuse(self.predicted, self.anchors, self.height, (weights[0], weights[1]), spread)
-
-    def taken_along(self, novelty: float, nearest: Array) -> "_Predictions":
-        """The same for a new body, the more different the newer it is, ``novelty`` from 0 to 1.
-
-        What is nearest to an object takes it along (Darby et al. 2014, section 5.2): each anchor
-        predicts what it has at the nearest landmarks, (E, 12), and its error grows with the square
-        of the object's distance from it.
-        """
-        square = np.square(nearest[:, :3]).sum(axis=1)
-        shares = square / max(float(square.min()), 1e-6)
-        worse = 1.0 + novelty * (shares - 1.0)
-        return replace(
-            self,
-            predicted=self.predicted + novelty * (nearest - self.predicted),
-            products=np.stack((worse[:, None] * self.products[0] * worse, self.products[1])),
-        )
+def _novelty(nearest: float, parameters: PriorParameters) -> float:
+    """How new a body is, from 0 to 1, by its kernel to the nearest landmark."""
+    span = parameters.new_kernel - parameters.strange_kernel
+    return float(np.clip((parameters.new_kernel - nearest) / max(span, TINY), 0.0, 1.0))
 
 
 def _predicted(prior: Prior, kernels: list[Array], stretches: list[float]) -> Array:
@@ -173,16 +121,3 @@ def _predicted(prior: Prior, kernels: list[Array], stretches: list[float]) -> Ar
         for stretch, kernel, regression in zip(stretches, kernels, prior.regressions, strict=True)
     ]
     return np.concatenate(predicted).reshape(-1, TARGETS)
-
-
-def _in_camera(covariance: Array, trunk: Array, height: float) -> Array:
-    """A covariance (6, 6) in the trunk's axes (3, 3) and body heights, in the camera frame."""
-    scale = np.array([height, height, height, 1.0, 1.0, 1.0])
-    return turn_blocks(covariance * scale[:, None] * scale, trunk)
-
-
-def _doubted(usual: Prediction, centre: Array, rotation: Array) -> Prediction:
-    """Another pose (3,), (3, 3), doubted as far as it is from the usual prediction."""
-    error = rotation_error(rotation, usual.rotation)
-    apart = np.square([centre - usual.centre, error]).sum(axis=1)
-    return Prediction(centre, rotation, usual.covariance + np.diag(np.repeat(apart, 3)))

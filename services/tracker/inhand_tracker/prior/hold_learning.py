@@ -1,0 +1,99 @@
+"""Learning how an object is held: which part of the body carries it most steadily."""
+
+import numpy as np
+
+from inhand_tracker.body.holders import HOLDERS, OF_A_HAND, UPRIGHT, find_holder
+from inhand_tracker.geometry.arrays import Array, Flags, Indices
+from inhand_tracker.prior.calibration import calibration_of
+from inhand_tracker.prior.combination import rotation_error
+from inhand_tracker.prior.hold import Hold, rotation_near
+from inhand_tracker.prior.parameters import PriorLearningParameters
+from inhand_tracker.prior.samples import Samples
+
+
+def learn_hold(
+    samples: Samples, spread: Array, parameters: PriorLearningParameters
+) -> Hold | None:
+    """Learn the hold from samples of people; ``spread`` (3, 3) is that of the marked vertices.
+
+    The holder is the one in which the object's mean pose over the others tells best where each
+    group that is held out has it. None where fewer than two groups carry the object.
+    """
+    root = np.asarray(np.linalg.cholesky(spread + 1e-9 * np.eye(3)), np.float64)
+    rows = np.flatnonzero(carried_frames(samples, root, parameters))
+    if len(np.unique(samples.groups[rows])) < 2:
+        return None
+    spaced = np.linspace(0, len(rows) - 1, parameters.landmarks).round().astype(np.int64)
+    carried = samples.take(rows[np.unique(spaced)])
+    trials = [_Trial(carried, holder) for holder in range(len(HOLDERS))]
+    scores = np.array([trial.score(root) for trial in trials])
+    scores[OF_A_HAND:UPRIGHT] *= parameters.other_holder_ratio
+    scores[UPRIGHT:] *= parameters.upright_holder_ratio
+    return trials[int(scores.argmin())].hold()
+
+
+def carried_frames(samples: Samples, root: Array, parameters: PriorLearningParameters) -> Flags:
+    """Flag (N,) the samples in which the object is carried: around those in which it moves.
+
+    ``root`` (3, 3) is the Cholesky root of the spread of the marked vertices.
+    """
+    carried = np.zeros(len(samples.times), bool)
+    for number in np.unique(samples.sequences):
+        rows = np.flatnonzero(samples.sequences == number)
+        times = samples.times[rows]
+        first, last = _around(times, parameters.carried_window_s)
+        moved = samples.centres[rows[last]] - samples.centres[rows[first]]
+        turned = (samples.rotations[rows[last]] - samples.rotations[rows[first]]) @ root
+        way = np.sqrt(np.square(moved).sum(axis=1) + np.square(turned).sum(axis=(1, 2)))
+        moving = np.concatenate(([0], np.cumsum(way > parameters.carried_way_m)))
+        first, last = _around(times, parameters.carried_margin_s)
+        carried[rows] = moving[last + 1] > moving[first]
+    return carried
+
+
+def _around(times: Array, margin_s: float) -> tuple[Indices, Indices]:
+    """The first and the last of ascending times (N,) that are within a margin of each, (N,)."""
+    # Times are multiples of a frame's: the margin's own end must not hang on rounding.
+    first = np.searchsorted(times, times - margin_s - 1e-6)
+    return first, np.searchsorted(times, times + margin_s + 1e-6) - 1
+
+
+class _Trial:
+    """One holder tried on samples in which the object is carried."""
+
+    def __init__(self, samples: Samples, holder: int) -> None:
+        origins, axes = find_holder(samples.anchors, holder)
+        away = samples.centres - origins
+        self._holder = holder
+        self._samples = samples
+        self._places = np.einsum("tji,tj->ti", axes, away) / samples.heights[:, None]
+        self._turns = np.swapaxes(axes, 1, 2) @ samples.rotations
+        self._held_out_places = np.empty_like(self._places)
+        self._held_out_turns = np.empty_like(self._turns)
+        for group in np.unique(samples.groups):
+            rows = samples.groups == group
+            self._held_out_places[rows], self._held_out_turns[rows] = self._mean(~rows)
+
+    def _mean(self, rows: Flags) -> tuple[Array, Array]:
+        """The mean place (3,) and rotation (3, 3) of some samples in the holder."""
+        return self._places[rows].mean(axis=0), rotation_near(self._turns[rows].mean(axis=0))
+
+    def score(self, root: Array) -> float:
+        """Root mean square, in metres, of the marked vertices' held-out errors."""
+        moved = (self._held_out_places - self._places) * self._samples.heights[:, None]
+        turned = (self._held_out_turns - self._turns) @ root
+        square = np.square(moved).sum(axis=1) + np.square(turned).sum(axis=(1, 2))
+        return float(np.sqrt(square.mean()))
+
+    def hold(self) -> Hold:
+        """The mean of all samples, with the calibrated covariance of the held-out errors."""
+        turned = rotation_error(self._held_out_turns, self._turns)
+        errors = np.concatenate((self._held_out_places - self._places, turned), axis=1)
+        covariance = errors.T @ errors / len(errors) + _LEAST_VARIANCE * np.eye(6)
+        at_each = np.broadcast_to(covariance, (len(errors), 6, 6))
+        calibration = calibration_of(at_each, errors, self._samples.groups)
+        return Hold(self._holder, *self._mean(np.full(len(errors), True)), calibration * covariance)
+
+
+_LEAST_VARIANCE = 1e-9
+"""Keeps the covariance of an object that never moves in its holder from having no inverse."""

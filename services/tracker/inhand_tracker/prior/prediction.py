@@ -1,0 +1,48 @@
+"""Predictions: expected poses of an object, and what lies between two of them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.pose_gaussian import turn_blocks
+from inhand_tracker.prior.combination import rotation_error
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """The expected pose of the object's centre, in the camera frame of right-handed people.
+
+    ``centre`` (3,), ``rotation`` (3, 3), and ``covariance`` (6, 6) of (translation of the centre,
+    rotation vector on the left).
+    """
+
+    centre: Array
+    rotation: Array
+    covariance: Array
+
+
+def in_camera(covariance: Array, axes: Array, height: float) -> Array:
+    """Take a covariance (6, 6) in axes (3, 3) and body heights to the camera frame and metres."""
+    scale = np.array([height, height, height, 1.0, 1.0, 1.0])
+    return turn_blocks(covariance * scale[:, None] * scale, axes)
+
+
+def between(one: Prediction, other: Prediction, share: float, doubt: float) -> Prediction:
+    """Go a ``share``, from 0 to 1, of the way from one prediction to another.
+
+    Both may be true, so what they differ by adds to the covariance in every direction: its square,
+    times the variance of the choice between them, and at the other one still times ``doubt``.
+    """
+    moved = other.centre - one.centre
+    turned = rotation_error(other.rotation, one.rotation)
+    apart = np.square([moved, turned]).sum(axis=1)
+    unsure = share * (1.0 - share) + share * doubt
+    return Prediction(
+        one.centre + share * moved,
+        rotations.to_matrix(rotations.from_vector(share * turned)) @ one.rotation,
+        (1.0 - share) * one.covariance
+        + share * other.covariance
+        + unsure * np.diag(np.repeat(apart, 3)),
+    )
