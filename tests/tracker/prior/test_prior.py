@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from inhand_tracker.body.anchors import ANCHORS, find_anchors
 from inhand_tracker.body.window import VIEWS, BodyWindow
 from inhand_tracker.mapping.learning import LabelledSequence
-from inhand_tracker.prior.combination import fuse
 from inhand_tracker.prior.calibration import CHI_SQUARE_90
+from inhand_tracker.prior.combination import fuse
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.prior.prior import TARGETS, Prior, predict
 from people import (

@@ -12,7 +12,7 @@ from inhand_tracker.prior.prior import Prior
 
 
 def prior_to_arrays(prior: Prior) -> Arrays:
-    """Take a prior apart; regression v's arrays are named ``regressionv.…``, a hold's ``hold.…``."""
+    """Take a prior apart: ``regressionv.…`` are the arrays of regression v, ``hold.…`` a hold's."""
     names = [field.name for field in fields(Prior) if field.name not in ("regressions", "hold")]
     arrays: Arrays = {name: np.asarray(getattr(prior, name)) for name in names}
     for view, regression in enumerate(prior.regressions):

@@ -11,9 +11,7 @@ from inhand_tracker.prior.parameters import PriorLearningParameters
 from inhand_tracker.prior.samples import Samples
 
 
-def learn_hold(
-    samples: Samples, spread: Array, parameters: PriorLearningParameters
-) -> Hold | None:
+def learn_hold(samples: Samples, spread: Array, parameters: PriorLearningParameters) -> Hold | None:
     """Learn the hold from samples of people; ``spread`` (3, 3) is that of the marked vertices.
 
     The holder is the one in which the object's mean pose over the others tells best where each

@@ -34,6 +34,7 @@ class PriorParameters:
     by what holds the object, in the variance of what is stated. Chosen on four people of
     UTD-MHAD."""
 
+
 DEFAULT_PRIOR = PriorParameters()
 
 
