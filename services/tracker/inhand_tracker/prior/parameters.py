@@ -24,15 +24,18 @@ class PriorParameters:
     most_stretched: float = 3.0
     """Factor, at the most, by which the guess's deviation is stretched as well."""
     new_kernel: float = 0.7
-    """Kernel below which, at all landmarks, a body is new: what holds the object then says more
-    than where it was usual. One in twenty poses of simulated people who were not learned from is
-    below 0.77, and three in four of real ones (`docs/real_bodies.md`)."""
-    strange_kernel: float = 0.5
-    """Kernel below which, at all landmarks, nothing but what holds the object counts."""
+    """Kernel below which, at all landmarks, a body is new, the more so the smaller it is: what
+    carries the object along then says more than where it was usual."""
+    familiar_posture: float = 0.7
+    """Kernel to the nearest posture below which one is strange: how people hold the object says
+    more there than what they did. All but one in a hundred postures of simulated people who were
+    not learned from are above it, and few of real people's (docs/real_bodies.md)."""
+    strange_posture: float = 0.5
+    """Kernel to the nearest posture below which nothing but how people hold the object counts."""
     held_doubt: float = 0.2
-    """Share of the square of what two expectations of a new body differ by, the usual one and that
-    by what holds the object, in the variance of what is stated. Chosen on four people of
-    UTD-MHAD."""
+    """Share of the square of what two predictions for a strange posture differ by, from what people
+    did and from how they hold the object, in the variance of what is stated. Chosen on four people
+    of UTD-MHAD."""
 
 
 DEFAULT_PRIOR = PriorParameters()

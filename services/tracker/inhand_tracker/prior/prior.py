@@ -8,10 +8,11 @@ out.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from inhand_schemas.joints import JOINT_NAMES
 
 from inhand_tracker.body.anchors import Anchors
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
@@ -21,12 +22,19 @@ from inhand_tracker.prior.combination import (
     covariance_at,
     fuse,
     locality,
+    rotation_error,
 )
 from inhand_tracker.prior.hold import Hold, held_in
-from inhand_tracker.prior.kernel_ridge import KernelRidge
-from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
+from inhand_tracker.prior.kernel_ridge import KernelRidge, squared_distances
+from inhand_tracker.prior.parameters import (
+    DEFAULT_PRIOR,
+    DEFAULT_PRIOR_LEARNING,
+    PriorParameters,
+)
 from inhand_tracker.prior.prediction import Prediction, between, in_camera
 
+POSTURE = 3 * len(JOINT_NAMES)
+"""Numbers at the beginning of a whole body's description that say where its joints are."""
 TARGETS = 12
 """Numbers that are predicted in each anchor: the object's centre, in body heights, then its
 rotation matrix, row by row."""
@@ -68,6 +76,19 @@ class Prior:
         both = self.translation_products, self.rotation_products
         return np.concatenate([products[:, *self._lower] for products in both], axis=1)
 
+    @cached_property
+    def _postures(self) -> KernelRidge:
+        """The landmarks' postures by themselves, without movement, in a kernel of the same kind."""
+        landmarks = np.ascontiguousarray(self.regressions[0].landmarks[:, :POSTURE])
+        between = squared_distances(landmarks, landmarks)
+        width = max(float(np.median(between)), 1e-12) * DEFAULT_PRIOR_LEARNING.kernel_width**2
+        return KernelRidge(landmarks, width, np.empty((len(landmarks), 0)), np.empty(0))
+
+    def nearest_posture(self, described: Singles) -> float:
+        """Find the kernel, from 0 to 1, between a body described whole (D,) and the landmark of the
+        nearest posture: who moves as nobody did may well stand as somebody did."""
+        return float(self._postures.kernel_of(described[:POSTURE]).max())
+
     def products_at(self, local: Array) -> Array:
         """The lower triangles (2, E, E) of both products that are expected, by landmarks' shares
         (L,)."""
@@ -75,6 +96,12 @@ class Prior:
         expected = np.zeros((2, count, count))
         expected[:, *self._lower] = (local.astype(np.float32) @ self._triangles).reshape(2, -1)
         return expected
+
+    @cached_property
+    def landmark_targets(self) -> Array:
+        """(L, V A, 12): the object in each anchor at each landmark, as each regression has it."""
+        fitted = [one.predict(one.landmarks) for one in self.regressions]
+        return np.concatenate([one.reshape(len(one), -1, TARGETS) for one in fitted], axis=1)
 
 
 def predict(
@@ -85,7 +112,34 @@ def predict(
     parameters: PriorParameters = DEFAULT_PRIOR,
 ) -> Prediction:
     """Predict the object's pose for one body: descriptions (1, D) of each view, its anchors and
-    height."""
+    height.
+
+    By what people did in such postures; of a posture unlike all of theirs by how they hold it.
+    """
+    regressed = _regressed(prior, descriptions, anchors, height, parameters)
+    if prior.hold is None:
+        return regressed
+    strangeness = _strangeness(prior.nearest_posture(descriptions[0][0]), parameters)
+    if strangeness == 0.0:
+        return regressed
+    held = held_in(prior.hold, anchors, height)
+    return between(regressed, held, strangeness, parameters.held_doubt)
+
+
+def _strangeness(nearest: float, parameters: PriorParameters) -> float:
+    """How strange a posture is, from 0 to 1, by its kernel to the nearest one."""
+    familiar, strange = parameters.familiar_posture, parameters.strange_posture
+    return float(np.clip((familiar - nearest) / max(familiar - strange, TINY), 0.0, 1.0))
+
+
+def _regressed(
+    prior: Prior,
+    descriptions: Sequence[Singles],
+    anchors: Anchors,
+    height: float,
+    parameters: PriorParameters,
+) -> Prediction:
+    """Predict by the regressions."""
     kernels = [
         regression.kernel_of(description[0])
         for regression, description in zip(prior.regressions, descriptions, strict=True)
@@ -93,24 +147,59 @@ def predict(
     nearest = [float(kernel.max()) for kernel in kernels]
     stretches = [max(parameters.farthest_kernel / max(one, TINY), 1.0) for one in nearest]
     local, nearness = locality(kernels[0])
-    weights = combination_weights(prior.products_at(local), parameters.distrust)
-    predicted = _predicted(prior, kernels, stretches)
-    centre, rotation = fuse(predicted, anchors, height, (weights[0], weights[1]), prior.spread)
+    here = _Predictions(
+        _predicted(prior, kernels, stretches),
+        anchors,
+        height,
+        prior.products_at(local),
+    )
+    centre, rotation = here.fused(prior.spread, parameters.distrust)
     doubt = min(max(stretches[0], 1.0), parameters.most_stretched) ** 2
     covariance = covariance_at(local, nearness, prior.errors, parameters.everywhere_share)
     scaled = doubt * prior.calibration * covariance
     usual = Prediction(centre, rotation, in_camera(scaled, anchors.axes[0], height))
-    novelty = _novelty(nearest[0], parameters)
-    if novelty == 0.0 or prior.hold is None:
+    novelty = 1.0 - nearest[0] / parameters.new_kernel
+    if novelty <= 0.0:
         return usual
-    held = held_in(prior.hold, anchors, height)
-    return between(usual, held, novelty, parameters.held_doubt)
+    targets = prior.landmark_targets
+    at_nearest = (local @ targets.reshape(len(local), -1)).reshape(targets.shape[1:])
+    taken = here.taken_along(novelty, at_nearest)
+    return _doubted(usual, *taken.fused(prior.spread, parameters.distrust))
 
 
-def _novelty(nearest: float, parameters: PriorParameters) -> float:
-    """How new a body is, from 0 to 1, by its kernel to the nearest landmark."""
-    span = parameters.new_kernel - parameters.strange_kernel
-    return float(np.clip((parameters.new_kernel - nearest) / max(span, TINY), 0.0, 1.0))
+@dataclass(frozen=True)
+class _Predictions:
+    """All predictions for one body, E of them.
+
+    ``predicted`` (E, 12) in ``anchors`` (A,), and the lower triangles (2, E, E) of the expected
+    inner ``products`` of the errors of translations and rotations.
+    """
+
+    predicted: Array
+    anchors: Anchors
+    height: float
+    products: Array
+
+    def fused(self, spread: Array, distrust: float) -> tuple[Array, Array]:
+        """The centre (3,) and rotation (3, 3) of their best combination."""
+        weights = combination_weights(self.products, distrust)
+        return fuse(self.predicted, self.anchors, self.height, (weights[0], weights[1]), spread)
+
+    def taken_along(self, novelty: float, nearest: Array) -> "_Predictions":
+        """The same for a new body, the more different the newer it is, ``novelty`` from 0 to 1.
+
+        What is nearest to an object takes it along (Darby et al. 2014, section 5.2): each anchor
+        predicts what it has at the nearest landmarks, (E, 12), and its error grows with the square
+        of the object's distance from it.
+        """
+        square = np.square(nearest[:, :3]).sum(axis=1)
+        shares = square / max(float(square.min()), 1e-6)
+        worse = 1.0 + novelty * (shares - 1.0)
+        return replace(
+            self,
+            predicted=self.predicted + novelty * (nearest - self.predicted),
+            products=np.stack((worse[:, None] * self.products[0] * worse, self.products[1])),
+        )
 
 
 def _predicted(prior: Prior, kernels: list[Array], stretches: list[float]) -> Array:
@@ -121,3 +210,10 @@ def _predicted(prior: Prior, kernels: list[Array], stretches: list[float]) -> Ar
         for stretch, kernel, regression in zip(stretches, kernels, prior.regressions, strict=True)
     ]
     return np.concatenate(predicted).reshape(-1, TARGETS)
+
+
+def _doubted(usual: Prediction, centre: Array, rotation: Array) -> Prediction:
+    """Another pose (3,), (3, 3), doubted as far as it is from the usual prediction."""
+    error = rotation_error(rotation, usual.rotation)
+    apart = np.square([centre - usual.centre, error]).sum(axis=1)
+    return Prediction(centre, rotation, usual.covariance + np.diag(np.repeat(apart, 3)))
