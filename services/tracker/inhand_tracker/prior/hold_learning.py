@@ -3,7 +3,7 @@
 import numpy as np
 
 from inhand_tracker.body.holders import HOLDERS, OF_A_HAND, UPRIGHT, find_holder
-from inhand_tracker.geometry.arrays import Array, Flags, Indices
+from inhand_tracker.geometry.arrays import Array, Flags
 from inhand_tracker.prior.calibration import calibration_of
 from inhand_tracker.prior.combination import rotation_error
 from inhand_tracker.prior.hold import Hold, rotation_near
@@ -31,7 +31,7 @@ def learn_hold(samples: Samples, spread: Array, parameters: PriorLearningParamet
 
 
 def carried_frames(samples: Samples, root: Array, parameters: PriorLearningParameters) -> Flags:
-    """Flag (N,) the samples in which the object is carried: around those in which it moves.
+    """Flag (N,) the samples in which somebody carries the object: it moves, or pauses for a moment.
 
     ``root`` (3, 3) is the Cholesky root of the spread of the marked vertices.
     """
@@ -39,21 +39,30 @@ def carried_frames(samples: Samples, root: Array, parameters: PriorLearningParam
     for number in np.unique(samples.sequences):
         rows = np.flatnonzero(samples.sequences == number)
         times = samples.times[rows]
-        first, last = _around(times, parameters.carried_window_s)
-        moved = samples.centres[rows[last]] - samples.centres[rows[first]]
-        turned = (samples.rotations[rows[last]] - samples.rotations[rows[first]]) @ root
-        way = np.sqrt(np.square(moved).sum(axis=1) + np.square(turned).sum(axis=(1, 2)))
-        moving = np.concatenate(([0], np.cumsum(way > parameters.carried_way_m)))
-        first, last = _around(times, parameters.carried_margin_s)
-        carried[rows] = moving[last + 1] > moving[first]
+        moving = times[_moving(samples.take(rows), root, parameters)]
+        if len(moving) > 0:
+            after = np.searchsorted(moving, times)
+            before = np.searchsorted(moving, times, side="right") - 1
+            inside = (before >= 0) & (after < len(moving))
+            pause_s = moving[after[inside]] - moving[before[inside]]
+            carried[rows[inside]] = pause_s < parameters.carried_pause_s
     return carried
 
 
-def _around(times: Array, margin_s: float) -> tuple[Indices, Indices]:
-    """The first and the last of ascending times (N,) that are within a margin of each, (N,)."""
-    # Times are multiples of a frame's: the margin's own end must not hang on rounding.
-    first = np.searchsorted(times, times - margin_s - 1e-6)
-    return first, np.searchsorted(times, times + margin_s + 1e-6) - 1
+def _moving(samples: Samples, root: Array, parameters: PriorLearningParameters) -> Flags:
+    """Flag the samples (T,) of a sequence before and after which the object moves."""
+    # Times are multiples of a frame's: the window's own end must not hang on rounding.
+    window_s = parameters.carried_window_s + 1e-6
+    first = np.searchsorted(samples.times, samples.times - window_s)
+    last = np.searchsorted(samples.times, samples.times + window_s) - 1
+    middle = np.arange(len(samples.times))
+    flags = np.full(len(middle), True)
+    for start, end in ((first, middle), (middle, last)):
+        moved = samples.centres[end] - samples.centres[start]
+        turned = (samples.rotations[end] - samples.rotations[start]) @ root
+        square = np.square(moved).sum(axis=1) + np.square(turned).sum(axis=(1, 2))
+        flags &= square > parameters.carried_way_m**2
+    return flags
 
 
 class _Trial:

@@ -26,11 +26,11 @@ class PriorParameters:
     new_kernel: float = 0.7
     """Kernel below which, at all landmarks, a body is new, the more so the smaller it is: what
     carries the object along then says more than where it was usual."""
-    familiar_posture: float = 0.7
+    familiar_posture: float = 0.8
     """Kernel to the nearest posture below which one is strange: how people hold the object says
-    more there than what they did. All but one in a hundred postures of simulated people who were
-    not learned from are above it, and few of real people's (docs/real_bodies.md)."""
-    strange_posture: float = 0.5
+    more there than what they did. Of postures of simulated people who were not learned from 95 %
+    are above it, and few of real people's (docs/real_bodies.md)."""
+    strange_posture: float = 0.6
     """Kernel to the nearest posture below which nothing but how people hold the object counts."""
     held_doubt: float = 0.2
     """Share of the square of what two predictions for a strange posture differ by, from what people
@@ -59,13 +59,13 @@ class PriorLearningParameters:
     """Seconds that an error lasts, at the most."""
 
     # How what holds an object is learned (hold_learning).
-    carried_way_m: float = 0.02
-    """Metres that marked vertices go, in the mean, within twice ``carried_window_s`` where somebody
-    carries the object."""
+    carried_way_m: float = 0.01
+    """Metres that marked vertices go, in the mean, in each of two windows, before a frame and after
+    it, in which somebody carries the object."""
     carried_window_s: float = 0.17
-    """Seconds before and after a frame between which that way is taken."""
-    carried_margin_s: float = 0.33
-    """Seconds before and after such a frame in which the object is carried too, as in a pause."""
+    """Seconds that each of these windows lasts."""
+    carried_pause_s: float = 0.8
+    """Seconds between two such frames within which the object is carried all the time."""
     other_holder_ratio: float = 1.1
     """Factor on the errors of a holder that is not the dominant hand: that one keeps its grip where
     the other slides along, which people in training may not have done."""
