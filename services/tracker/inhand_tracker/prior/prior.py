@@ -129,7 +129,7 @@ def predict(
 def _strangeness(nearest: float, parameters: PriorParameters) -> float:
     """How strange a posture is, from 0 to 1, by its kernel to the nearest one."""
     familiar, strange = parameters.familiar_posture, parameters.strange_posture
-    return float(np.clip((familiar - nearest) / max(familiar - strange, TINY), 0.0, 1.0))
+    return min(max((familiar - nearest) / max(familiar - strange, TINY), 0.0), 1.0)
 
 
 def _regressed(
