@@ -2,10 +2,21 @@
 
 import math
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from inhand_lab.realism.parameters import DEFAULT_REALISM
+from inhand_lab.realism.posture_angles import AngleSpread
+from inhand_lab.realism.posture_comparison import (
+    PostureComparison,
+    VarietyComparison,
+    compare_postures,
+    compare_variety,
+    posture_table,
+    recorded_sources,
+    variety_note,
+)
 from inhand_lab.realism.sensor_comparison import LEFT_OUT, STEPS, SensorComparison, compare_sensors
 from inhand_lab.world.random_streams import GENERATOR_VERSION
 from inhand_runtime.errors import SettingsError
@@ -21,10 +32,10 @@ REAL_SET = "utd-mhad"
 
 
 def show_realism(data: Path, seed: int, json_file: Path | None) -> int:
-    """Print the table of the world of a seed, and write it for machines.
+    """Print the tables of the world of a seed, and write them for machines.
 
-    Return 1 where a judged property is too far off. Raises SettingsError where the real recordings
-    are missing, and DatasetError.
+    Return 1 where a judged property is too far off; postures are shown, not judged. Raises
+    SettingsError where the real recordings are missing, and DatasetError.
     """
     folder = data / REAL_SET if (data / REAL_SET).is_dir() else data
     if not folder.is_dir():
@@ -32,19 +43,28 @@ def show_realism(data: Path, seed: int, json_file: Path | None) -> int:
             f"there are no real recordings at {folder.resolve()}: "
             f"name the folder that holds {REAL_SET} with --data"
         )
-    with progress_bar("measuring", STEPS) as advance:
+    sources = recorded_sources(data)
+    with progress_bar("measuring", STEPS + len(sources)) as advance:
         compared = compare_sensors(folder, seed, advance)
+        postures: list[list[PostureComparison]] = []
+        varieties: list[VarietyComparison] = []
+        for source in sources:
+            postures.append(compare_postures(source, seed))
+            varieties.append(compare_variety(source, seed))
+            advance()
     judged = [one for one in compared if one.judged]
     others = [one for one in compared if not one.judged]
     console = Console()
     console.print(_table(f"world {GENERATOR_VERSION}, seed {seed}", judged))
     if others:
         console.print(_table("too few people to tell: not judged", others))
+    for angles, variety in zip(postures, varieties, strict=True):
+        console.print(posture_table(angles, seed), variety_note(variety), sep="\n")
     console.print("Knowingly left out:")
     for reason in LEFT_OUT:
         console.print(f"- {reason}")
     if json_file is not None:
-        write_json(json_file, _result(compared, seed))
+        write_json(json_file, {**_result(compared, seed), **_postures(postures, varieties)})
     off = [one for one in judged if not one.within]
     console.print(_verdict(len(judged), len(off), len(others)))
     if off:
@@ -103,6 +123,37 @@ def _result(compared: list[SensorComparison], seed: int) -> dict[str, Any]:
         ],
         "left_out": list(LEFT_OUT),
     }
+
+
+def _postures(
+    postures: list[list[PostureComparison]], varieties: list[VarietyComparison]
+) -> dict[str, Any]:
+    return {
+        "postures": [
+            {
+                "source": one.source,
+                "angle": one.angle,
+                "group": one.group,
+                "real_deg": _spread(one.real),
+                "simulated_deg": _spread(one.simulated),
+                "covered": _number(one.covered),
+            }
+            for angles in postures
+            for one in angles
+        ],
+        "nearest_pose_of_others": [
+            {
+                "source": one.source,
+                "real": _number(one.real),
+                "simulated": _number(one.simulated),
+            }
+            for one in varieties
+        ],
+    }
+
+
+def _spread(spread: AngleSpread) -> dict[str, float | None]:
+    return {name: _number(value) for name, value in asdict(spread).items()}
 
 
 def _number(value: float) -> float | None:

@@ -30,6 +30,13 @@ class RealismParameters:
     seed: int = 0
     """Seed of these draws."""
 
+    # How postures are compared (posture_angles, posture_comparison).
+    usual_share: float = 0.8
+    """Share of frames in the usual range of an angle: from the first decile to the ninth."""
+    least_covered: float = 0.5
+    """Share of real frames within the usual range of simulated ones below which an angle is marked:
+    it would be ``usual_share`` if both were alike."""
+
     # Who is measured (measured_people).
     participants: int = 8
     """Number of simulated people: as many as real ones were recorded."""
