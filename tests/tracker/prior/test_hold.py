@@ -1,15 +1,18 @@
 """How an object is held, for bodies that stand as nobody did who taught."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from inhand_schemas.joints import Joint
-from inhand_tracker.body.anchors import find_anchors
+from inhand_tracker.body.anchors import ANCHORS, find_anchors
 from inhand_tracker.body.holders import HOLDERS, find_holder
+from inhand_tracker.body.parameters import DEFAULT_BODY
 from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.prior.hold import held_in
 from inhand_tracker.prior.learning import learn_prior
+from inhand_tracker.prior.prediction import in_camera
 from inhand_tracker.prior.prior import Prior
 from people import HAND, STANDING, STANDING_HEIGHT, WRIST, quaternion_of, waving, wedge
 from predictions import MIDDLE, predictions
@@ -102,3 +105,35 @@ def test_hands_in_one_place_leave_a_finite_hold() -> None:
     held = held_in(hold, find_anchors(joints), STANDING_HEIGHT)
     assert np.isfinite(held.covariance).all()
     np.testing.assert_allclose(held.rotation @ held.rotation.T, np.eye(3), atol=1e-9)
+
+
+@pytest.mark.parametrize("holder", range(len(HOLDERS)))
+def test_a_held_object_is_where_its_holder_takes_it(holder: int) -> None:
+    learned = prior().hold
+    assert learned is not None
+    hold = replace(learned, holder=holder)
+    anchors = find_anchors(waving(1)[0])
+    origin, axes = find_holder(anchors, holder)
+    held = held_in(hold, anchors, STANDING_HEIGHT)
+    np.testing.assert_allclose(held.centre, origin + STANDING_HEIGHT * axes @ hold.place)
+    np.testing.assert_allclose(held.rotation, axes @ hold.rotation, atol=1e-9)
+    np.testing.assert_allclose(
+        held.covariance, in_camera(hold.covariance, axes, STANDING_HEIGHT), atol=1e-12
+    )
+
+
+@pytest.mark.parametrize("hand", ["right", "left"])
+def test_one_hand_leads_the_way_to_the_other(hand: str) -> None:
+    anchors = find_anchors(waving(1)[0])
+    other = {"right": "left", "left": "right"}[hand]
+    palms = [anchors.origins[ANCHORS.index(f"{one} hand")] for one in (hand, other)]
+    forearm = anchors.axes[ANCHORS.index(f"{hand} forearm")]
+    way = palms[1] - palms[0] + DEFAULT_BODY.hands_together_m * forearm[:, 1]
+    number = HOLDERS.index(f"way from the {hand} hand to the {other}")
+    origin, axes = find_holder(anchors, number)
+    np.testing.assert_allclose(origin, palms[0])
+    np.testing.assert_allclose(axes[:, 2], way / np.linalg.norm(way))
+    _, fronted = find_holder(anchors, number - 1)
+    np.testing.assert_allclose(fronted[:, 2], forearm[:, 2], atol=1e-9)
+    assert abs(fronted[:, 0] @ way) < 1e-9
+    assert fronted[:, 1] @ way > 0.0

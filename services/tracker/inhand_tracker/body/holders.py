@@ -4,9 +4,8 @@ An object in a fist turns with the forearm, and one in both hands with the line 
 well, whatever the body does. One that is kept upright has the trunk's directions at the palm.
 """
 
-import numpy as np
-
-from inhand_tracker.body.anchors import ANCHORS, Anchors
+from inhand_tracker.body.anchors import Anchors
+from inhand_tracker.body.kernels import holders as kernels
 from inhand_tracker.body.parameters import DEFAULT_BODY
 from inhand_tracker.geometry.arrays import Array
 
@@ -25,23 +24,8 @@ HOLDERS = (
 )
 """Names of the holders, in their order: three of the dominant hand, three of the other one, those
 of what wears things, and those of what is kept upright."""
-OF_A_HAND = 3
-"""Number of holders that turn with either hand."""
 UPRIGHT = 9
 """Number of the first holder that keeps the trunk's directions."""
-
-_RIGHT, _LEFT, *_OTHERS = (
-    ANCHORS.index(name)
-    for name in (
-        "right forearm",
-        "left forearm",
-        "head",
-        "right shank",
-        "left shank",
-        "right hand",
-        "left hand",
-    )
-)
 
 
 def find_holder(anchors: Anchors, holder: int) -> tuple[Array, Array]:
@@ -49,28 +33,7 @@ def find_holder(anchors: Anchors, holder: int) -> tuple[Array, Array]:
 
     Axes of a body whose joints lie on top of each other may have no length.
     """
-    if holder >= 2 * OF_A_HAND:
-        anchor = _OTHERS[holder - 2 * OF_A_HAND]
-        return anchors.origins[..., anchor, :], anchors.axes[..., anchor, :, :]
-    hand, other = (_RIGHT, _LEFT) if holder < OF_A_HAND else (_LEFT, _RIGHT)
-    origins, own = anchors.origins[..., hand, :], anchors.axes[..., hand, :, :]
-    kind = holder % OF_A_HAND
-    if kind == 0:
-        return origins, own
-    # Hands that touch, or arms that point at each other, leave the forearm's own front.
-    aside = DEFAULT_BODY.hands_together_m * own[..., :, 1]
-    way = anchors.origins[..., other, :] - origins + aside
-    forearm = own[..., :, 2]
-    return origins, _axes(forearm, way) if kind == 1 else _axes(way, forearm)
-
-
-def _axes(along: Array, towards: Array) -> Array:
-    """Axes (..., 3, 3) with z along directions (..., 3) and y as near to others as that allows."""
-    z = _unit(along)
-    x = _unit(np.cross(towards, z))
-    return np.stack((x, np.cross(z, x), z), axis=-1)
-
-
-def _unit(vectors: Array) -> Array:
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(lengths, 1e-9))
+    found: tuple[Array, Array] = kernels.holders(
+        anchors.origins, anchors.axes, holder, DEFAULT_BODY.hands_together_m
+    )
+    return found

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from inhand_tracker.body.anchors import Anchors
-from inhand_tracker.body.holders import find_holder
+from inhand_tracker.body.parameters import DEFAULT_BODY
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels.nearest_rotation import nearest_rotation
-from inhand_tracker.prior.prediction import Prediction, in_camera
+from inhand_tracker.prior.kernels import hold as kernels
+from inhand_tracker.prior.prediction import Prediction
 
 
 @dataclass(frozen=True)
@@ -33,11 +34,17 @@ class Hold:
 
 def held_in(hold: Hold, anchors: Anchors, height: float) -> Prediction:
     """Predict the object's pose as it is held, for one body's anchors and height."""
-    origin, axes = find_holder(anchors, hold.holder)
     return Prediction(
-        origin + height * axes @ hold.place,
-        rotation_near(axes @ hold.rotation),
-        in_camera(hold.covariance, axes, height),
+        *kernels.held(
+            anchors.origins,
+            anchors.axes,
+            hold.holder,
+            DEFAULT_BODY.hands_together_m,
+            hold.place,
+            hold.rotation,
+            hold.covariance,
+            height,
+        )
     )
 
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from inhand_tracker.body.holders import HOLDERS, OF_A_HAND, UPRIGHT, find_holder
+from inhand_tracker.body.holders import HOLDERS, UPRIGHT, find_holder
+from inhand_tracker.body.kernels.holders import OF_A_HAND
 from inhand_tracker.geometry.arrays import Array, Flags
 from inhand_tracker.prior.calibration import calibration_of
 from inhand_tracker.prior.combination import rotation_error

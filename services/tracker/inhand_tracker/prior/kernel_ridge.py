@@ -50,6 +50,14 @@ def gaussian(inputs: Singles, landmarks: Singles, width: float) -> Array:
     return np.exp(squared_distances(inputs, landmarks) / (-2.0 * width))
 
 
+def usual_width(
+    landmarks: Singles, parameters: PriorLearningParameters = DEFAULT_PRIOR_LEARNING
+) -> float:
+    """Find the squared width of a kernel of landmarks (L, D), by their usual distance."""
+    usual = float(np.median(squared_distances(landmarks, landmarks)))
+    return max(usual, 1e-12) * parameters.kernel_width**2
+
+
 def squared_distances(inputs: Singles, others: Singles) -> Array:
     """Squared distances (T, L), in double precision, so that those of nearly equal poses are not
     below 0."""
@@ -74,10 +82,9 @@ def fit(
     from scipy.linalg import solve_triangular
 
     landmarks = inputs[landmark_rows]
-    between = squared_distances(landmarks, landmarks)
-    width = max(float(np.median(between)), 1e-12) * parameters.kernel_width**2
+    width = usual_width(landmarks, parameters)
     jitter = parameters.jitter * np.eye(len(landmarks))
-    root = np.linalg.cholesky(np.exp(between / (-2.0 * width)) + jitter)
+    root = np.linalg.cholesky(gaussian(landmarks, landmarks, width) + jitter)
     offset = targets.mean(axis=0, dtype=np.float64)
 
     def features(rows: Indices) -> Array:

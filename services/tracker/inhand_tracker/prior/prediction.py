@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.pose_gaussian import turn_blocks
-from inhand_tracker.prior.combination import rotation_error
+from inhand_tracker.prior.kernels import hold as kernels
 
 
 @dataclass(frozen=True)
@@ -35,14 +34,15 @@ def between(one: Prediction, other: Prediction, share: float, doubt: float) -> P
     Both may be true, so what they differ by adds to the covariance in every direction: its square,
     times the variance of the choice between them, and at the other one still times ``doubt``.
     """
-    moved = other.centre - one.centre
-    turned = rotation_error(other.rotation, one.rotation)
-    apart = np.square([moved, turned]).sum(axis=1)
-    unsure = share * (1.0 - share) + share * doubt
     return Prediction(
-        one.centre + share * moved,
-        rotations.to_matrix(rotations.from_vector(share * turned)) @ one.rotation,
-        (1.0 - share) * one.covariance
-        + share * other.covariance
-        + unsure * np.diag(np.repeat(apart, 3)),
+        *kernels.between(
+            one.centre,
+            one.rotation,
+            one.covariance,
+            other.centre,
+            other.rotation,
+            other.covariance,
+            share,
+            doubt,
+        )
     )

@@ -7,6 +7,7 @@ weights of the best linear unbiased combination (``combination``), and the covar
 out.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -22,15 +23,11 @@ from inhand_tracker.prior.combination import (
     covariance_at,
     fuse,
     locality,
-    rotation_error,
 )
 from inhand_tracker.prior.hold import Hold, held_in
-from inhand_tracker.prior.kernel_ridge import KernelRidge, squared_distances
-from inhand_tracker.prior.parameters import (
-    DEFAULT_PRIOR,
-    DEFAULT_PRIOR_LEARNING,
-    PriorParameters,
-)
+from inhand_tracker.prior.kernel_ridge import KernelRidge, usual_width
+from inhand_tracker.prior.kernels.distances import least_distance
+from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
 from inhand_tracker.prior.prediction import Prediction, between, in_camera
 
 POSTURE = 3 * len(JOINT_NAMES)
@@ -77,17 +74,17 @@ class Prior:
         return np.concatenate([products[:, *self._lower] for products in both], axis=1)
 
     @cached_property
-    def _postures(self) -> KernelRidge:
-        """The landmarks' postures by themselves, without movement, in a kernel of the same kind."""
+    def _postures(self) -> tuple[Singles, float]:
+        """The landmarks' postures (L, 60) by themselves, without movement, and the squared width of
+        a kernel among them."""
         landmarks = np.ascontiguousarray(self.regressions[0].landmarks[:, :POSTURE])
-        between = squared_distances(landmarks, landmarks)
-        width = max(float(np.median(between)), 1e-12) * DEFAULT_PRIOR_LEARNING.kernel_width**2
-        return KernelRidge(landmarks, width, np.empty((len(landmarks), 0)), np.empty(0))
+        return landmarks, usual_width(landmarks)
 
     def nearest_posture(self, described: Singles) -> float:
         """Find the kernel, from 0 to 1, between a body described whole (D,) and the landmark of the
         nearest posture: who moves as nobody did may well stand as somebody did."""
-        return float(self._postures.kernel_of(described[:POSTURE]).max())
+        landmarks, width = self._postures
+        return math.exp(least_distance(described[:POSTURE], landmarks) / (-2.0 * width))
 
     def products_at(self, local: Array) -> Array:
         """The lower triangles (2, E, E) of both products that are expected, by landmarks' shares
@@ -164,7 +161,8 @@ def _regressed(
     targets = prior.landmark_targets
     at_nearest = (local @ targets.reshape(len(local), -1)).reshape(targets.shape[1:])
     taken = here.taken_along(novelty, at_nearest)
-    return _doubted(usual, *taken.fused(prior.spread, parameters.distrust))
+    moved = Prediction(*taken.fused(prior.spread, parameters.distrust), usual.covariance)
+    return between(usual, moved, 1.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -210,10 +208,3 @@ def _predicted(prior: Prior, kernels: list[Array], stretches: list[float]) -> Ar
         for stretch, kernel, regression in zip(stretches, kernels, prior.regressions, strict=True)
     ]
     return np.concatenate(predicted).reshape(-1, TARGETS)
-
-
-def _doubted(usual: Prediction, centre: Array, rotation: Array) -> Prediction:
-    """Another pose (3,), (3, 3), doubted as far as it is from the usual prediction."""
-    error = rotation_error(rotation, usual.rotation)
-    apart = np.square([centre - usual.centre, error]).sum(axis=1)
-    return Prediction(centre, rotation, usual.covariance + np.diag(np.repeat(apart, 3)))

@@ -166,9 +166,9 @@ def log_densities(
             densities[part, pose] = scale - 0.5 * _square_by(root, deviation)
 
 
-@vectorised("(s,s),(v,v)->(s,s)")
-def turn_blocks(matrix: Array, turn: Array, turned: Array) -> None:
-    """Rotate both kinds of deviations that a matrix (6, 6) is of: T M Tᵀ, T of two (3, 3)."""
+@njit(cache=True, nogil=True)
+def set_turned_blocks(matrix: Array, turn: Array, turned: Array) -> None:
+    """Fill ``turned`` (6, 6) as ``turn_blocks`` does."""
     half = np.empty((6, 6))
     for row in range(6):
         first = 3 * (row // 3)
@@ -182,6 +182,12 @@ def turn_blocks(matrix: Array, turn: Array, turned: Array) -> None:
             turned[row, column] = 0.0
             for k in range(3):
                 turned[row, column] += half[row, first + k] * turn[column - first, k]
+
+
+@vectorised("(s,s),(v,v)->(s,s)")
+def turn_blocks(matrix: Array, turn: Array, turned: Array) -> None:
+    """Rotate both kinds of deviations that a matrix (6, 6) is of: T M Tᵀ, T of two (3, 3)."""
+    set_turned_blocks(matrix, turn, turned)
 
 
 @vectorised("(p,s),(s,s),(),()->()")

@@ -1,4 +1,4 @@
-"""Squared distances of one body from landmarks."""
+"""Squared distances of one body from landmarks, and the least of them."""
 
 import numpy as np
 from inhand_runtime.compiled import njit
@@ -21,3 +21,17 @@ def distances_of(one: Singles, landmarks: Singles) -> Array:
             square += off * off
         distances[landmark] = square
     return distances
+
+
+@njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})
+def least_distance(one: Singles, landmarks: Singles) -> float:
+    """Return the squared distance of (D,) from the nearest of landmarks (L, D)."""
+    least = np.inf
+    for landmark in range(len(landmarks)):
+        square = np.float32(0.0)
+        for index in range(len(one)):
+            off = one[index] - landmarks[landmark, index]
+            square += off * off
+        if square < least:
+            least = square
+    return float(least)
