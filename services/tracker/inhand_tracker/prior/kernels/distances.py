@@ -26,7 +26,7 @@ def distances_of(one: Singles, landmarks: Singles) -> Array:
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})
 def least_distance(one: Singles, landmarks: Singles) -> float:
     """Return the squared distance of (D,) from the nearest of landmarks (L, D)."""
-    least = np.inf
+    least = np.float32(np.inf)
     for landmark in range(len(landmarks)):
         square = np.float32(0.0)
         for index in range(len(one)):
