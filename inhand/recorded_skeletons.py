@@ -18,6 +18,7 @@ from inhand_runtime.recording.copying import (
     write_beside,
     written_or_gone,
 )
+from inhand_schemas.conventions import SIMULATED
 from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import (
@@ -57,11 +58,17 @@ class _Cameras:
 
 
 def add_skeletons(
-    path: Path, output: Path, new_network: Callable[[], PoseNetwork], *, replace: bool = False
+    path: Path,
+    output: Path,
+    new_network: Callable[[], PoseNetwork],
+    *,
+    convention: str | None = None,
+    replace: bool = False,
 ) -> dict[str, CameraSkeletons]:
     """Write a recording, completed, to the new file ``output``; the input is never changed.
 
-    With ``replace`` the skeletons that it has are left out. Raises RecordingError where it has
+    ``convention`` names that of the network's skeletons. With ``replace`` the skeletons that it has
+    are left out. Raises RecordingError where it has
     skeletons already, or no pictures, or no camera's info, and InhandError where none of a camera's
     frames serves.
     """
@@ -80,6 +87,7 @@ def add_skeletons(
                 camera = message.name
                 skeletons = _estimate(message, estimators[camera], estimated[camera])
                 if skeletons is not None:
+                    skeletons = structs.replace(skeletons, convention=convention)
                     key = SKELETONS.key(parse_key(message.key).site, camera)
                     write_beside(writer, key, message, SKELETONS.encode(skeletons))
         about = {"source": path.name, "estimated": " ".join(wanted)}
@@ -110,7 +118,9 @@ def true_skeletons(path: Path, output: Path) -> int:
                     continue
                 person = skeletons.people[0].id if skeletons.people else 0
                 people = (_exact_person(person, truth),)
-                payload = SKELETONS.encode(structs.replace(skeletons, people=people))
+                payload = SKELETONS.encode(
+                    structs.replace(skeletons, people=people, convention=SIMULATED)
+                )
                 written += 1
             write_beside(writer, message.key, message, payload)
         copy_metadata(writer, path, "skeletons", {"source": path.name, "true": "labels"})

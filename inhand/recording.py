@@ -131,7 +131,7 @@ def _repair(arguments: argparse.Namespace) -> int:
 
 def _skeletons(arguments: argparse.Namespace) -> int:
     # What estimates them is large, and no other action needs it.
-    from inhand_capture.estimation.networks import open_network, require_network
+    from inhand_capture.estimation.networks import convention_of, open_network, require_network
 
     from inhand.recorded_skeletons import add_skeletons
 
@@ -144,7 +144,11 @@ def _skeletons(arguments: argparse.Namespace) -> int:
     for path in arguments.files:
         output = _completed(path, arguments)
         cameras = add_skeletons(
-            path, output, lambda: open_network(arguments.network), replace=arguments.replace
+            path,
+            output,
+            lambda: open_network(arguments.network),
+            convention=convention_of(arguments.network),
+            replace=arguments.replace,
         )
         for name, one in cameras.items():
             of = f"{one.with_people} of {counted(one.frames, 'frame')}"

@@ -172,9 +172,14 @@ class Person(Struct, frozen=True, kw_only=True):
 
 
 class Skeletons(Message, frozen=True, kw_only=True):
-    """The people in one frame; ``sequence`` and ``time_ns`` are the source frame's."""
+    """The people in one frame; ``sequence`` and ``time_ns`` are the source frame's.
+
+    ``convention`` names whose joints these are (``conventions``), and so where each lies in a body;
+    None where that is not said, as before there was this field.
+    """
 
     people: Annotated[tuple[Person, ...], Meta(max_length=MOST_PEOPLE)] = ()
+    convention: Name | None = None
 
 
 class Box(Struct, frozen=True):

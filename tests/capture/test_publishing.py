@@ -58,6 +58,7 @@ def test_a_moment_becomes_skeletons_labels_and_then_pictures_of_one_sequence_and
     assert [message.sequence for _, message in outlets.sent] == [0, 0, 0, 1, 1, 1]
     assert {message.time_ns for _, message in outlets.sent[:3]} == {FIRST_NS}
     assert outlets.sent[0][1].people == (PERSON,)
+    assert outlets.sent[0][1].convention == "kinect_v2"
     assert outlets.sent[1][1].camera == "front"
 
 

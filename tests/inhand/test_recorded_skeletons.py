@@ -59,9 +59,10 @@ def skeletons_in(path: Path) -> list[Skeletons]:
 
 def test_each_frame_gets_skeletons_of_its_number_and_time(tmp_path: Path) -> None:
     path, output = recorded(tmp_path / "walk.mcap"), tmp_path / "whole.mcap"
-    done = add_skeletons(path, output, network)
+    done = add_skeletons(path, output, network, convention="blazepose")
     assert (done["front"].frames, done["front"].with_people) == (FRAMES, FRAMES - 1)
     found = skeletons_in(output)
+    assert {one.convention for one in found} == {"blazepose"}
     frames = [one.message() for one in read_recording(path, streams=("rgbd",))]
     assert [(one.sequence, one.time_ns) for one in found] == [
         (one.sequence, one.time_ns) for one in frames
@@ -145,6 +146,7 @@ def test_true_joints_of_labels_stand_in_place_of_skeletons(tmp_path: Path) -> No
     assert true_skeletons(path, output) == 2
     found = skeletons_in(output)
     assert [one.sequence for one in found] == [10, 11]
+    assert {one.convention for one in found} == {"simulated"}
     for one in found:
         (person,) = one.people
         assert person.id == SOMEBODY.id

@@ -56,7 +56,7 @@ EXAMPLES: tuple[Message, ...] = (
         depth=DepthImage("z16", 2, 1, b"\x00\x04\xff\xff"),
     ),
     Preview(sequence=4, time_ns=TIME_NS, width=160, height=120, jpeg=b"\xff\xd8\xff\xd9"),
-    Skeletons(sequence=5, time_ns=TIME_NS, people=(PERSON,)),
+    Skeletons(sequence=5, time_ns=TIME_NS, people=(PERSON,), convention="kinect_v1"),
     ObjectPose(
         sequence=6,
         time_ns=TIME_NS,
@@ -141,6 +141,8 @@ TRUTH = ObjectPose(
     person_joints=PERSON.joints,
 )
 
+NAMED = Skeletons(sequence=12, time_ns=TIME_NS, people=(PERSON,), convention="azure_kinect")
+
 GOLDEN_MESSAGES: dict[str, Message] = {
     **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
     "Health.v1.late": LATE,
@@ -148,5 +150,6 @@ GOLDEN_MESSAGES: dict[str, Message] = {
     "Health.v1.shutter": SHUT,
     "ObjectPose.v1.truth": TRUTH,
     "RgbdFrame.v1.png": PNG,
+    "Skeletons.v1.convention": NAMED,
 }
 """By the stem of their golden files: one of each type, and one more for fields it grew by."""

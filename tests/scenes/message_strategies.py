@@ -113,7 +113,12 @@ people = st.builds(
     states=_twenty(st.sampled_from(["missing", "inferred", "tracked"])),
     confidences=_twenty(fractions),
 )
-skeletons = st.builds(Skeletons, **stamps, people=st.lists(people, max_size=3).map(tuple))
+skeletons = st.builds(
+    Skeletons,
+    **stamps,
+    people=st.lists(people, max_size=3).map(tuple),
+    convention=st.none() | names,
+)
 
 _estimates = {
     "object": names,

@@ -34,7 +34,7 @@ def frame_entries(number: int, camera: str = "kitchen") -> list[Entry]:
     stamp = {"sequence": 100 + number, "time_ns": START_NS + number * FRAME_NS}
     label = ObjectPose(**stamp, object="mug", camera=camera, state="lost", confidence=1.0)
     return [
-        (SKELETONS, camera, Skeletons(**stamp, people=(PERSON,))),
+        (SKELETONS, camera, Skeletons(**stamp, people=(PERSON,), convention="kinect_v2")),
         (LABEL, "mug", label),
         (RGBD, camera, RgbdFrame(**stamp, time_uncertainty_ns=7, colour=PICTURE, depth=DEPTH)),
     ]

@@ -84,4 +84,5 @@ def moment(number: int) -> Captured:
         labels=(
             ObjectPose(sequence=0, time_ns=0, object="mug", camera="x", state="lost", confidence=1),
         ),
+        convention="kinect_v2",
     )

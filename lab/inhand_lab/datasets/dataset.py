@@ -12,6 +12,7 @@ from typing import Literal
 
 import msgspec
 from inhand_runtime.errors import InhandError
+from inhand_schemas.messages import Name
 from inhand_tracker.shape.shape import ObjectShape, load_shape
 
 FORMAT = "inhand-dataset"
@@ -29,7 +30,8 @@ class DatasetError(InhandError):
 class DatasetEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """One recording of a dataset; ``file`` is relative to the dataset's folder.
 
-    ``frame_rate`` is in Hz; where it is left out the times of the frames show it.
+    ``frame_rate`` is in Hz; where it is left out the times of the frames show it. ``convention``
+    names whose joints the skeletons have, where the recording does not say, or says it wrongly.
     """
 
     file: str
@@ -38,6 +40,7 @@ class DatasetEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     object: str | None = None
     handedness: Literal["left", "right"] = "right"
     frame_rate: float | None = None
+    convention: Name | None = None
 
 
 class DatasetFile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from inhand_schemas.conventions import SIMULATED
 from inhand_schemas.messages import Message, Skeletons
 
 from inhand_lab.datasets.dataset import CAMERA, START_NS, Dataset, DatasetEntry
@@ -40,11 +41,13 @@ class GenerationSettings:
 
 @dataclass(frozen=True)
 class Take:
-    """A simulation to be written: the recording's name, and who is in it."""
+    """A simulation to be written: the recording's name, the participant's, and that of the
+    convention of the skeletons."""
 
     name: str
     participant: str
     simulation: Simulation
+    convention: str | None = SIMULATED
 
 
 def generate(
@@ -103,17 +106,21 @@ def write_takes(
             handedness=simulation.person.handedness,
             frame_rate=simulation.frame_rate,
         )
-        writer.add_recording(entry, _messages(simulation, images=images))
+        writer.add_recording(entry, _messages(take, images=images))
         on_progress()
     return writer.finish({"name": "inhand simulate", "version": GENERATOR_VERSION, **settings})
 
 
-def _messages(simulation: Simulation, *, images: bool) -> Iterator[Message]:
+def _messages(take: Take, *, images: bool) -> Iterator[Message]:
+    simulation = take.simulation
     yield camera_info(simulation.intrinsics, simulation.frame_rate, START_NS)
     for frame in range(simulation.frames):
         time_ns = START_NS + round(frame * 1_000_000_000 / simulation.frame_rate)
         yield Skeletons(
-            sequence=frame, time_ns=time_ns, people=(person_message(simulation, frame),)
+            sequence=frame,
+            time_ns=time_ns,
+            people=(person_message(simulation, frame),),
+            convention=take.convention,
         )
         seen = simulation.render(frame) if images else None
         yield label_message(

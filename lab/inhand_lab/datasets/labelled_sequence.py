@@ -6,6 +6,7 @@ from inhand_tracker.wire.conversion import joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry
 from inhand_lab.datasets.followed_people import follow_people
+from inhand_lab.datasets.recorded_frames import convention_of
 from inhand_lab.datasets.recording_times import frame_rate_of
 from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.datasets.tracks import true_track
@@ -30,4 +31,5 @@ def labelled_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence
         truth.translations,
         truth.rotations,
         frame_rate_of(entry, times_ns),
+        convention_of(frames),
     )

@@ -18,12 +18,16 @@ from inhand_lab.datasets.units import check_units
 
 @dataclass(frozen=True)
 class RecordedFrame:
-    """One moment of a recording: its people, and the true pose of its object where labelled."""
+    """One moment of a recording: its people, and the true pose of its object where labelled.
+
+    ``convention`` names whose joints the people have; None where it is not said.
+    """
 
     sequence: int
     time_ns: int
     people: tuple[Person, ...]
     label: ObjectPose | None
+    convention: str | None = None
 
 
 def load_frames(
@@ -55,7 +59,7 @@ def load_frames(
     check_people(path, labels, shown)
     check_units(path, shown, joined)
     return [
-        RecordedFrame(one.sequence, one.time_ns, one.people, label)
+        RecordedFrame(one.sequence, one.time_ns, one.people, label, one.convention)
         for one, label in zip(shown, joined, strict=True)
     ]
 
@@ -63,6 +67,11 @@ def load_frames(
 def labelled_camera(frames: Iterable[RecordedFrame]) -> str | None:
     """Return the name of the camera in which frames were labelled; None where none is labelled."""
     return next((frame.label.camera for frame in frames if frame.label is not None), None)
+
+
+def convention_of(frames: Iterable[RecordedFrame]) -> str | None:
+    """Return the convention of a recording's skeletons; None where no frame says one."""
+    return next((frame.convention for frame in frames if frame.convention is not None), None)
 
 
 def load_camera(path: Path) -> Intrinsics | None:

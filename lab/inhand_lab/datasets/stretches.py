@@ -6,6 +6,7 @@ them, as neighbouring frames are nearly the same.
 """
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -35,8 +36,13 @@ def entry_name(entry: DatasetEntry) -> str:
 
 
 def entry_frames(dataset: Dataset, entry: DatasetEntry) -> list[RecordedFrame]:
-    """Read the frames of a recording, or of a stretch of one, as ``load_frames`` does."""
+    """Read the frames of a recording, or of a stretch of one, as ``load_frames`` does.
+
+    They have the convention that the dataset names, if it names one.
+    """
     frames = load_frames(dataset.path(entry), entry.object)
+    if entry.convention is not None:
+        frames = [replace(frame, convention=entry.convention) for frame in frames]
     if isinstance(entry, RecordingStretch):
         return frames[entry.first : entry.end]
     return frames

@@ -12,7 +12,7 @@ from inhand_tracker.wire.conversion import joints_of
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.followed_people import follow_people
 from inhand_lab.datasets.generation import Take, write_takes
-from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.datasets.recorded_frames import convention_of, load_frames
 from inhand_lab.datasets.recording_times import frame_rate_of
 from inhand_lab.driven.recorded_body import RecordedBody, drive
 from inhand_lab.sensing.cameras import KINECT, Camera
@@ -121,7 +121,8 @@ def _takes(
             continue
         taken = True
         name = f"{interaction}_{Path(entry.file).stem}"
-        yield Take(name, entry.participant, drive(recorded, interaction, seed, camera))
+        simulation = drive(recorded, interaction, seed, camera)
+        yield Take(name, entry.participant, simulation, recorded.convention)
     if nobody is not None and not taken:
         raise nobody
 
@@ -162,6 +163,7 @@ def recorded_body(
         entry.handedness,
         participant,
         recording,
+        entry.convention or convention_of(frames),
     )
 
 

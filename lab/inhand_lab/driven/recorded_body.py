@@ -45,7 +45,7 @@ class RecordedBody:
 
     ``joints`` (T, 20, 3) are in metres, NaN where one is missing, ``states`` (T, 20) as in
     Simulation, ``confidences`` (T, 20); ``participant`` is the person's number, ``recording`` that
-    of one of the person's takes.
+    of one of the person's takes; ``convention`` names whose joints they are, if that is known.
     """
 
     joints: Array
@@ -55,6 +55,7 @@ class RecordedBody:
     handedness: Literal["left", "right"]
     participant: int
     recording: int
+    convention: str | None = None
 
 
 def drive(

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
+from inhand_schemas import conventions
 from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array
 
@@ -45,6 +46,7 @@ _OTHER_NAMES = {"SPINE_NAVAL": "SPINE_NAVEL"}
 
 AZURE_KINECT = JointTable(
     "Azure Kinect",
+    conventions.AZURE_KINECT,
     _JOINTS,
     {
         **trunk("PELVIS", "SPINE_NAVEL", "NECK", NAVEL_SHARE),

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from inhand_capture.estimation.parameters import DEFAULT_LIFTING
+from inhand_schemas import conventions
 from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array
 
@@ -96,6 +97,7 @@ def _side(side: str, other: str) -> dict[Joint, Candidates]:
 
 COCO = JointTable(
     "COCO",
+    conventions.COCO,
     _JOINTS,
     {
         Joint.HIP_CENTER: (_trunk_line(DEFAULT_LIFTING.hip_centre),),

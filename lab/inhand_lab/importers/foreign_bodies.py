@@ -47,7 +47,7 @@ class Bodies:
     """A recording of N bodies in T frames.
 
     ``times_ns`` (T,), and of each body the index of its frame (N,), the person's id (N,), and
-    ``joints`` of N bodies.
+    ``joints`` of N bodies, whose places are those of a ``convention``.
     """
 
     path: Path
@@ -55,6 +55,7 @@ class Bodies:
     frames: Indices
     ids: Indices
     joints: JointSets
+    convention: str
 
     def kept(self, frames: Indices) -> "Bodies":
         """Return the recording of these frames alone."""
@@ -62,7 +63,13 @@ class Bodies:
         places[frames] = np.arange(len(frames))
         chosen = places[self.frames] >= 0
         owners, joints = places[self.frames[chosen]], self.joints.chosen(chosen)
-        return Bodies(self.path, self.times_ns[frames], owners, self.ids[chosen], joints)
+        return replace(
+            self,
+            times_ns=self.times_ns[frames],
+            frames=owners,
+            ids=self.ids[chosen],
+            joints=joints,
+        )
 
 
 def our_bodies(
@@ -94,7 +101,8 @@ def our_bodies(
     frames = np.array([body.frame for body in shown])
     numbers: dict[int, int] = {}
     ids = np.array([numbers.setdefault(body.id, len(numbers)) for body in shown])
-    return Bodies(path, times_ns, frames[ours], ids[ours], joints.chosen(ours))
+    shown_joints = joints.chosen(ours)
+    return Bodies(path, times_ns, frames[ours], ids[ours], shown_joints, table.convention)
 
 
 def write_bodies(
@@ -127,7 +135,12 @@ def body_messages(bodies: Bodies) -> Iterator[Message]:
     for body, frame in enumerate(bodies.frames):
         people[frame].append(_person(bodies, body))
     for sequence, time_ns in enumerate(bodies.times_ns.tolist()):
-        yield Skeletons(sequence=sequence, time_ns=time_ns, people=tuple(people[sequence]))
+        yield Skeletons(
+            sequence=sequence,
+            time_ns=time_ns,
+            people=tuple(people[sequence]),
+            convention=bodies.convention,
+        )
 
 
 def _frame_rate(times_ns: Indices) -> float | None:

@@ -56,10 +56,11 @@ class JointTable:
     """A convention: its ``name``, its joints in the order of its files, and ours by them.
 
     A joint of ours that has no candidates is always missing. From the first place of ``front`` to
-    the second is forwards.
+    the second is forwards. ``convention`` is its name in messages.
     """
 
     name: str
+    convention: str
     joints: tuple[str, ...]
     candidates: Mapping[Joint, Candidates]
     front: tuple[JointMean, JointMean]

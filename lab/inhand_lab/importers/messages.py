@@ -33,11 +33,16 @@ def imagined_camera(time_ns: int, description: str, frame_rate: float | None = N
     )
 
 
-def imported_skeletons(sequence: int, time_ns: int, joints: Array) -> Skeletons:
-    """Make skeletons of one person's joints (20, 3) in the camera frame, missing if not finite."""
+def imported_skeletons(
+    sequence: int, time_ns: int, joints: Array, convention: str | None = None
+) -> Skeletons:
+    """Make skeletons of one person's joints (20, 3) in the camera frame, missing if not finite.
+
+    ``convention`` names whose joints they are, if that is known.
+    """
     seen = np.asarray(np.isfinite(joints).all(axis=1))
     if not seen.any():
-        return Skeletons(sequence=sequence, time_ns=time_ns)
+        return Skeletons(sequence=sequence, time_ns=time_ns, convention=convention)
     positions = np.where(seen[:, None], joints, 0.0).tolist()
     person = Person(
         id=PERSON,
@@ -45,7 +50,7 @@ def imported_skeletons(sequence: int, time_ns: int, joints: Array) -> Skeletons:
         states=tuple("tracked" if finite else "missing" for finite in seen),
         confidences=tuple(seen.astype(float).tolist()),
     )
-    return Skeletons(sequence=sequence, time_ns=time_ns, people=(person,))
+    return Skeletons(sequence=sequence, time_ns=time_ns, people=(person,), convention=convention)
 
 
 def imported_label(

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from inhand_schemas import conventions
 from inhand_schemas.joints import Joint
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
@@ -56,6 +57,7 @@ def _name(joint: str, side: str) -> str:
 
 NTU = JointTable(
     "NTU RGB+D",
+    conventions.KINECT_V2,
     _JOINTS,
     {
         **trunk("SpineBase", "SpineMid", "SpineShoulder", _SPINE_MID_SHARE),

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from inhand_runtime.pixels import encode_depth
+from inhand_schemas.conventions import KINECT_V1
 from inhand_schemas.joints import JOINT_NAMES
 from inhand_schemas.messages import CameraInfo, Message, RgbdFrame
 from inhand_tracker.geometry.arrays import Array
@@ -194,4 +195,4 @@ def _messages(
         if depth is not None:
             image = encode_depth(depth[frame])
             yield RgbdFrame(sequence=sequence, time_ns=time_ns, depth=image)
-        yield imported_skeletons(sequence, time_ns, joints[frame])
+        yield imported_skeletons(sequence, time_ns, joints[frame], KINECT_V1)

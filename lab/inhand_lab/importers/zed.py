@@ -11,6 +11,7 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
+from inhand_schemas import conventions
 from inhand_schemas.joints import Joint
 
 from inhand_lab.datasets.dataset import Dataset, DatasetError
@@ -45,6 +46,7 @@ _JOINTS = (
 
 ZED = JointTable(
     "ZED BODY_34",
+    conventions.ZED,
     _JOINTS,
     {
         **trunk("PELVIS", "NAVAL_SPINE", "NECK", NAVEL_SHARE),

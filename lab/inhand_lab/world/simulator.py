@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 from inhand_runtime.settings import Section
 from inhand_runtime.settings_errors import explain, suggestion
 from inhand_runtime.source import Captured, Pixels, SourceError
+from inhand_schemas.conventions import SIMULATED
 from inhand_schemas.messages import CameraInfo
 from pydantic import AfterValidator, Field, ValidationError
 
@@ -132,4 +133,4 @@ def _captured(
         camera=UNNAMED_CAMERA,
         visible_fraction=ready.visible_fraction if ready else None,
     )
-    return Captured(time_ns, 0, pixels, (person_message(simulation, frame),), (label,))
+    return Captured(time_ns, 0, pixels, (person_message(simulation, frame),), (label,), SIMULATED)

@@ -82,7 +82,12 @@ class CameraPublisher:
         self._sequence += 1
         if captured.people is not None and self._skeletons.wanted():
             self._skeletons.put(
-                Skeletons(sequence=sequence, time_ns=captured.time_ns, people=captured.people)
+                Skeletons(
+                    sequence=sequence,
+                    time_ns=captured.time_ns,
+                    people=captured.people,
+                    convention=captured.convention,
+                )
             )
         for label in captured.labels:
             self._publish_label(label, sequence, captured.time_ns)

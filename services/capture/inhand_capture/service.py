@@ -132,12 +132,17 @@ def _skeleton_stage(
         yield None
         return
     from inhand_capture.estimation.estimator import SkeletonEstimator
+    from inhand_capture.estimation.networks import convention_of
     from inhand_capture.estimation.stage import SkeletonStage
 
     outlet = daemon.publisher(SKELETONS, daemon.instance)
     put = ShutteredOutlet(outlet, shutter).put
     with SkeletonStage(
-        lambda info: SkeletonEstimator(network, info), put, daemon.health, outlet.key
+        lambda info: SkeletonEstimator(network, info),
+        put,
+        daemon.health,
+        outlet.key,
+        convention_of(chosen.network),
     ) as stage:
         yield stage
 

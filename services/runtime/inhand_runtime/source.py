@@ -65,13 +65,18 @@ class Pixels:
 
 @dataclass(frozen=True)
 class Captured:
-    """One moment as a source gives it. ``pixels`` is called only when somebody listens."""
+    """One moment as a source gives it. ``pixels`` is called only when somebody listens.
+
+    ``convention`` names whose joints ``people`` have (``inhand_schemas.conventions``); None where
+    that is not said.
+    """
 
     time_ns: int
     time_uncertainty_ns: int
     pixels: Callable[[], Pixels] | None
     people: tuple[Person, ...] | None
     labels: tuple[ObjectPose, ...] = ()
+    convention: str | None = None
 
 
 class Source(Protocol):

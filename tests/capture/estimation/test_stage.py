@@ -50,7 +50,11 @@ class Stage:
         self.sent: list[Skeletons] = []
         self.came = threading.Semaphore(0)
         self.stage = SkeletonStage(
-            lambda info: SkeletonEstimator(self.network, info), self.put, self.health, KEY
+            lambda info: SkeletonEstimator(self.network, info),
+            self.put,
+            self.health,
+            KEY,
+            "blazepose",
         )
 
     def put(self, message: Skeletons) -> None:
@@ -78,6 +82,7 @@ def test_the_newest_frame_is_next_and_those_between_are_counted(running: Stage) 
     assert [(one.sequence, one.time_ns) for one in running.sent] == [(10, 1000), (15, 1500)]
     assert running.health.report().topics[KEY].dropped == 4
     assert [len(one.people) for one in running.sent] == [1, 1]
+    assert {one.convention for one in running.sent} == {"blazepose"}
 
 
 def test_encoded_pictures_are_decoded_and_damaged_ones_are_a_trouble_until_one_is_whole(

@@ -50,6 +50,7 @@ def test_every_frame_comes_back_with_all_that_belongs_to_it(recording: Path) -> 
     assert _times(captured) == list(range(10))
     for each in captured:
         assert each.people == (PERSON,)
+        assert each.convention == "kinect_v2"
         assert [label.object for label in each.labels] == ["mug"]
         assert each.time_uncertainty_ns == 7
 

@@ -39,6 +39,7 @@ def test_every_label_tells_the_whole_truth(tmp_path: Path) -> None:
     simulation = simulate("drinkFromMug", 1, 5, 200)
     frames = load_frames(dataset.path(dataset.entries[1]), "mug")
     assert len(frames) == 200
+    assert {frame.convention for frame in frames} == {"simulated"}
     for number in range(0, 200, 40):
         label = frames[number].label
         assert label is not None

@@ -25,6 +25,7 @@ def skeletons(simulation: Simulation, frames: range) -> list[Message]:
             sequence=number,
             time_ns=number * 33_333_333,
             people=(person_message(simulation, frame),) if frame % 100 < 60 else (),
+            convention="kinect_v1",
         )
         for number, frame in enumerate(frames)
     ]
@@ -57,6 +58,7 @@ def test_every_fitting_recording_becomes_a_labelled_one(tmp_path: Path, bodies: 
     original = load_frames(bodies.path(bodies.entries[0]), None)
     assert len(frames) == 60
     assert frames[7].people[0].joints == original[7].people[0].joints
+    assert {frame.convention for frame in frames} == {"kinect_v1"}
     assert all(frame.label is not None and frame.label.contact == "both_hands" for frame in frames)
     assert np.isfinite(labelled_sequence(driven, driven.entries[0]).translations).all()
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from bop_data import save_bop
-from foreign_data import only_entry, save_archive, save_trial, save_video
+from foreign_data import messages_of, only_entry, save_archive, save_trial, save_video
 from foreign_skeletons import (
     azure_kinect_values,
     coco_values,
@@ -19,6 +19,7 @@ from inhand_lab.datasets.dataset import load_dataset
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.motion import import_motion
 from inhand_runtime.errors import InhandError
+from inhand_schemas.messages import Skeletons
 
 from inhand.__main__ import main
 
@@ -32,6 +33,14 @@ SOURCES: dict[str, Callable[[Path], Path]] = {
     "ntu": lambda folder: save_text(folder / "walk.skeleton", ntu_text()),
     "coco": lambda folder: save_npz(folder / "walk.npz", coco_values()),
 }
+CONVENTIONS = {
+    "utd-mhad": "kinect_v1",
+    "azure-kinect": "azure_kinect",
+    "zed": "zed",
+    "ntu": "kinect_v2",
+    "coco": "coco",
+}
+"""Whose joints a format holds; the others do not say."""
 TIMED = ("azure-kinect", "zed", "coco")
 """Formats whose frames tell their times, so that the dataset need not say their rate."""
 
@@ -67,6 +76,8 @@ class TestEveryImport:
         out = tmp_path / "out"
         assert main(["import", name, str(source), str(out), "--frame-rate", "15"]) == 0
         assert only_entry(load_dataset(out)).frame_rate == (None if name in TIMED else 15.0)
+        named = [m for m in messages_of(load_dataset(out)) if isinstance(m, Skeletons)]
+        assert {one.convention for one in named} <= {CONVENTIONS.get(name)}
 
 
 def test_two_sources_of_one_name_are_refused(tmp_path: Path) -> None:

@@ -53,6 +53,17 @@ def test_a_model_comes_back_as_it_was(path: Path) -> None:
     assert not equal(replace(small_model(), interaction="other"), small_model())
 
 
+def test_a_model_keeps_its_convention_and_one_of_before_there_were_any_says_none(
+    path: Path,
+) -> None:
+    model = small_model()
+    named = replace(model, mapping=replace(model.mapping, convention="kinect_v1"))
+    save_model(named, path)
+    assert load_model(path).mapping.convention == "kinect_v1"
+    without_entry(path, "convention")
+    assert load_model(path).mapping.convention is None
+
+
 def test_what_is_seen_of_an_object_and_how_it_looks_come_back_too(tmp_path: Path) -> None:
     shape = small_model().shape
     contours = find_contours(shape, np.eye(3))
@@ -277,6 +288,13 @@ def described(path: Path, **changes: Any) -> None:
     rewrite(path, arrays | {"model": np.array(json.dumps(description))})
 
 
+def without_entry(path: Path, key: str) -> None:
+    arrays = arrays_of(path)
+    description = json.loads(str(arrays["model"]))
+    del description[key]
+    rewrite(path, arrays | {"model": np.array(json.dumps(description))})
+
+
 @pytest.mark.parametrize("version", [0, 2, 99, "2", None])
 def test_another_version_is_refused_with_the_mend(path: Path, version: Any) -> None:
     described(path, version=version)
@@ -295,6 +313,7 @@ def test_another_format_is_no_model(path: Path) -> None:
     [
         {"participants": None},
         {"participants": 3},
+        {"convention": 3},
         {"symmetries": None},
         {"symmetries": [[1, 2]]},
         {"symmetries": [1]},
@@ -313,7 +332,7 @@ def test_a_description_that_is_none_is_refused(path: Path, text: str) -> None:
 
 @pytest.mark.parametrize(
     "name",
-    ["shape.faces", "viewpoints.boundaries", *(f"mapping.{f.name}" for f in fields(Mapping)[1:-1])],
+    ["shape.faces", "viewpoints.boundaries", *(f"mapping.{f.name}" for f in fields(Mapping)[1:-2])],
 )
 def test_a_model_that_lacks_an_array_is_refused(path: Path, name: str) -> None:
     arrays = arrays_of(path)
@@ -324,8 +343,5 @@ def test_a_model_that_lacks_an_array_is_refused(path: Path, name: str) -> None:
 
 @pytest.mark.parametrize("key", ["version", "object", "interaction", "participants", "symmetries"])
 def test_a_description_that_lacks_an_entry_is_refused(path: Path, key: str) -> None:
-    arrays = arrays_of(path)
-    description = json.loads(str(arrays["model"]))
-    del description[key]
-    rewrite(path, arrays | {"model": np.array(json.dumps(description))})
+    without_entry(path, key)
     assert "damaged" in refused(path)

@@ -4,6 +4,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from inhand_runtime.errors import SettingsError
+from inhand_schemas import conventions
 
 from inhand_capture.estimation.blazepose import BlazePose
 from inhand_capture.estimation.coco import CocoNetwork
@@ -44,6 +45,11 @@ def open_network(network: str | Path) -> PoseNetwork:
     if isinstance(network, Path):
         return CocoNetwork(network)
     return BlazePose(network, models_folder())
+
+
+def convention_of(network: str | Path) -> str:
+    """Name the convention of the skeletons that a network's joints become."""
+    return conventions.COCO if isinstance(network, Path) else conventions.BLAZEPOSE
 
 
 def _require_file(path: Path) -> None:

@@ -49,12 +49,15 @@ class SkeletonStage:
         publish: Callable[[Skeletons], None],
         health: HealthBoard,
         key: str,
+        convention: str | None = None,
     ) -> None:
-        """``key`` is the one under which skipped frames are counted: that of the skeletons."""
+        """``key`` is the one under which skipped frames are counted: that of the skeletons, whose
+        ``convention`` is the network's."""
         self._new_estimator = new_estimator
         self._publish = publish
         self._health = health
         self._key = key
+        self._convention = convention
         self._info: CameraInfo | None = None
         self._estimator: SkeletonEstimator | None = None
         self._changed = threading.Condition()
@@ -136,4 +139,11 @@ class SkeletonStage:
             self._health.trouble(TROUBLE, str(error))
             return
         self._health.well(TROUBLE)
-        self._publish(Skeletons(sequence=picture.sequence, time_ns=picture.time_ns, people=people))
+        self._publish(
+            Skeletons(
+                sequence=picture.sequence,
+                time_ns=picture.time_ns,
+                people=people,
+                convention=self._convention,
+            )
+        )

@@ -73,4 +73,5 @@ def _captured(
         pixels=None if frame is None else partial(Pixels, frame.colour, frame.depth),
         people=None if skeletons is None else skeletons.people,
         labels=tuple(labels),
+        convention=None if skeletons is None else skeletons.convention,
     )

@@ -45,7 +45,8 @@ class LabelledSequence:
 
     ``joints`` (N, 20, 3), ``translations`` (N, 3), ``rotations`` (N, 4). Frames that are not
     usable (a missing joint or label) hold NaN and are left out, with the step into them.
-    ``frame_rate`` is in Hz.
+    ``frame_rate`` is in Hz; ``convention`` names whose joints these are, None where that is not
+    said.
     """
 
     participant: str
@@ -54,6 +55,7 @@ class LabelledSequence:
     translations: Array
     rotations: Array
     frame_rate: float = 30.0
+    convention: str | None = None
 
     def right_handed(self, mirror_normal: Array) -> "LabelledSequence":
         """The sequence with unit quaternions, and mirrored where the person is left-handed.
@@ -65,13 +67,12 @@ class LabelledSequence:
         if not self.left_handed:
             return unit
         translations, turns = mirror_pose(unit.translations, unit.rotations, mirror_normal)
-        return LabelledSequence(
-            self.participant,
-            False,
-            mirror_joints(self.joints),
-            translations,
-            turns,
-            self.frame_rate,
+        return replace(
+            unit,
+            left_handed=False,
+            joints=mirror_joints(self.joints),
+            translations=translations,
+            rotations=turns,
         )
 
     def with_stand_ins(self, absent: Collection[int]) -> "LabelledSequence":
@@ -131,8 +132,15 @@ def learn(
         translations=poses.translations,
         rotations=poses.rotations,
         absent_joints=absent_joints,
+        convention=_shared_convention(sequences),
         **vars(measures),
     )
+
+
+def _shared_convention(sequences: Sequence[LabelledSequence]) -> str | None:
+    """Name the convention that all sequences have; None where one is not said, or they differ."""
+    names = {sequence.convention for sequence in sequences}
+    return names.pop() if len(names) == 1 else None
 
 
 def _relative_poses(

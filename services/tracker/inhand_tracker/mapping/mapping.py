@@ -17,6 +17,7 @@ class Mapping:
     (N, 19, 4); ``translation_variation`` φᵉ and ``rotation_variation`` φᶿ (N,); and the parts
     that minimise ψᵉ, ψᶿ and ψ'ᵉ, each (N,). Everything is as of right-handed people.
     ``absent_joints`` were in no recording, and have stand-ins (``body.stand_ins``).
+    ``convention`` names whose joints the bodies have; None where that was not said.
     """
 
     participants: tuple[str, ...]
@@ -31,6 +32,7 @@ class Mapping:
     stable_rotation_part: Indices
     proximate_part: Indices
     absent_joints: tuple[int, ...] = ()
+    convention: str | None = None
 
     def sequence_of(self, frames: Indices) -> Indices:
         """The sequences that training frames belong to."""

@@ -28,7 +28,9 @@ MODEL_FILE = ArchiveKind(
 )
 _SHAPE_ARRAYS = ("vertices", "faces", "marked_vertices", "mirror_normal")
 _MAPPING_ARRAYS = tuple(
-    field.name for field in fields(Mapping) if field.name not in ("participants", "absent_joints")
+    field.name
+    for field in fields(Mapping)
+    if field.name not in ("participants", "absent_joints", "convention")
 )
 
 
@@ -39,6 +41,7 @@ def save_model(model: Model, path: Path | str) -> None:
         "object": model.shape.name,
         "participants": model.mapping.participants,
         "absent_joints": [JOINT_NAMES[joint] for joint in model.mapping.absent_joints],
+        "convention": model.mapping.convention,
         "symmetries": [[s.axis, s.centre, s.order] for s in model.shape.symmetries],
     }
     viewpoints = model.viewpoints
@@ -75,6 +78,7 @@ def _assemble(description: dict[str, Any], arrays: Arrays) -> Model:
         absent_joints=tuple(
             JOINT_NAMES.index(name) for name in description.get("absent_joints", ())
         ),
+        convention=_text_or_none(description.get("convention")),
         **{name: arrays[f"mapping.{name}"] for name in _MAPPING_ARRAYS},
     )
     viewpoints = Viewpoints(
@@ -96,6 +100,12 @@ def _assemble(description: dict[str, Any], arrays: Arrays) -> Model:
         _part("appearance", Appearance, arrays),
         prior_from_arrays(of_prior) if of_prior else None,
     )
+
+
+def _text_or_none(value: Any) -> str | None:
+    if value is not None and not isinstance(value, str):
+        raise TypeError(f"{value!r} is no text")
+    return value
 
 
 def _named(part: str, arrays: Arrays) -> Arrays:
