@@ -11,6 +11,7 @@ from inhand_capture.estimation.found_person import PoseNetwork
 from inhand_capture.estimation.networks import open_network, require_network
 from inhand_capture.estimation.weights import DEFAULT_NETWORK
 from inhand_lab.benchmarks.ablation import Worth, ablate, varied
+from inhand_lab.benchmarks.ablation_data import AblationData
 from inhand_lab.benchmarks.checkout_comparison import (
     CaseComparison,
     compare_checkout,
@@ -85,6 +86,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "out; may be repeated",
     )
     parser.add_argument(
+        "--test-on",
+        type=Path,
+        metavar="DATASET",
+        help="for ablation: test on another dataset, and leave nobody of the first one out",
+    )
+    parser.add_argument(
+        "--plain",
+        type=Path,
+        metavar="DATASET",
+        help="for ablation with --test-on: the people learned from without their variety, as a row "
+        "of its own",
+    )
+    parser.add_argument(
+        "--no-images", action="store_true", help="for ablation: from bodies alone, which is faster"
+    )
+    parser.add_argument(
         "--against",
         type=Path,
         metavar="CHECKOUT",
@@ -100,8 +117,12 @@ def run(arguments: argparse.Namespace) -> int:
         raise SettingsError(
             f"{', '.join(MEASURED_ON)}, and nothing else, are measured on a SOURCE: name it"
         )
-    if arguments.vary and arguments.subject != "ablation":
-        raise SettingsError("--vary is for ablation, and for nothing else: leave it out")
+    for option in ("vary", "test_on", "plain", "no_images"):
+        if getattr(arguments, option) and arguments.subject != "ablation":
+            name = option.replace("_", "-")
+            raise SettingsError(f"--{name} is for ablation, and for nothing else: leave it out")
+    if arguments.plain and not arguments.test_on:
+        raise SettingsError("--plain is learned from in place of what --test-on tests: name both")
     if arguments.against is not None and arguments.subject != "tracker":
         raise SettingsError("--against is for tracker, and for nothing else: leave it out")
     table, result = SUBJECTS[arguments.subject](arguments)
@@ -151,9 +172,14 @@ def _objects(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
 
 def _ablation(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     varied(arguments.vary)  # a wrong setting is refused before anything is loaded
+    tested, plain = (
+        None if folder is None else load_dataset(folder)
+        for folder in (arguments.test_on, arguments.plain)
+    )
     dataset = load_dataset(arguments.source)
-    with progress_bar("evaluating", len(leave_one_out(dataset))) as advance:
-        worths = ablate(dataset, usable_cores(), advance, arguments.vary)
+    data = AblationData(dataset, tested, plain, images=not arguments.no_images)
+    with progress_bar("evaluating", len(data.folds())) as advance:
+        worths = ablate(data, usable_cores(), advance, arguments.vary)
     return ablation_table(worths), {"variants": [_ablation_row(worth) for worth in worths]}
 
 
@@ -172,6 +198,7 @@ def _ablation_row(worth: Worth) -> dict[str, Any]:
         "without": variant.without,
         **instead,
         "vertex_error_cm": worth.vertex_error_cm,
+        "within_90_percent_region_percent": worth.region_percent,
     }
 
 

@@ -204,15 +204,27 @@ def objects_table(checks: Sequence[ObjectAccuracy]) -> Table:
 
 
 def ablation_table(worths: Sequence[Worth]) -> Table:
-    """Each variant's error, and how many times the whole method's."""
-    table = Table("of", "without", "vertex error, cm", "ratio", title="fusion, a part taken out")
+    """Each variant's error, how many times the whole method's, and how often its 90 % region holds
+    the truth."""
+    table = Table(
+        "of",
+        "without",
+        "error, cm",
+        "ratio",
+        "region, %",
+        title="fusion, a part taken out: vertex error, and truth in its 90 % region",
+    )
     whole = worths[0].vertex_error_cm
     for worth in worths:
         error, variant = worth.vertex_error_cm, worth.variant
         _, separator, value = variant.instead.partition("=")
         instead = f" (instead {value.strip()})" if separator else ""
         table.add_row(
-            variant.part, variant.without + instead, f"{error:.2f}", f"{error / whole:.2f}"
+            variant.part,
+            variant.without + instead,
+            f"{error:.2f}",
+            f"{error / whole:.2f}",
+            f"{worth.region_percent:.0f}",
         )
     return table
 

@@ -1,6 +1,8 @@
 """What each part of ``fusion`` is worth: each taken out once, all on the same frames.
 
-What another value of a parameter is worth is found in the same way (``variation``).
+What another value of a parameter is worth is found in the same way (``variation``). People are left
+out one at a time, or the recordings of another dataset are tested: so it shows what makes a model
+of simulated people true for real ones.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -16,18 +18,24 @@ from inhand_tracker.model.model import Model
 from inhand_tracker.prior.prior import Prior
 from inhand_tracker.sight.sight import SIGHT_TERMS, SightTerm
 
+from inhand_lab.benchmarks.ablation_data import (
+    AblationData,
+    learn_from_plain_people,
+    learn_usually,
+)
 from inhand_lab.benchmarks.variation import vary
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import track_together
 from inhand_lab.datasets.stretches import entry_frames
-from inhand_lab.evaluation.fold_model import learn_fold_model
-from inhand_lab.evaluation.folds import Fold, leave_one_out
+from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.evaluation.scoring import Judge
 from inhand_lab.workers import in_processes
 
 NOT_TRUSTED = 1e6
 """Squared error, in m², of a prediction that is taken out: its weight is nothing."""
+WITH_IMAGES_ONLY = ("likelihood", "search")
+"""Parts that make no difference where no image is looked at."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +48,7 @@ class FusionVariant:
     parameters: FusionParameters = DEFAULT_FUSION
     terms: tuple[SightTerm, ...] = SIGHT_TERMS
     changed: Callable[[Prior], Prior] = lambda prior: prior
+    learn: Callable[[AblationData, Fold], Model] = learn_usually
 
     def tracker(self, model: Model, *, left_handed: bool) -> FusionTracker:
         """A tracker of that kind; raises DatasetError for a model without a prior."""
@@ -104,6 +113,25 @@ VARIANTS: tuple[FusionVariant, ...] = (
 )
 
 
+def _without_hold(prior: Prior) -> Prior:
+    return replace(prior, hold=None)
+
+
+TRANSFER: tuple[FusionVariant, ...] = (
+    FusionVariant("transfer", "how the object is held", changed=_without_hold),
+    FusionVariant(
+        "transfer",
+        "a covariance that grows far from home",
+        parameters=replace(
+            DEFAULT_FUSION,
+            prior=replace(DEFAULT_FUSION.prior, most_stretched=1.0, held_doubt=0.0),
+        ),
+    ),
+    FusionVariant("transfer", "people's variety", learn=learn_from_plain_people),
+)
+"""What makes models true for people of another kind than those who taught."""
+
+
 def varied(settings: Sequence[str]) -> tuple[FusionVariant, ...]:
     """Fusion as it is, and with each ``FIELD=VALUE`` by itself; raises SettingsError."""
     variants = [VARIANTS[0]]
@@ -115,59 +143,73 @@ def varied(settings: Sequence[str]) -> tuple[FusionVariant, ...]:
 
 @dataclass(frozen=True)
 class Worth:
-    """A variant's mean vertex error in cm over interactions."""
+    """A variant's means over interactions: the vertex error in cm, and the percentage of poses
+    whose 90 % region holds the truth, NaN where no pose has a region."""
 
     variant: FusionVariant
     vertex_error_cm: float
+    region_percent: float
 
 
 def ablate(
-    dataset: Dataset,
+    data: AblationData,
     processes: int,
     on_progress: Callable[[], None] = lambda: None,
     settings: Sequence[str] = (),
 ) -> list[Worth]:
-    """Leave one participant out, with every variant; ``on_progress`` is called once a fold.
+    """Try every variant on every fold; ``on_progress`` is called once a fold.
 
-    The variants are ``VARIANTS``, or, where there are ``settings``, what those make of fusion.
-    Raises DatasetError, RecordingError or SettingsError.
+    The variants are all parts that count with this data, or, where there are ``settings``, what
+    those make of fusion. Raises DatasetError, RecordingError or SettingsError.
     """
-    variants = _variants(settings)
-    folds = leave_one_out(dataset)
-    tasks = [(dataset, fold, settings) for fold in folds]
-    errors = in_processes(_try_fold, tasks, processes, lambda _: on_progress())
+    folds = data.folds()
+    tasks = [(data, fold, settings) for fold in folds]
+    figures = in_processes(_try_fold, tasks, processes, lambda _: on_progress())
     by_interaction: dict[str, list[Array]] = {}
-    for fold, of_fold in zip(folds, errors, strict=True):
+    for fold, of_fold in zip(folds, figures, strict=True):
         by_interaction.setdefault(fold.interaction, []).append(of_fold)
     means = np.mean([np.mean(cell, axis=0) for cell in by_interaction.values()], axis=0)
-    return [Worth(one, 100.0 * float(m)) for one, m in zip(variants, means, strict=True)]
+    return [
+        Worth(one, 100.0 * float(error), 100.0 * float(region))
+        for one, (error, region) in zip(variants_for(data, settings), means, strict=True)
+    ]
 
 
-def _variants(settings: Sequence[str]) -> tuple[FusionVariant, ...]:
-    return varied(settings) if settings else VARIANTS
+def variants_for(data: AblationData, settings: Sequence[str] = ()) -> tuple[FusionVariant, ...]:
+    """Choose what is compared on some data; raises SettingsError."""
+    if settings:
+        return varied(settings)
+    return tuple(
+        variant
+        for variant in (*VARIANTS, *TRANSFER)
+        if (data.images or variant.part not in WITH_IMAGES_ONLY)
+        and (data.plain is not None or variant.learn is not learn_from_plain_people)
+    )
 
 
-def _try_fold(task: tuple[Dataset, Fold, Sequence[str]]) -> Array:
-    """The vertex error of each variant, in metres."""
-    dataset, fold, settings = task
-    model = learn_fold_model(dataset, fold, images=True, fused=True)
-    variants = _variants(settings)
-    errors = [list(_errors(dataset, entry, model, variants)) for entry in fold.tested]
-    return np.mean(errors, axis=0)
+def _try_fold(task: tuple[AblationData, Fold, Sequence[str]]) -> Array:
+    """The vertex error of each variant in metres, and its region's share, (V, 2)."""
+    data, fold, settings = task
+    variants = variants_for(data, settings)
+    models = {learn: learn(data, fold) for learn in {variant.learn for variant in variants}}
+    trackers = [(variant, models[variant.learn]) for variant in variants]
+    tested = data.trained if data.tested is None else data.tested
+    figures = [list(_figures(tested, entry, trackers)) for entry in fold.tested]
+    return np.mean(figures, axis=0)
 
 
-def _errors(
-    dataset: Dataset, entry: DatasetEntry, model: Model, variants: Sequence[FusionVariant]
-) -> Iterator[float]:
-    """The vertex error of each variant in one recording, in metres."""
+def _figures(
+    dataset: Dataset, entry: DatasetEntry, variants: Sequence[tuple[FusionVariant, Model]]
+) -> Iterator[tuple[float, float]]:
+    """The vertex error of each variant in one recording, in metres, and its region's share."""
     path = dataset.path(entry)
     frames = entry_frames(dataset, entry)
     left_handed = entry.handedness == "left"
-    trackers = [variant.tracker(model, left_handed=left_handed) for variant in variants]
+    trackers = [variant.tracker(model, left_handed=left_handed) for variant, model in variants]
     joints, tracks = track_together(trackers, path, frames, METHODS[FUSION].needs(SIGHT_TERMS))
-    judge = Judge(frames, joints, ErrorGauge(model.shape))
+    judge = Judge(frames, joints, ErrorGauge(variants[0][1].shape))
     for track in tracks:
         score = judge.score(track)
         if score is None:
             raise DatasetError(f"{entry.file}: no frame has both a pose and a label")
-        yield score.vertex_error_m
+        yield score.vertex_error_m, np.nan if score.region_share is None else score.region_share

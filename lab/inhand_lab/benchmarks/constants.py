@@ -12,6 +12,7 @@ from typing import Any
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION
 
 from inhand_lab.benchmarks.ablation import ablate
+from inhand_lab.benchmarks.ablation_data import AblationData
 from inhand_lab.benchmarks.variation import parameter_names
 from inhand_lab.datasets.dataset import Dataset
 
@@ -43,7 +44,7 @@ def check_constants(
     """
     numbers = list(_numbers())
     settings = [f"{name}={value}" for name, _, *both in numbers for value in both]
-    usual, *others = ablate(dataset, processes, on_progress, settings)
+    usual, *others = ablate(AblationData(dataset), processes, on_progress, settings)
     ratios = [worth.vertex_error_cm / usual.vertex_error_cm for worth in others]
     checks = [
         ConstantCheck(name, value, lower, higher, ratios[2 * place], ratios[2 * place + 1])

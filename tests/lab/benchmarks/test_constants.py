@@ -15,7 +15,7 @@ def test_each_number_is_halved_and_doubled_and_the_poorest_choice_comes_first(
     def ablate(_dataset: object, _processes: int, _progress: object, settings: list[str]) -> object:
         tried.extend(settings)
         errors = [2.0, *(2.0 if "image_temper" not in one else 1.0 for one in settings)]
-        return [Worth(VARIANTS[0], error) for error in errors]
+        return [Worth(VARIANTS[0], error, 90.0) for error in errors]
 
     monkeypatch.setattr(constants, "ablate", ablate)
     checks = check_constants(None, 1)  # type: ignore[arg-type]
