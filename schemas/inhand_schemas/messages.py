@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterable
 from typing import Annotated, Literal
 
+import msgspec
 from msgspec import Meta, Struct
 
 # Ends by a lookahead, since in some languages "$" also matches before a last newline.
@@ -157,7 +158,9 @@ class Preview(Message, frozen=True, kw_only=True):
 class Person(Struct, frozen=True, kw_only=True):
     """One person's 20 joints in the camera frame, in the order of ``JOINT_NAMES``.
 
-    The position of a ``missing`` joint means nothing (it is written as zeros).
+    The position of a ``missing`` joint means nothing (it is written as zeros). A joint that is
+    exactly at zero, in the camera itself, or no finite number is missing whatever its state says:
+    trackers write so of what they do not see.
     """
 
     id: Count
@@ -166,9 +169,19 @@ class Person(Struct, frozen=True, kw_only=True):
     confidences: Annotated[tuple[Fraction, ...], Meta(min_length=20, max_length=20)]
 
     def __post_init__(self) -> None:
-        for joint in self.joints:
-            _require_finite("joint", joint)
+        places = [any(joint) and all(map(math.isfinite, joint)) for joint in self.joints]
+        if not all(places):
+            self._leave_out(places)
         _require_finite("confidence", self.confidences)
+
+    def _leave_out(self, places: list[bool]) -> None:
+        """Take joints as missing where they are no places."""
+        kept = [
+            (joint, state) if there else ((0.0, 0.0, 0.0), "missing")
+            for joint, state, there in zip(self.joints, self.states, places, strict=True)
+        ]
+        msgspec.structs.force_setattr(self, "joints", tuple(joint for joint, _ in kept))
+        msgspec.structs.force_setattr(self, "states", tuple(state for _, state in kept))
 
 
 class Skeletons(Message, frozen=True, kw_only=True):

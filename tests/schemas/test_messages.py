@@ -137,6 +137,21 @@ def test_a_person_has_twenty_joints() -> None:
         SKELETONS.decode(msgpack.packb(plain))
 
 
+@pytest.mark.parametrize("nowhere", [(0.0, 0.0, 0.0), (math.nan,) * 3, (1.0, math.inf, 2.0)])
+def test_a_joint_without_a_place_is_missing_whatever_its_state_says(
+    nowhere: tuple[float, float, float],
+) -> None:
+    plain = msgpack.unpackb(SKELETONS.encode(EXAMPLE[Skeletons]))
+    person = plain["people"][0]
+    person["joints"] = [[0.1, 0.2, 2.0 + joint] for joint in range(20)]
+    person["states"] = ["tracked"] * 20
+    person["joints"][7] = nowhere
+    (read,) = SKELETONS.decode(msgpack.packb(plain)).people
+    assert read.states == ("tracked",) * 7 + ("missing",) + ("tracked",) * 12
+    assert read.joints[7] == (0.0, 0.0, 0.0)
+    assert read.joints[8] == (0.1, 0.2, 10.0)
+
+
 def test_a_topic_encodes_its_own_type_only() -> None:
     with pytest.raises(MessageError, match="skeletons carries Skeletons, not ObjectPose"):
         SKELETONS.encode(EXAMPLE[ObjectPose])

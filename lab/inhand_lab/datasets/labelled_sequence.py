@@ -10,11 +10,13 @@ from inhand_lab.datasets.recorded_frames import convention_of
 from inhand_lab.datasets.recording_times import frame_rate_of
 from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.datasets.tracks import true_track
+from inhand_lab.datasets.wild_labels import without_wild_labels
 
 
 def labelled_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
     """Read the bodies and labels of a recording or stretch; frames without either hold NaN.
 
+    So do labels that are wild, which a warning names.
     Raises DatasetError or RecordingError.
     """
     frames = entry_frames(dataset, entry)
@@ -23,7 +25,7 @@ def labelled_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence
         if followed.person is not None:
             joints[index] = joints_of(followed.person)
     times_ns = np.array([frame.time_ns for frame in frames], np.int64)
-    truth = true_track(frames)
+    truth = without_wild_labels(entry.file, true_track(frames), times_ns)
     return LabelledSequence(
         entry.participant,
         entry.handedness == "left",

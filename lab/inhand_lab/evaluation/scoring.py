@@ -8,6 +8,7 @@ from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.datasets.recorded_frames import RecordedFrame
 from inhand_lab.datasets.tracks import Track, true_joints, true_track
+from inhand_lab.datasets.wild_labels import wild_labels
 from inhand_lab.evaluation.lost_tracks import (
     Recoveries,
     lost_bodies,
@@ -43,14 +44,16 @@ class Score:
 class Judge:
     """Scores tracks by the truth of one recording.
 
-    ``joints`` (T, 20, 3) is the body that the trackers saw, NaN where missing.
+    ``joints`` (T, 20, 3) is the body that the trackers saw, NaN where missing. Wild labels are no
+    truth.
     """
 
     def __init__(self, frames: Sequence[RecordedFrame], joints: Array, gauge: ErrorGauge) -> None:
+        times = np.array([frame.time_ns for frame in frames], np.int64)
         true = true_track(frames)
-        self._labelled = true.given
+        self._labelled = true.given & ~wild_labels(true, times)
         self._true = true.of(self._labelled)
-        self._times = np.array([frame.time_ns for frame in frames], np.int64)[self._labelled]
+        self._times = times[self._labelled]
         bodies = lost_bodies(joints, true_joints(frames))
         self._body_lost = bodies[self._labelled]
         self._gauge = gauge

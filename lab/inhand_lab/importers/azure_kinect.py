@@ -31,7 +31,7 @@ from inhand_lab.importers.joint_tables import (
 )
 from inhand_lab.importers.json_file import converted, read_json
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
-from inhand_lab.importers.sources import find_files, read_shown
+from inhand_lab.importers.sources import find_files, read_files
 
 M_PER_MM = 0.001
 NS_PER_US = 1000
@@ -83,10 +83,11 @@ def import_azure_kinect(
 ) -> Dataset:
     """Import JSON files, or folders of them, as skeletons, one recording each.
 
-    Files that show nobody are left out. Raises DatasetError or InhandError.
+    Files that cannot be read or show nobody are named and left out. Raises DatasetError where all
+    are, or InhandError.
     """
-    recordings = read_shown(find_files(sources, ".json"), read_azure_kinect)
-    return write_bodies(recordings, folder, frame_rate, {"importer": "azure-kinect"})
+    files = read_files(find_files(sources, ".json"), read_azure_kinect)
+    return write_bodies(files, folder, frame_rate, {"importer": "azure-kinect"})
 
 
 def read_azure_kinect(path: Path) -> Bodies:

@@ -32,7 +32,7 @@ from inhand_lab.importers.joint_tables import (
 )
 from inhand_lab.importers.json_file import read_json
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
-from inhand_lab.importers.sources import find_files, read_shown
+from inhand_lab.importers.sources import find_files, read_files
 
 CAMERA_COORDINATES = Coordinates("IMAGE")
 
@@ -120,12 +120,13 @@ def import_coco(
 ) -> Dataset:
     """Import NPZ or JSON files, or folders of them, as skeletons, one recording each.
 
-    Files that show nobody are left out. Raises DatasetError or InhandError.
+    Files that cannot be read or show nobody are named and left out. Raises DatasetError where all
+    are, or InhandError.
     """
-    recordings = read_shown(
+    files = read_files(
         find_files(sources, ".npz", ".json"), lambda path: read_coco(path, coordinates)
     )
-    return write_bodies(recordings, folder, frame_rate, {"importer": "coco"})
+    return write_bodies(files, folder, frame_rate, {"importer": "coco"})
 
 
 def read_coco(path: Path, coordinates: Coordinates = CAMERA_COORDINATES) -> Bodies:

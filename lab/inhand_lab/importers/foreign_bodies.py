@@ -1,11 +1,12 @@
 """Bodies of other skeletons' recordings, from what a file holds to our joints in a dataset."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from inhand_runtime.wording import counted
+from inhand_schemas.joints import Joint
 from inhand_schemas.messages import MOST_PEOPLE, Message, Person, Skeletons
 from inhand_tracker.geometry.arrays import Array, Indices
 
@@ -16,6 +17,7 @@ from inhand_lab.importers.body_checks import Mends, check_bodies
 from inhand_lab.importers.body_times import frames_at_rate
 from inhand_lab.importers.joint_tables import (
     MISSING,
+    JointMean,
     JointSets,
     JointTable,
     forward_directions,
@@ -23,7 +25,7 @@ from inhand_lab.importers.joint_tables import (
 )
 from inhand_lab.importers.messages import imagined_camera
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
-from inhand_lab.importers.sources import NobodyError
+from inhand_lab.importers.sources import NobodyError, ReadFiles, without_zeros
 from inhand_lab.world.messages import JOINT_STATES
 
 
@@ -88,9 +90,11 @@ def our_bodies(
     if not shown:
         raise NobodyError(f"{path} has no frame with a body")
     _check_ids(path, shown)
+    places = without_zeros(np.array([body.places for body in shown]), _origin(table))
+    seen = np.isfinite(places).all(axis=2)
     theirs = JointSets(
-        np.array([body.places for body in shown]),
-        np.array([body.states for body in shown], np.uint8),
+        places,
+        np.where(seen, np.array([body.states for body in shown], np.uint8), MISSING),
         np.array([body.confidences for body in shown]),
     )
     joints = our_joints(table, theirs)
@@ -106,7 +110,7 @@ def our_bodies(
 
 
 def write_bodies(
-    recordings: Iterable[Bodies], folder: Path, rate: float, generator: Mapping[str, str]
+    files: ReadFiles[Bodies], folder: Path, rate: float, generator: Mapping[str, str]
 ) -> Dataset:
     """Write recordings whose frames tell their times as a dataset, about ``rate`` frames a second.
 
@@ -114,11 +118,12 @@ def write_bodies(
     DatasetError or InhandError.
     """
     writer = DatasetWriter(folder)
-    for bodies in recordings:
+    for bodies in files.recordings:
         stem = bodies.path.stem
         entry = DatasetEntry(file=recording_file(bodies), interaction=stem, participant=stem)
         kept = bodies.kept(frames_at_rate(bodies.path, bodies.times_ns, rate))
         writer.add_recording(entry, body_messages(kept))
+    files.report()
     return writer.finish(generator)
 
 
@@ -162,6 +167,14 @@ def _person(bodies: Bodies, body: int) -> Person:
         states=tuple(JOINT_STATES[state] for state in states),
         confidences=tuple(confidences.tolist()),
     )
+
+
+def _origin(table: JointTable) -> int:
+    """Return the place in a convention of the joint that others may be relative to."""
+    (first, *_) = table.candidates[Joint.HIP_CENTER]
+    if not isinstance(first, JointMean):
+        raise TypeError(f"{table.name}: HipCenter is no mean of joints")
+    return table.joints.index(max(first.weights, key=first.weights.__getitem__))
 
 
 def _without_far(body: ForeignBody) -> ForeignBody:

@@ -21,7 +21,7 @@ from inhand_lab.importers.messages import (
 from inhand_lab.importers.motion_archive import Motion, read_motion
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.shapes import shape_of_mesh, shape_of_points
-from inhand_lab.importers.sources import find_files, read_shown
+from inhand_lab.importers.sources import find_files, read_files
 from inhand_lab.importers.timing import Timing, thin
 
 _HALF_TURN_ABOUT_X = np.array([0.0, 1.0, 0.0, 0.0])
@@ -32,19 +32,18 @@ def import_motion(
 ) -> Dataset:
     """Import archives, or folders of them, as skeletons and labels, one recording each.
 
-    Archives that show nobody are left out. Each recording is placed as a whole: the person
-    stands upright 3 m before the camera and faces it when first seen. An ``.obj`` with the
-    object's name beside the archive is its mesh; otherwise it is the convex hull of the marked
-    points. The first archive that has an object gives its marked points; others may differ by 1
-    cm. Raises DatasetError or InhandError.
+    Archives that cannot be read or show nobody are named and left out. Each recording is placed as
+    a whole: the person stands upright 3 m before the camera and faces it when first seen. An
+    ``.obj`` with the object's name beside the archive is its mesh; otherwise it is the convex hull
+    of the marked points. The first archive that has an object gives its marked points; others may
+    differ by 1 cm. Raises DatasetError where all archives are left out, or InhandError.
     """
-    motions = read_shown(find_files(sources, ".npz"), read_motion)
-    timings = [thin(motion.path, motion.recorded_rate, frame_rate) for motion in motions]
-    shapes = _shapes(motions)
+    files = read_files(find_files(sources, ".npz"), lambda path: _read(path, frame_rate))
+    shapes = _shapes([motion for motion, _ in files.recordings])
     writer = DatasetWriter(folder)
     for shape in shapes:
         writer.add_shape(shape)
-    for motion, timing in zip(motions, timings, strict=True):
+    for motion, timing in files.recordings:
         entry = DatasetEntry(
             file=f"recordings/{motion.path.stem}.mcap",
             interaction=motion.interaction,
@@ -54,6 +53,7 @@ def import_motion(
             frame_rate=timing.frame_rate,
         )
         writer.add_recording(entry, _messages(motion, timing))
+    files.report()
     return writer.finish({"importer": "motion"})
 
 
@@ -67,6 +67,11 @@ def world_in_camera(joints: Array) -> Bases:
     rotation = rotations.multiply(_HALF_TURN_ABOUT_X, rotations.conjugate(pelvis.rotations))
     centre = np.array([0.0, 0.0, DEFAULT_IMPORT.distance_m])
     return Bases(centre - rotations.rotate(rotation, pelvis.origins), rotation)
+
+
+def _read(path: Path, frame_rate: float) -> tuple[Motion, Timing]:
+    motion = read_motion(path)
+    return motion, thin(path, motion.recorded_rate, frame_rate)
 
 
 def _messages(motion: Motion, timing: Timing) -> Iterator[Message]:

@@ -2,7 +2,7 @@
 
 ``joints`` (T, 20, 3) in metres, ``joint_names`` (20,), ``object_pose`` (T, 7) as x y z qw qx qy
 qz, ``vertices`` (M, 3) marked points in the object's frame, ``fps``, ``interaction``, ``object``,
-``participant``, ``handedness``. What was not measured is NaN.
+``participant``, ``handedness``. What was not measured is NaN or zero.
 """
 
 import logging
@@ -17,6 +17,8 @@ from inhand_tracker.geometry.arrays import Array
 from numpy.typing import NDArray
 
 from inhand_lab.datasets.dataset import DatasetError
+from inhand_lab.datasets.parameters import DEFAULT_DATASET
+from inhand_lab.datasets.wild_labels import named_frames
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.shapes import object_name
 from inhand_lab.importers.sources import NobodyError, without_zeros
@@ -81,13 +83,24 @@ def _joints(path: Path, values: dict[str, Any]) -> Array:
 
 def _object_poses(path: Path, values: dict[str, Any], frames: int) -> Array:
     measured = _array(path, values, "object_pose", "f", (frames, 7)).astype(np.float64)
-    poses = np.where(np.isfinite(measured).all(axis=1, keepdims=True), measured, np.nan)
+    whole = np.isfinite(measured).all(axis=1) & measured.any(axis=1)
+    poses = np.where(whole[:, None], measured, np.nan)
     if np.isnan(poses).all():
         raise DatasetError(f"{path} has no frame with an object: object_pose is nowhere measured")
-    lengths = np.linalg.norm(poses[:, 3:], axis=1)
-    if (np.abs(lengths[np.isfinite(lengths)] - 1.0) > DEFAULT_IMPORT.unit_tolerance).any():
-        raise DatasetError(f"{path}: object_pose holds rotations that are no unit quaternions")
-    return poses
+    off = np.abs(np.linalg.norm(poses[:, 3:], axis=1) - 1.0) > DEFAULT_IMPORT.unit_tolerance
+    wild = np.flatnonzero(off).tolist()
+    if len(wild) > DEFAULT_DATASET.most_wild_share * whole.sum() and len(wild) > 1:
+        raise DatasetError(
+            f"{path}: object_pose holds rotations that are no unit quaternions, in "
+            f"{named_frames(wild)}"
+        )
+    if wild:
+        log.warning(
+            "%s: rotations of the object that are no unit quaternions are left out: %s",
+            path,
+            named_frames(wild),
+        )
+    return np.where(off[:, None], np.nan, poses)
 
 
 def _marked_vertices(path: Path, values: dict[str, Any]) -> Array:

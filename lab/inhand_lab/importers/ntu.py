@@ -36,7 +36,7 @@ from inhand_lab.importers.joint_tables import (
     trunk,
 )
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
-from inhand_lab.importers.sources import NobodyError, find_files, read_shown
+from inhand_lab.importers.sources import NobodyError, find_files, read_files
 from inhand_lab.importers.timing import Timing, thin
 
 RECORDED_RATE = 30.0
@@ -82,13 +82,14 @@ def import_ntu(
 ) -> Dataset:
     """Import ``*.skeleton`` files, or folders of them, as skeletons, one recording each.
 
-    Participants and interactions are those of the files' names, P001 and A023. Files that show
-    nobody are left out. Raises DatasetError or InhandError.
+    Participants and interactions are those of the files' names, P001 and A023. Files that
+    cannot be read or show nobody are named and left out. Raises DatasetError where all are, or
+    InhandError.
     """
-    recordings = read_shown(find_files(sources, ".skeleton"), read_ntu)
+    files = read_files(find_files(sources, ".skeleton"), read_ntu)
     timing = thin(sources[0], RECORDED_RATE, frame_rate)
     writer = DatasetWriter(folder)
-    for bodies in recordings:
+    for bodies in files.recordings:
         stem = bodies.path.stem
         name = _FILE_NAME.fullmatch(stem)
         entry = DatasetEntry(
@@ -99,6 +100,7 @@ def import_ntu(
         )
         kept = bodies.kept(np.arange(0, len(bodies.times_ns), timing.step))
         writer.add_recording(entry, body_messages(kept))
+    files.report()
     return writer.finish({"importer": "ntu"})
 
 

@@ -1,11 +1,14 @@
-"""Finds the files that an import reads, and passes over those that show nobody."""
+"""Finds the files that an import reads, and passes over those that are damaged or show nobody."""
 
 import logging
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
+from inhand_runtime.wording import counted
+from inhand_schemas.joints import Joint
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.datasets.dataset import DatasetError
@@ -18,29 +21,56 @@ class NobodyError(DatasetError):
     """A file shows nobody in any frame."""
 
 
-def without_zeros(joints: Array) -> Array:
-    """Take skeletons (T, 20, 3) that are all zero as missing, NaN: trackers write so of nobody."""
-    nobody = (joints == 0.0).all(axis=(1, 2), keepdims=True)
-    return np.where(nobody, np.nan, joints)
+@dataclass(frozen=True)
+class ReadFiles(Generic[Recording]):
+    """What was read of an import's files, and how many of them were named and left out."""
+
+    recordings: list[Recording]
+    left_out: int
+
+    def report(self) -> None:
+        """Say in a last warning how many files were left out, if any."""
+        if self.left_out:
+            log.warning(
+                "left out: %s of %s, each named above with the reason",
+                self.left_out,
+                counted(self.left_out + len(self.recordings), "file"),
+            )
 
 
-def read_shown(paths: Iterable[Path], read: Callable[[Path], Recording]) -> list[Recording]:
-    """Read files with ``read``; those that show nobody are named in a warning and left out.
+def without_zeros(joints: Array, origin: int = Joint.HIP_CENTER) -> Array:
+    """Take joints (T, J, 3) that are exactly at zero as missing, NaN: trackers write so of what
+    they do not see, a joint or a whole body.
 
-    Raises DatasetError where all of them show nobody, and whatever else ``read`` raises.
+    Joints that are given relative to the hips, the joint ``origin``, have that alone at zero, in
+    every frame; it stays.
+    """
+    zero = np.asarray((joints == 0.0).all(axis=2))
+    shown = zero[~zero.all(axis=1)]
+    if len(shown) and shown[:, origin].all() and (shown.sum(axis=1) == 1).all():
+        zero[:, origin] = zero.all(axis=1)
+    return np.where(zero[..., None], np.nan, joints)
+
+
+def read_files(paths: Sequence[Path], read: Callable[[Path], Recording]) -> ReadFiles[Recording]:
+    """Read files with ``read``; those that cannot be read, or show nobody, are named in a warning
+    and left out.
+
+    Raises DatasetError where that is so of all of them.
     """
     recordings: list[Recording] = []
-    errors: list[NobodyError] = []
+    errors: list[DatasetError] = []
     for path in paths:
         try:
             recordings.append(read(path))
-        except NobodyError as error:
+        except DatasetError as error:
             errors.append(error)
     if errors and not recordings:
-        raise errors[0]
-    for nobody in errors:
-        log.warning("%s; it is left out", nobody)
-    return recordings
+        others = f" (so it is with {counted(len(errors) - 1, 'other file')})" if errors[1:] else ""
+        raise type(errors[0])(f"{errors[0]}{others}")
+    for error in errors:
+        log.warning("%s; it is left out", error)
+    return ReadFiles(recordings, len(errors))
 
 
 def find_files(sources: Iterable[Path], *suffixes: str) -> list[Path]:

@@ -5,6 +5,7 @@ u. Its skeletons are in a right-handed frame all the same (x to the sensor's lef
 forwards), so that OpenCV's frame is a half turn about z away: x' = -x, y' = -y, z' = z.
 """
 
+import logging
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -23,11 +24,13 @@ from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.matlab import read_mat
 from inhand_lab.importers.messages import imported_skeletons
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
-from inhand_lab.importers.sources import NobodyError, find_files, read_shown, without_zeros
+from inhand_lab.importers.sources import NobodyError, find_files, read_files, without_zeros
 from inhand_lab.importers.timing import Timing, thin
 
 SKELETON_SUFFIX = "_skeleton.mat"
 DEPTH_SUFFIX = "_depth.mat"
+log = logging.getLogger(__name__)
+
 RECORDED_RATE = 30.0
 WIDTH, HEIGHT = 320, 240
 FOCAL_LENGTH = 285.63
@@ -110,18 +113,20 @@ def import_utd_mhad(
 ) -> Dataset:
     """Import ``*_skeleton.mat`` files, or folders of them, without objects or labels.
 
-    Files that show nobody are left out. ``*_depth.mat`` beside a skeleton comes with it. The two
+    Files that cannot be read or show nobody are named and left out. ``*_depth.mat`` beside a
+    skeleton comes with it; where it cannot be read the skeleton comes alone. The two
     are paired by index; where one is longer its last frames are left out, and ``dataset.toml`` says
-    how many were in all. Raises DatasetError or InhandError.
+    how many were in all. Raises DatasetError where all files are left out, or InhandError.
     """
-    trials = read_shown(find_files(sources, SKELETON_SUFFIX), read_trial)
+    files = read_files(find_files(sources, SKELETON_SUFFIX), read_trial)
     timing = thin(sources[0], RECORDED_RATE, frame_rate)
     writer = DatasetWriter(folder)
     unpaired = 0
-    for trial in trials:
+    for trial in files.recordings:
         joints, depth = trial.joints_in_camera, None
         if trial.depth_file is not None:
-            depth = read_depth(trial.depth_file)
+            depth = _depth_if_readable(trial.depth_file)
+        if depth is not None:
             unpaired += abs(len(joints) - len(depth))
             paired = min(len(joints), len(depth))
             joints, depth = joints[:paired], depth[:paired]
@@ -132,6 +137,7 @@ def import_utd_mhad(
             frame_rate=timing.frame_rate,
         )
         writer.add_recording(entry, _messages(trial.stem, joints, depth, timing))
+    files.report()
     return writer.finish({"importer": "utd-mhad", "unpaired_frames": unpaired})
 
 
@@ -170,6 +176,15 @@ def read_depth(path: Path) -> NDArray[np.uint16]:
             f"({HEIGHT}, {WIDTH}, frames)"
         )
     return np.moveaxis(depth, -1, 0)[:, :, ::-1]
+
+
+def _depth_if_readable(path: Path) -> NDArray[np.uint16] | None:
+    """Read a file of depth; a warning names one that cannot be read."""
+    try:
+        return read_depth(path)
+    except DatasetError as error:
+        log.warning("%s; its skeletons come without depth", error)
+        return None
 
 
 def _messages(

@@ -33,7 +33,7 @@ from inhand_lab.importers.joint_tables import (
 )
 from inhand_lab.importers.json_file import converted, read_json
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
-from inhand_lab.importers.sources import find_files, read_shown
+from inhand_lab.importers.sources import find_files, read_files
 
 SAMPLE_COORDINATES = Coordinates("RIGHT_HANDED_Y_UP")
 """What the SDK's sample in Python records; that in C++ leaves the unit at millimetres."""
@@ -81,10 +81,11 @@ def import_zed(
 ) -> Dataset:
     """Import JSON files, or folders of them, as skeletons, one recording each.
 
-    Files that show nobody are left out. Raises DatasetError or InhandError.
+    Files that cannot be read or show nobody are named and left out. Raises DatasetError where all
+    are, or InhandError.
     """
-    recordings = read_shown(find_files(sources, ".json"), lambda path: read_zed(path, coordinates))
-    return write_bodies(recordings, folder, frame_rate, {"importer": "zed"})
+    files = read_files(find_files(sources, ".json"), lambda path: read_zed(path, coordinates))
+    return write_bodies(files, folder, frame_rate, {"importer": "zed"})
 
 
 def read_zed(path: Path, coordinates: Coordinates = SAMPLE_COORDINATES) -> Bodies:

@@ -15,12 +15,6 @@ class TrainingParameters:
     """Which recordings are refused, how many frames are learned from, and how."""
 
     # Which recordings are refused (recording_checks); docs/training.md lists these limits.
-    fastest_m_per_s: float = 60.0
-    """Speed of a label in metres a second above which it is wrong: faster than the head of a golf
-    club."""
-    fastest_rad_per_s: float = 85.0
-    """Speed of a label's turn in radians a second above which it is wrong: faster than a golf club
-    turns; a label that is upside down for one frame at 30 Hz turns faster."""
     most_missing_share: float = 0.5
     """Share of a recording's frames that may lack a label, or a whole body, at the most."""
     absent_share: float = 0.95

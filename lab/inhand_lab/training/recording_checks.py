@@ -12,6 +12,7 @@ from inhand_tracker.mapping.learning import LabelledSequence
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
 from inhand_lab.datasets.facing import foot_directions, is_mirror_image, pointing_forwards
+from inhand_lab.datasets.parameters import DEFAULT_DATASET
 from inhand_lab.training.absent_joints import absent_of
 from inhand_lab.training.parameters import DEFAULT_TRAINING
 
@@ -80,12 +81,12 @@ def _check_labels(entry: DatasetEntry, sequence: LabelledSequence) -> None:
 def _check_jumps(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     moved = np.linalg.norm(np.diff(sequence.translations, axis=0), axis=1)
     turned = rotations.angle_between(sequence.rotations[:-1], sequence.rotations[1:])
-    for frame in np.flatnonzero(moved * sequence.frame_rate > DEFAULT_TRAINING.fastest_m_per_s):
+    for frame in np.flatnonzero(moved * sequence.frame_rate > DEFAULT_DATASET.fastest_m_per_s):
         raise DatasetError(
             f"{entry.file}: the label jumps by {moved[frame]:.2f} m after frame {frame}: "
             "mend that label"
         )
-    for frame in np.flatnonzero(turned * sequence.frame_rate > DEFAULT_TRAINING.fastest_rad_per_s):
+    for frame in np.flatnonzero(turned * sequence.frame_rate > DEFAULT_DATASET.fastest_rad_per_s):
         raise DatasetError(
             f"{entry.file}: the label turns by {np.degrees(turned[frame]):.0f}° after frame "
             f"{frame}: mend that label"

@@ -41,6 +41,9 @@ CONVENTIONS = {
     "coco": "coco",
 }
 """Whose joints a format holds; the others do not say."""
+WITH_PEOPLE = ("motion", "utd-mhad", "azure-kinect", "zed", "ntu", "coco")
+RECORDED = {"utd-mhad": "a15_s3_t2"}
+"""Names of recordings that are not called walk."""
 TIMED = ("azure-kinect", "zed", "coco")
 """Formats whose frames tell their times, so that the dataset need not say their rate."""
 
@@ -78,6 +81,36 @@ class TestEveryImport:
         assert only_entry(load_dataset(out)).frame_rate == (None if name in TIMED else 15.0)
         named = [m for m in messages_of(load_dataset(out)) if isinstance(m, Skeletons)]
         assert {one.convention for one in named} <= {CONVENTIONS.get(name)}
+
+
+@pytest.mark.parametrize("name", WITH_PEOPLE)
+def test_a_bad_file_among_good_ones_is_named_with_its_reason_counted_and_passed_over(
+    name: str, tmp_path: Path, caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, out = tmp_path / "in", tmp_path / "out"
+    folder.mkdir()
+    source = SOURCES[name](folder)
+    bad = folder / source.name.replace("walk", "broken").replace("a15_s3", "a15_s4")
+    bad.write_bytes(source.read_bytes()[:-40])
+    assert main(["import", name, str(folder), str(out)]) == 0
+    reason, count = (message for message in caplog.messages if "left out" in message)
+    assert str(bad) in reason
+    assert count.startswith("left out: 1 of 2 files")
+    assert "1 recording" in capsys.readouterr().out
+    recorded = RECORDED.get(name, "walk") + ".mcap"
+    assert only_entry(load_dataset(out)).file == f"recordings/{recorded}"
+    assert [one.name for one in (out / "recordings").iterdir()] == [recorded]
+
+
+def test_where_every_file_is_bad_one_line_says_so_and_nothing_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("a", "b", "c"):
+        (tmp_path / f"{name}.skeleton").write_text("nonsense")
+    assert main(["import", "ntu", str(tmp_path), str(tmp_path / "out")]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "so it is with 2 other files" in line
+    assert not (tmp_path / "out").exists()
 
 
 def test_two_sources_of_one_name_are_refused(tmp_path: Path) -> None:

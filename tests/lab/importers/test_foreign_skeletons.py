@@ -1,5 +1,6 @@
 """What holds for recordings of skeletons in any other convention."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -20,10 +21,10 @@ from foreign_skeletons import (
 )
 from inhand_lab.datasets.dataset import START_NS, Dataset, DatasetError, load_dataset
 from inhand_lab.datasets.recorded_frames import load_frames
-from inhand_lab.importers.azure_kinect import import_azure_kinect
-from inhand_lab.importers.coco import import_coco
-from inhand_lab.importers.ntu import import_ntu
-from inhand_lab.importers.zed import import_zed
+from inhand_lab.importers.azure_kinect import AZURE_KINECT, import_azure_kinect
+from inhand_lab.importers.coco import COCO, import_coco
+from inhand_lab.importers.ntu import NTU, import_ntu
+from inhand_lab.importers.zed import ZED, import_zed
 from inhand_recorder.verification import examine_recording
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import CameraInfo, Skeletons
@@ -53,6 +54,42 @@ FORMATS: dict[str, tuple[Import, Callable[[Path, int], Path]]] = {
 # Human3.6M's 17 joints by those of COCO that are about there: pelvis, right leg, left leg, trunk
 # and head, left arm, right arm.
 HUMAN36M = [11, 12, 14, 16, 11, 13, 15, 6, 5, 0, 1, 5, 7, 9, 6, 8, 10]
+
+
+WRISTS = {
+    name: table.joints.index(joint)
+    for name, table, joint in (
+        ("azure-kinect", AZURE_KINECT, "WRIST_LEFT"),
+        ("zed", ZED, "LEFT_WRIST"),
+        ("ntu", NTU, "WristLeft"),
+        ("coco", COCO, "left_wrist"),
+    )
+}
+
+
+def write_zeros(name: str, path: Path, frame: int, joint: int | None) -> None:
+    """Put a joint, or all of them, at zero in one frame of a file."""
+    which = slice(None) if joint is None else slice(joint, joint + 1)
+    if name == "coco":
+        values = dict(np.load(path))
+        values["keypoints"][frame, ..., which, :] = 0.0
+        save_npz(path, values)
+    elif name == "ntu":
+        lines = path.read_text().splitlines()
+        rows = [line for line, text in enumerate(lines) if len(text.split()) == 12]
+        first = 25 * (frame - 1)  # nobody is in the first frame
+        for line in rows[first : first + 25][which]:
+            lines[line] = " ".join(["0", "0", "0", *lines[line].split()[3:]])
+        path.write_text("\n".join(lines))
+    else:
+        values = json.loads(path.read_text())
+        frames = values["frames"] if name == "azure-kinect" else list(values.values())[1:]
+        bodies, key = (
+            ("bodies", "joint_positions") if name == "azure-kinect" else ("body_list", "keypoint")
+        )
+        places = frames[frame][bodies][0][key]
+        places[which] = [[0.0, 0.0, 0.0]] * len(places[which])
+        path.write_text(json.dumps(values))
 
 
 def skeletons_of(dataset: Dataset) -> list[Skeletons]:
@@ -137,6 +174,30 @@ class TestEveryConvention:
         dataset = importer([source, empty], tmp_path / "out")
         assert only_entry(dataset).file == f"recordings/{source.stem}.mcap"
         assert "empty" in caplog.text
+
+    def test_joints_and_bodies_at_zero_are_missing_and_not_in_the_camera(
+        self, name: str, tmp_path: Path
+    ) -> None:
+        importer, save = FORMATS[name]
+        source = save(tmp_path, 12)
+        write_zeros(name, source, frame=4, joint=None)
+        write_zeros(name, source, frame=6, joint=WRISTS[name])
+        skeletons = skeletons_of(importer([source], tmp_path / "out"))
+        assert skeletons[4].people == ()
+        (person,) = skeletons[6].people
+        assert person.states[Joint.WRIST_LEFT] == "missing"
+        others = [joint for joint in Joint if not joint.name.startswith(("WRIST", "HAND"))]
+        np.testing.assert_allclose(
+            np.array(person.joints)[others], np.array(skeletons[5].people[0].joints)[others]
+        )
+
+    def test_a_joint_that_is_always_at_zero_is_missing_too(self, name: str, tmp_path: Path) -> None:
+        importer, save = FORMATS[name]
+        source = save(tmp_path, 12)
+        for frame in range(1, 12):
+            write_zeros(name, source, frame=frame, joint=WRISTS[name])
+        for one in skeletons_of(importer([source], tmp_path / "out"))[1:]:
+            assert one.people[0].states[Joint.WRIST_LEFT] == "missing"
 
 
 class TestPlausibility:

@@ -127,6 +127,23 @@ class TestMotion:
         assert frames[2].people[0].confidences[Joint.WRIST_LEFT] == 0.0
         assert [frame.label is None for frame in frames[:3]] == [False, True, False]
 
+    def test_zeros_are_not_a_place_and_one_wild_rotation_is_named_and_left_out(
+        self, tmp_path: Path, caplog: pytest.LogCaptureFixture
+    ) -> None:
+        values = archive_values()
+        values["joints"][8] = 0.0
+        values["joints"][16, [Joint.WRIST_LEFT, Joint.HAND_LEFT]] = 0.0
+        values["object_pose"][24] = 0.0
+        values["object_pose"][32, 3:] *= 1.2
+        dataset = import_motion([save_archive(tmp_path / "gaps.npz", **values)], tmp_path / "out")
+        frames = load_frames(dataset.path(only_entry(dataset)), "large_cube")
+        assert [len(frame.people) for frame in frames] == [1, 0, 1, 1, 1, 1]
+        states = frames[2].people[0].states
+        missing = [n for n, state in zip(JOINT_NAMES, states, strict=True) if state == "missing"]
+        assert missing == ["WristLeft", "HandLeft"]
+        assert [frame.label is None for frame in frames] == [False, False, False, True, True, False]
+        assert "no unit quaternions are left out: frame 32" in caplog.text
+
     def test_the_camera_says_that_it_has_no_pixels(self, tmp_path: Path) -> None:
         dataset = import_motion([save_archive(tmp_path / "walk.npz")], tmp_path / "out")
         info = messages_of(dataset)[0]
@@ -187,7 +204,8 @@ class TestMotion:
             ({"joint_names": np.array(["Nose"] * 20)}, "not the 20 joints"),
             ({"object_pose": np.zeros((47, 7))}, "'object_pose' is"),
             ({"object_pose": np.full((48, 7), np.nan)}, "no frame with an object"),
-            ({"object_pose": np.zeros((48, 7))}, "no unit quaternions"),
+            ({"object_pose": np.zeros((48, 7))}, "no frame with an object"),
+            ({"object_pose": np.ones((48, 7))}, "no unit quaternions, in frames 0, 1, 2, 3, 4 and"),
             ({"vertices": CUBE[:2]}, "3 or more finite points"),
             ({"fps": np.array(0.0)}, "fps is 0"),
             ({"handedness": np.array("both")}, "left or right"),

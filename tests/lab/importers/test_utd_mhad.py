@@ -110,11 +110,15 @@ class TestUtdMhad:
             import_utd_mhad([tmp_path], tmp_path / "out")
 
     @pytest.mark.parametrize("depth", [np.zeros((240, 320, 2)), np.zeros((120, 160, 2), np.uint16)])
-    def test_wrong_depth_is_refused(self, tmp_path: Path, depth: np.ndarray) -> None:
+    def test_wrong_depth_is_named_and_its_skeletons_come_without_it(
+        self, tmp_path: Path, depth: np.ndarray, caplog: pytest.LogCaptureFixture
+    ) -> None:
         source = save_trial(tmp_path, 2, 2)
         scipy.io.savemat(tmp_path / "a15_s3_t2_depth.mat", {"d_depth": depth})
-        with pytest.raises(DatasetError, match="d_depth is"):
-            import_utd_mhad([source], tmp_path / "out")
+        info, *messages = messages_of(import_utd_mhad([source], tmp_path / "out"))
+        assert "a15_s3_t2_depth.mat: d_depth is" in caplog.text
+        assert not info.has_depth
+        assert len(messages) == 2
 
     @pytest.mark.parametrize("contents", [b"", b"not MATLAB at all, but long enough", bytes(200)])
     def test_a_foreign_file_is_refused_in_one_line(self, tmp_path: Path, contents: bytes) -> None:
