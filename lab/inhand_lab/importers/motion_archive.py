@@ -83,7 +83,7 @@ def _joints(path: Path, values: dict[str, Any]) -> Array:
 
 def _object_poses(path: Path, values: dict[str, Any], frames: int) -> Array:
     measured = _array(path, values, "object_pose", "f", (frames, 7)).astype(np.float64)
-    whole = np.isfinite(measured).all(axis=1) & measured.any(axis=1)
+    whole = np.asarray(np.isfinite(measured).all(axis=1) & measured.any(axis=1))
     poses = np.where(whole[:, None], measured, np.nan)
     if np.isnan(poses).all():
         raise DatasetError(f"{path} has no frame with an object: object_pose is nowhere measured")

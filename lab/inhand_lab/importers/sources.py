@@ -68,8 +68,8 @@ def read_files(paths: Sequence[Path], read: Callable[[Path], Recording]) -> Read
     if errors and not recordings:
         others = f" (so it is with {counted(len(errors) - 1, 'other file')})" if errors[1:] else ""
         raise type(errors[0])(f"{errors[0]}{others}")
-    for error in errors:
-        log.warning("%s; it is left out", error)
+    for reason in errors:
+        log.warning("%s; it is left out", reason)
     return ReadFiles(recordings, len(errors))
 
 
