@@ -55,6 +55,7 @@ def test_a_recording_is_made_in_the_browser_and_kept_where_the_studio_is_killed(
         page.get_by_role("button", name="Start recording").click()
         page.get_by_text("until you stop it").wait_for()
         page.screenshot(path=str(tmp_path / "recording.png"))
+        assert "No tracker runs" not in page.inner_text("body")
         page.get_by_role("button", name="Stop recording").click()
         page.get_by_text(re.compile(r"\d+ skeletons?, \d+ lost")).wait_for()
         (entry,) = load_dataset(dataset).entries

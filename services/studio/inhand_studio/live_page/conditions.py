@@ -1,13 +1,12 @@
 """What keeps a tab from showing what it should, and how to mend it, a sentence each."""
 
 import time
-from collections.abc import Sequence
 
 from inhand_runtime.roll import Heard, Instance
 from inhand_schemas.messages import CameraInfo, ObjectPose
 
 from inhand_studio.live_page.parameters import LiveParameters
-from inhand_studio.rig import CameraNews, Pictures, Rig
+from inhand_studio.rig import Pictures, Rig
 
 
 def no_camera(rig: Rig) -> str:
@@ -26,10 +25,9 @@ def no_camera(rig: Rig) -> str:
 def conditions_of(
     camera: str, info: CameraInfo, pictures: Pictures | None, rig: Rig, parameters: LiveParameters
 ) -> list[str]:
-    """Say what is not seen of a camera now, and why."""
+    """Say what is not seen of a camera's pictures and people now, and why."""
     living, news = rig.roll.living(), rig.heard(camera, pictures)
-    source = next((heard for one, heard in living.items() if one == ("capture", camera)), None)
-    if source is not None and source.health.shutter_closed:
+    if _is_shut(camera, living):
         return [
             f"The shutter of {camera} is closed: nothing is captured until `inhand shutter open "
             f"--camera {camera}`."
@@ -47,8 +45,6 @@ def conditions_of(
         lines.append(f"No skeletons of {camera} came {since}: {_absence(camera, living)}.")
     elif news.skeletons and not news.skeletons[-1].people:
         lines.append("Nobody is in view.")
-    if _is_silent(news.poses_at, now, parameters):
-        lines.append(_no_poses(camera, news, living, now))
     return lines
 
 
@@ -74,13 +70,22 @@ def _absence(camera: str, living: dict[Instance, Heard | None]) -> str:
     return "its process is there, and sends none"
 
 
-def _no_poses(
-    camera: str, news: CameraNews, living: dict[Instance, Heard | None], now: float
-) -> str:
-    trackers: Sequence[str] = [name for service, name in living if service == "tracker"]
-    if not trackers:
-        return "No tracker runs: objects are not tracked. Start one with `inhand tracker`."
-    named = ", ".join(trackers)
+def without_poses(
+    camera: str, pictures: Pictures | None, rig: Rig, parameters: LiveParameters
+) -> list[str]:
+    """Say why no poses of a camera's objects come; nothing where some do, or its shutter is
+    closed."""
+    living, news, now = rig.roll.living(), rig.heard(camera, pictures), time.monotonic()
+    if _is_shut(camera, living) or not _is_silent(news.poses_at, now, parameters):
+        return []
+    named = ", ".join(name for service, name in living if service == "tracker")
+    if not named:
+        return ["No tracker runs: objects are not tracked. Start one with `inhand tracker`."]
     if news.poses_at is None:
-        return f"No pose of {camera} came yet: of the trackers {named} perhaps none looks at it."
-    return f"No pose came for {now - news.poses_at:.0f} s from the trackers {named}."
+        return [f"No pose of {camera} came yet: of the trackers {named} perhaps none looks at it."]
+    return [f"No pose came for {now - news.poses_at:.0f} s from the trackers {named}."]
+
+
+def _is_shut(camera: str, living: dict[Instance, Heard | None]) -> bool:
+    source = next((heard for one, heard in living.items() if one == ("capture", camera)), None)
+    return source is not None and bool(source.health.shutter_closed)

@@ -12,7 +12,7 @@ from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 
 from inhand_studio.camera_view import CameraView
 from inhand_studio.drawn_scene import DrawnScene, PlacedObject
-from inhand_studio.live_page.conditions import conditions_of, no_camera
+from inhand_studio.live_page.conditions import conditions_of, no_camera, without_poses
 from inhand_studio.live_page.moment import Moment, moment_of, newest_poses
 from inhand_studio.live_page.parameters import DEFAULT_LIVE, LiveParameters
 from inhand_studio.live_page.points import LivePoints
@@ -40,8 +40,17 @@ def open_page(visit: Visit) -> Page:
 class LivePage:
     """Shows what one camera sees, in a thread of its own, as fast as its tab takes it."""
 
-    def __init__(self, visit: Visit, rig: Rig, parameters: LiveParameters = DEFAULT_LIVE) -> None:
+    def __init__(
+        self,
+        visit: Visit,
+        rig: Rig,
+        parameters: LiveParameters = DEFAULT_LIVE,
+        *,
+        poses_wanted: bool = True,
+    ) -> None:
+        """Show a rig's camera; that no poses come is said where they are ``poses_wanted``."""
         self._visit, self._rig, self._parameters = visit, rig, parameters
+        self._poses_wanted = poses_wanted
         self._looking = ExitStack()
         self._looked: tuple[str, Pictures | None] | None = None
         self._seen_from: tuple[str, Intrinsics] | None = None
@@ -146,6 +155,8 @@ class LivePage:
             *self._unknown,
             *conditions_of(camera, info, pictures, self._rig, self._parameters),
         ]
+        if self._poses_wanted:
+            lines += without_poses(camera, pictures, self._rig, self._parameters)
         lines += [] if self._damage is None else [self._damage]
         write(self._wrong, lines_html(lines, "wrong"))
         write(self._objects, objects_html(newest_poses(news.poses), self._parameters))

@@ -37,7 +37,7 @@ class RecordingPage:
         self._seen = (-1, -1)
         self._looking = ExitStack()
         self._add_controls(visit.client.gui)
-        self._live = LivePage(visit, rig)
+        self._live = LivePage(visit, rig, poses_wanted=False)
         self._stop = visit.every(DEFAULT_RECORDING_PAGE.period_s, self._step)
 
     def close(self) -> None:
