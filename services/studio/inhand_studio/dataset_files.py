@@ -1,5 +1,6 @@
 """What a dataset's folder holds, by the names that a page lists."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 SUFFIXES = (".mcap", ".mcap.part")
@@ -26,6 +27,13 @@ def find_objects(dataset: Path) -> dict[str, Path]:
     """Return the folders of a dataset's objects by name; one that is being made is hidden."""
     found = sorted((dataset / "objects").glob("[!.]*/object.toml"))
     return {path.parent.name: path.parent for path in found}
+
+
+def find_models(dataset: Path, others: Iterable[Path]) -> list[Path]:
+    """Return the models in a dataset's folder and its ``models``, the newest first, then others."""
+    own = [*dataset.glob("*.model"), *dataset.glob("models/*.model")]
+    own.sort(key=lambda path: -path.stat().st_mtime)
+    return list(dict.fromkeys([*own, *others]))
 
 
 def recording_name(path: Path, dataset: Path) -> str:

@@ -7,8 +7,8 @@ import pytest
 from inhand_lab.evaluation.fold_model import learn_fold_model
 from inhand_lab.evaluation.folds import leave_one_out
 from inhand_lab.labelling.keyframes import LabellingError
+from inhand_studio.dataset_files import find_models
 from inhand_studio.labelling_page.estimates import (
-    find_models,
     has_estimates,
     model_of,
     recorded_estimate,

@@ -34,12 +34,6 @@ def has_estimates(recording: OpenedRecording, name: str) -> bool:
     return len(recording.frames.messages(POSE.stream, name)) > 0
 
 
-def find_models(dataset: Path, others: Sequence[Path]) -> list[Path]:
-    """Return the dataset's own models, the newest first, and then others."""
-    own = (dataset / "models").glob("*.model")
-    return [*sorted(own, key=lambda path: -path.stat().st_mtime), *others]
-
-
 def model_of(name: str, models: Sequence[Path]) -> Model:
     """Return the first model of an object; raises LabellingError where there is none, and
     ModelError for one that cannot be read."""

@@ -11,6 +11,7 @@ from inhand_lab.labelling.pose_start import pose_at_click, pose_from_clicks
 from inhand_lab.labelling.scene import load_scene
 from inhand_tracker.geometry.arrays import Array
 
+from inhand_studio.dataset_files import find_models
 from inhand_studio.labelling_page.assistant import (
     Assistance,
     Eyes,
@@ -21,7 +22,6 @@ from inhand_studio.labelling_page.background import Advance
 from inhand_studio.labelling_page.clicks import Picking, pixel_along, point_on
 from inhand_studio.labelling_page.desk import Desk
 from inhand_studio.labelling_page.estimates import (
-    find_models,
     has_estimates,
     model_of,
     recorded_estimate,

@@ -2,7 +2,6 @@
 
 import threading
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 from inhand_lab.datasets.tracks import Track
@@ -104,12 +103,6 @@ class Estimates:
         whole = Estimate(estimate.name, estimate.object, estimate.colour, estimate.track, errors)
         with self._lock:
             self._estimates.append(whole)
-
-
-def known_models(models: tuple[Path, ...], dataset: Path) -> dict[str, Path]:
-    """Return the models of a rig and those beside a dataset, by what a menu calls them."""
-    found = [*models, *sorted(dataset.glob("*.model")), *sorted(dataset.glob("models/*.model"))]
-    return {str(path): path for path in dict.fromkeys(found)}
 
 
 def _part_of(on_progress: OnProgress, number: int, parts: int) -> Callable[[float], bool]:

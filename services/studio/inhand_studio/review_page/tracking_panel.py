@@ -9,7 +9,8 @@ from inhand_runtime.errors import InhandError
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS
 
 from inhand_studio.controls import put
-from inhand_studio.review_page.estimates import Estimates, known_models
+from inhand_studio.dataset_files import find_models
+from inhand_studio.review_page.estimates import Estimates
 from inhand_studio.review_page.parameters import DEFAULT_REVIEW
 from inhand_studio.review_page.recording import ReviewedRecording
 from inhand_studio.review_page.tracking_job import TrackingJob, TrackingTask
@@ -34,7 +35,8 @@ class TrackingPanel:
         self._recording, self._estimates, self._on_result = recording, estimates, on_result
         self._job: TrackingJob | None = None
         self._written = 0.0
-        self._models = known_models(visit.studio.models, visit.studio.dataset)
+        studio = visit.studio
+        self._models = {str(path): path for path in find_models(studio.dataset, studio.models)}
         gui = visit.client.gui
         with gui.add_folder("Track it anew", expand_by_default=False):
             self._method = gui.add_dropdown("Method", tuple(METHODS), initial_value=DEFAULT_METHOD)
