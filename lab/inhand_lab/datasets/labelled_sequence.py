@@ -34,4 +34,5 @@ def labelled_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence
         truth.rotations,
         frame_rate_of(entry, times_ns),
         convention_of(frames),
+        entry.file,
     )

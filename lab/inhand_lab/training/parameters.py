@@ -22,6 +22,11 @@ class TrainingParameters:
     has a stand-in: no body tracker loses a joint that is in view for as long."""
     clear_hand_share: float = 0.9
     """Share of frames in which an object is nearer to one hand from which it is that hand's."""
+    clear_hand_ratio: float = 0.5
+    """Distance of an object from the nearer hand, in those from the other one, below which it is at
+    that hand; a box in both hands is as far from each."""
+    fewest_clear_share: float = 0.25
+    """Share of frames in which it must be at one hand for the hand to say anything."""
     fewest_compared: int = 3
     """Number of recordings from which on one can be unlike all others."""
     compared_frames: int = 500

@@ -123,12 +123,19 @@ def _check_bodies(entry: DatasetEntry, sequence: LabelledSequence) -> None:
 
 
 def _share_at_dominant_hand(sequence: LabelledSequence) -> float:
-    """Share of frames in which the object is nearer to the dominant hand than to the other."""
+    """Share of frames in which the object is nearer to the dominant hand than to the other, of
+    those in which it is much nearer to one; a half where these are few, as of a box in both."""
     hands = sequence.joints[:, [Joint.HAND_RIGHT, Joint.HAND_LEFT]]
     right, left = np.linalg.norm(hands - sequence.translations[:, None], axis=2).T
     seen = np.isfinite(right) & np.isfinite(left)
+    with np.errstate(invalid="ignore"):
+        apart = np.minimum(right, left) < DEFAULT_TRAINING.clear_hand_ratio * np.maximum(
+            right, left
+        )
+    if not seen.any() or apart[seen].mean() < DEFAULT_TRAINING.fewest_clear_share:
+        return 0.5
     nearer = left < right if sequence.left_handed else right < left
-    return float(nearer[seen].mean()) if seen.any() else 0.5
+    return float(nearer[seen & apart].mean())
 
 
 def _share(count: int, frames: int) -> str:

@@ -141,6 +141,15 @@ def test_an_object_in_both_hands_tells_nothing_of_handedness() -> None:
     check_hands([ENTRY] * 3, [both, replace(both, left_handed=True), recording()])
 
 
+def test_a_box_in_both_hands_that_is_always_a_little_nearer_to_one_tells_nothing_either() -> None:
+    def carried(share: float) -> LabelledSequence:
+        one = recording()
+        right, left = (one.joints[:, joint] for joint in (Joint.HAND_RIGHT, Joint.HAND_LEFT))
+        return replace(one, translations=share * right + (1.0 - share) * left)
+
+    check_hands([ENTRY] * 3, [carried(0.45), carried(0.55), carried(0.55)])
+
+
 def test_a_body_whose_feet_point_backwards_is_a_mirror_image() -> None:
     for mirrored in (WALKING[:, list(MIRRORED_JOINTS)], WALKING * [-1.0, 1.0, 1.0]):
         with pytest.raises(

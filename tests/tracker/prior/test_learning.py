@@ -8,8 +8,10 @@ from inhand_tracker.body import skeleton as body
 from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.prior.calibration import CHI_SQUARE_90, calibration_of
 from inhand_tracker.prior.learning import learn_prior, persistence_of
+from inhand_tracker.prior.samples import units_of
 from people import sequence, unseen_wave, wedge
 from predictions import deviations, predictions, strangers
+from scipy.spatial.transform import Rotation
 from scipy.special import ndtri, stdtrit
 from scipy.stats import chi2
 
@@ -25,14 +27,14 @@ def test_the_calibration_makes_stated_covariances_true(scale: float) -> None:
     roots = random.normal(size=(4000, 6, 6)) + 3.0 * np.eye(6)
     errors = scale * np.einsum("lij,lj->li", roots, random.normal(size=(4000, 6)))
     stated = roots @ np.swapaxes(roots, 1, 2)
-    factor = calibration_of(stated, errors, np.arange(4000))
+    factor = calibration_of(stated, errors, 4000)
     assert factor == pytest.approx(scale**2, rel=0.05)
 
 
 def test_few_people_say_less_of_the_next_one() -> None:
     random = np.random.default_rng(1)
     errors, stated = random.normal(size=(4000, 6)), np.tile(np.eye(6), (4000, 1, 1))
-    many, few = (calibration_of(stated, errors, np.arange(4000) % people) for people in (1000, 3))
+    many, few = (calibration_of(stated, errors, people) for people in (1000, 3))
     assert few / many == pytest.approx((stdtrit(3, 0.95) / ndtri(0.95)) ** 2, rel=0.01)
 
 
@@ -76,6 +78,37 @@ def test_errors_are_those_of_people_who_were_held_out() -> None:
     half = len(upwards) // 2
     assert upwards[:half].mean() == pytest.approx(0.2, abs=0.03)
     assert upwards[half:].mean() == pytest.approx(-0.2, abs=0.03)
+
+
+def turned_about(axis: tuple[float, float, float], seed: int) -> LabelledSequence:
+    """The same person takes hold of another side of the object in each recording."""
+    one = sequence("p0", seed=seed)
+    own = Rotation.from_quat(one.rotations, scalar_first=True)
+    turns = own * Rotation.from_rotvec(1.5 * np.array(axis))
+    return replace(one, rotations=turns.as_quat(scalar_first=True))
+
+
+def test_the_region_holds_what_two_recordings_cannot_tell_of_the_third() -> None:
+    """Both differ about one axis; how large the next one's difference about another is, is not
+    known, and not known to be small."""
+    learned = [turned_about((1.0, 0.0, 0.0), 0), turned_about((0.0, 0.0, 0.0), 1)]
+    third = turned_about((0.0, 0.0, 1.0), 2)
+    predicted = predictions(learn_prior(learned, wedge()), third.joints)
+    off = deviations(predicted, third)
+    inside = [
+        one @ np.linalg.solve(each.covariance, one) <= CHI_SQUARE_90
+        for one, each in zip(off, predicted, strict=True)
+    ]
+    assert np.mean(inside) > 0.9
+
+
+def test_stretches_of_one_recording_are_one_and_recordings_of_one_person_are_not() -> None:
+    recordings = [sequence("p0", seed=seed) for seed in range(3)]
+    stretches = [replace(one, recording="long.mcap") for one in recordings]
+    people = [replace(one, participant=f"p{n}") for n, one in enumerate(stretches)]
+    assert [units_of(some) for some in (recordings, stretches, people)] == [3, 1, 3]
+    apart, together = (learn_prior(some, wedge()).calibration for some in (recordings, stretches))
+    assert together > 3.0 * apart
 
 
 def test_the_spread_is_the_covariance_of_the_marked_vertices() -> None:

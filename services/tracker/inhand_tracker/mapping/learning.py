@@ -46,7 +46,8 @@ class LabelledSequence:
     ``joints`` (N, 20, 3), ``translations`` (N, 3), ``rotations`` (N, 4). Frames that are not
     usable (a missing joint or label) hold NaN and are left out, with the step into them.
     ``frame_rate`` is in Hz; ``convention`` names whose joints these are, None where that is not
-    said.
+    said. Stretches of one recording have its name as their ``recording``; one without a name is a
+    recording by itself.
     """
 
     participant: str
@@ -56,6 +57,7 @@ class LabelledSequence:
     rotations: Array
     frame_rate: float = 30.0
     convention: str | None = None
+    recording: str = ""
 
     def right_handed(self, mirror_normal: Array) -> "LabelledSequence":
         """The sequence with unit quaternions, and mirrored where the person is left-handed.

@@ -38,6 +38,7 @@ def prior_from_arrays(arrays: Arrays) -> Prior:
         float(arrays["calibration"]),
         float(arrays["persistence_s"]),
         _hold(arrays) if "hold.holder" in arrays else None,
+        float(arrays.get("widening", 0.0)),
     )
 
 

@@ -3,13 +3,31 @@
 import numpy as np
 from scipy.special import ndtri, stdtrit
 
-from inhand_tracker.geometry.arrays import Array, Indices
+from inhand_tracker.geometry.arrays import Array
 
 CHI_SQUARE_90 = 10.645
 """Square of the radius of a normal distribution's 90 % region in six dimensions."""
 
 
-def calibration_of(covariances: Array, errors: Array, groups: Indices) -> float:
+def widened(covariances: Array, share: float) -> Array:
+    """Add to covariances (..., 6, 6) a share of what they are on average in any direction.
+
+    Errors of few people, or of few recordings, point in few directions; in the others it is not
+    known how large the next one's are. Translations and rotations each by themselves.
+    """
+    wider = np.array(covariances, np.float64)
+    for block in (slice(0, 3), slice(3, 6)):
+        usual = np.trace(wider[..., block, block], axis1=-2, axis2=-1) / 3.0
+        wider[..., block, block] += share * usual[..., None, None] * np.eye(3)
+    return wider
+
+
+def widening_of(units: int) -> float:
+    """The share by which a covariance is ``widened`` that a number of people tell."""
+    return 1.0 / units**2
+
+
+def calibration_of(covariances: Array, errors: Array, people: int) -> float:
     """The factor on covariances (L, 6, 6) by which they hold nine in ten errors (L, 6).
 
     A few people say less of the next one than it seems, as Student's t has it: one person's errors
@@ -17,5 +35,4 @@ def calibration_of(covariances: Array, errors: Array, groups: Indices) -> float:
     """
     solved = np.linalg.solve(covariances, errors[..., None])[..., 0]
     of_these = np.quantile(np.einsum("li,li->l", errors, solved), 0.9) / CHI_SQUARE_90
-    people = len(np.unique(groups))
     return float(of_these * np.square(stdtrit(people, 0.95) / ndtri(0.95)))

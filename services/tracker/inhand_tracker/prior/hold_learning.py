@@ -5,15 +5,18 @@ import numpy as np
 from inhand_tracker.body.holders import HOLDERS, UPRIGHT, find_holder
 from inhand_tracker.body.kernels.holders import OF_A_HAND
 from inhand_tracker.geometry.arrays import Array, Flags
-from inhand_tracker.prior.calibration import calibration_of
+from inhand_tracker.prior.calibration import calibration_of, widened, widening_of
 from inhand_tracker.prior.combination import rotation_error
 from inhand_tracker.prior.hold import Hold, rotation_near
 from inhand_tracker.prior.parameters import PriorLearningParameters
 from inhand_tracker.prior.samples import Samples
 
 
-def learn_hold(samples: Samples, spread: Array, parameters: PriorLearningParameters) -> Hold | None:
-    """Learn the hold from samples of people; ``spread`` (3, 3) is that of the marked vertices.
+def learn_hold(
+    samples: Samples, spread: Array, units: int, parameters: PriorLearningParameters
+) -> Hold | None:
+    """Learn the hold from samples of ``units`` people; ``spread`` (3, 3) is that of the marked
+    vertices.
 
     The holder is the one in which the object's mean pose over the others tells best where each
     group that is held out has it. None where fewer than two groups carry the object.
@@ -28,7 +31,7 @@ def learn_hold(samples: Samples, spread: Array, parameters: PriorLearningParamet
     scores = np.array([trial.score(root) for trial in trials])
     scores[OF_A_HAND:UPRIGHT] *= parameters.other_holder_ratio
     scores[UPRIGHT:] *= parameters.upright_holder_ratio
-    return trials[int(scores.argmin())].hold()
+    return trials[int(scores.argmin())].hold(units)
 
 
 def carried_frames(samples: Samples, root: Array, parameters: PriorLearningParameters) -> Flags:
@@ -93,13 +96,14 @@ class _Trial:
         square = np.square(moved).sum(axis=1) + np.square(turned).sum(axis=(1, 2))
         return float(np.sqrt(square.mean()))
 
-    def hold(self) -> Hold:
+    def hold(self, units: int) -> Hold:
         """The mean of all samples, with the calibrated covariance of the held-out errors."""
         turned = rotation_error(self._held_out_turns, self._turns)
         errors = np.concatenate((self._held_out_places - self._places, turned), axis=1)
         covariance = errors.T @ errors / len(errors) + _LEAST_VARIANCE * np.eye(6)
+        covariance = widened(covariance, widening_of(units))
         at_each = np.broadcast_to(covariance, (len(errors), 6, 6))
-        calibration = calibration_of(at_each, errors, self._samples.groups)
+        calibration = calibration_of(at_each, errors, units)
         return Hold(self._holder, *self._mean(np.full(len(errors), True)), calibration * covariance)
 
 

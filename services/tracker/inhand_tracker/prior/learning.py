@@ -8,12 +8,12 @@ from inhand_tracker.body.window import VIEWS
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
 from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.prior import combination
-from inhand_tracker.prior.calibration import calibration_of
+from inhand_tracker.prior.calibration import calibration_of, widened, widening_of
 from inhand_tracker.prior.hold_learning import learn_hold
 from inhand_tracker.prior.kernel_ridge import KernelRidge, fit
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR_LEARNING, PriorLearningParameters
 from inhand_tracker.prior.prior import TARGETS, Prior
-from inhand_tracker.prior.samples import Samples, samples_of
+from inhand_tracker.prior.samples import Samples, samples_of, units_of
 from inhand_tracker.shape.shape import ObjectShape
 
 
@@ -39,18 +39,20 @@ def learn_prior(
     kernel[landmarks.groups[:, None] == landmarks.groups] = 0.0
     local, nearness = combination.locality(kernel)
     errors = _errors(landmarks, residuals, local, products, spread)
-    covariances = combination.covariance_at(local, nearness, errors)
+    units = min(units_of(sequences), parameters.groups)
+    covariances = widened(combination.covariance_at(local, nearness, errors), widening_of(units))
     return Prior(
         centre,
         spread,
         regressions,
         *products,
         errors,
-        calibration_of(covariances, errors, landmarks.groups),
+        calibration_of(covariances, errors, units),
         persistence_of(
             errors, landmarks.sequences, landmarks.times, parameters.longest_persistence_s
         ),
-        learn_hold(samples, spread, parameters),
+        learn_hold(samples, spread, units, parameters),
+        widening_of(units),
     )
 
 

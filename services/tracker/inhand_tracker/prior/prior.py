@@ -17,6 +17,7 @@ from inhand_schemas.joints import JOINT_NAMES
 
 from inhand_tracker.body.anchors import Anchors
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
+from inhand_tracker.prior.calibration import widened
 from inhand_tracker.prior.combination import (
     TINY,
     combination_weights,
@@ -48,7 +49,8 @@ class Prior:
     body heights and rotation vector on the left, in the trunk's axes. ``calibration`` scales the
     covariance so that nine in ten held-out errors lie within its 90 % region. ``persistence_s``
     is how long an error lasts. ``hold`` is how the object is held or worn; None where nobody was
-    seen to move it, or in priors of older releases.
+    seen to move it, or in priors of older releases. ``widening`` is the share by which a covariance
+    is widened in all directions, since few people were seen.
     """
 
     centre: Array
@@ -60,6 +62,7 @@ class Prior:
     calibration: float
     persistence_s: float
     hold: Hold | None = None
+    widening: float = 0.0
 
     @cached_property
     def _lower(self) -> tuple[Indices, Indices]:
@@ -153,7 +156,7 @@ def _regressed(
     centre, rotation = here.fused(prior.spread, parameters.distrust)
     doubt = min(max(stretches[0], 1.0), parameters.most_stretched) ** 2
     covariance = covariance_at(local, nearness, prior.errors, parameters.everywhere_share)
-    scaled = doubt * prior.calibration * covariance
+    scaled = doubt * prior.calibration * widened(covariance, prior.widening)
     usual = Prediction(centre, rotation, in_camera(scaled, anchors.axes[0], height))
     novelty = 1.0 - nearest[0] / parameters.new_kernel
     if novelty <= 0.0:

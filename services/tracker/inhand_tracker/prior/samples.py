@@ -65,6 +65,18 @@ _ROWS = ("targets", "heights", "centres", "rotations", "groups", "sequences", "t
 """Names of the samples' plain arrays."""
 
 
+def units_of(sequences: Sequence[LabelledSequence]) -> int:
+    """Count what differs as the next one to be followed will: people, or of one person recordings.
+
+    Stretches of one recording are one: nobody knows of it how another begins.
+    """
+    people = {sequence.participant for sequence in sequences}
+    if len(people) > 1:
+        return len(people)
+    named = {sequence.recording for sequence in sequences if sequence.recording}
+    return len(named) + sum(not sequence.recording for sequence in sequences)
+
+
 def samples_of(
     sequences: Sequence[LabelledSequence], shape: ObjectShape, centre: Array, groups: int
 ) -> Samples:
