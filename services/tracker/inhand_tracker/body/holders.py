@@ -1,39 +1,42 @@
-"""Holders: coordinate systems that turn with what may hold an object, or wear it.
+"""Holders: what may hold an object, or wear it, and how that turns with the body.
 
-An object in a fist turns with the forearm, and one in both hands with the line between them as
-well, whatever the body does. One that is kept upright has the trunk's directions at the palm.
+An object in a fist turns with the forearm, whatever the body does, and one that is kept upright has
+the trunk's directions at the palm.
 """
 
-from inhand_tracker.body.anchors import Anchors
-from inhand_tracker.body.kernels import holders as kernels
-from inhand_tracker.body.parameters import DEFAULT_BODY
+from dataclasses import dataclass
+
+from inhand_tracker.body.anchors import ANCHORS, Anchors
 from inhand_tracker.geometry.arrays import Array
 
+
+@dataclass(frozen=True)
+class Holder:
+    """A part of the body by the name of its anchor; ``other`` is that of the other hand, which may
+    hold the object as well, and ``upright`` whether directions are the trunk's."""
+
+    anchor: str
+    other: str | None = None
+    upright: bool = False
+
+
 HOLDERS = (
-    "right forearm",
-    "right forearm, its front to the left hand",
-    "way from the right hand to the left",
-    "left forearm",
-    "left forearm, its front to the right hand",
-    "way from the left hand to the right",
-    "head",
-    "right shank",
-    "left shank",
-    "right palm, in the trunk's directions",
-    "left palm, in the trunk's directions",
+    Holder("right forearm", other="left forearm"),
+    Holder("left forearm", other="right forearm"),
+    Holder("head"),
+    Holder("right shank"),
+    Holder("left shank"),
+    Holder("right hand", upright=True),
+    Holder("left hand", upright=True),
 )
-"""Names of the holders, in their order: three of the dominant hand, three of the other one, those
-of what wears things, and those of what is kept upright."""
-UPRIGHT = 9
-"""Number of the first holder that keeps the trunk's directions."""
+"""The holders, the dominant hand first."""
+_ANCHORS = tuple(ANCHORS.index(holder.anchor) for holder in HOLDERS)
+_OTHERS = tuple(ANCHORS.index(holder.other or holder.anchor) for holder in HOLDERS)
 
 
-def find_holder(anchors: Anchors, holder: int) -> tuple[Array, Array]:
-    """Find the origins (..., 3) and axes (..., 3, 3), columns, of the holder of a number.
-
-    Axes of a body whose joints lie on top of each other may have no length.
-    """
-    found: tuple[Array, Array] = kernels.holders(
-        anchors.origins, anchors.axes, holder, DEFAULT_BODY.hands_together_m
-    )
-    return found
+def find_holder(anchors: Anchors, holder: int) -> tuple[Array, Array, Array]:
+    """Find the origins (..., 3) and axes (..., 3, 3), columns, of the holder of a number, and the
+    way (..., 3) from it to the other hand: 0 where that is none of its matters."""
+    anchor, other = _ANCHORS[holder], _OTHERS[holder]
+    origins = anchors.origins[..., anchor, :]
+    return origins, anchors.axes[..., anchor, :, :], anchors.origins[..., other, :] - origins

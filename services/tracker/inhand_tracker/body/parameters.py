@@ -14,9 +14,6 @@ class BodyParameters:
     straight_arm: float = 0.15
     """Length, in metres, of the trunk's upwards direction beside that of the upper arm, where they
     give a forearm's plane: a straight arm shows none."""
-    hands_together_m: float = 0.05
-    """Distance between the hands, in metres, below which a forearm's own front says more of how
-    both hold an object than the way from one to the other (holders)."""
 
     # How joints are read (reader, skeleton).
     farthest_joint_m: float = 1000.0

@@ -37,7 +37,7 @@ def prior_from_arrays(arrays: Arrays) -> Prior:
         arrays["errors"],
         float(arrays["calibration"]),
         float(arrays["persistence_s"]),
-        _hold(arrays) if "hold.holder" in arrays else None,
+        _hold(arrays) if "hold.grip" in arrays else None,
         float(arrays.get("widening", 0.0)),
     )
 
@@ -45,8 +45,9 @@ def prior_from_arrays(arrays: Arrays) -> Prior:
 def _hold(arrays: Arrays) -> Hold:
     return Hold(
         int(arrays["hold.holder"]),
-        arrays["hold.place"],
         arrays["hold.rotation"],
+        arrays["hold.grip"],
+        arrays["hold.pull"],
         arrays["hold.covariance"],
     )
 

@@ -1,4 +1,4 @@
-"""How an object is held or worn: its pose in what turns with it, whatever the body does.
+"""How an object is held or worn: its pose in what holds it, whatever the body does.
 
 Regressions know where an object is in postures that people were seen in. Of a body that moves as
 nobody did in training, or whose joints another sensor puts elsewhere, they know little: a hand that
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inhand_tracker.body.anchors import Anchors
-from inhand_tracker.body.parameters import DEFAULT_BODY
+from inhand_tracker.body.holders import find_holder
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels.nearest_rotation import nearest_rotation
 from inhand_tracker.prior.kernels import hold as kernels
@@ -19,33 +19,33 @@ from inhand_tracker.prior.prediction import Prediction
 
 @dataclass(frozen=True)
 class Hold:
-    """The object's mean pose in a holder, over all frames in which somebody carries or wears it.
+    """How somebody carries or wears the object, in the mean over all frames of all people.
 
-    ``holder`` is its number in ``HOLDERS``; the ``place`` (3,) of the object's centre is in body
-    heights. ``covariance`` (6, 6) of (translation, rotation vector on the left) is in the holder's
-    axes and body heights.
+    ``holder`` is its number in ``HOLDERS``. ``rotation`` (3, 3) is the object's in the holder's
+    axes, and ``grip`` (3,) where the holder is in the object's, from its centre, in metres. Where
+    both hands hold it, the object turns towards the other one: ``pull`` (3,) is where that is in
+    the object's axes from the holder, times how much surer that is than the rotation, in 1/m; 0
+    where one hand holds. ``covariance`` (6, 6) of (translation, rotation vector on the left) is in
+    the object's axes, in metres and radians.
     """
 
     holder: int
-    place: Array
     rotation: Array
+    grip: Array
+    pull: Array
     covariance: Array
 
-
-def held_in(hold: Hold, anchors: Anchors, height: float) -> Prediction:
-    """Predict the object's pose as it is held, for one body's anchors and height."""
-    return Prediction(
-        *kernels.held(
-            anchors.origins,
-            anchors.axes,
-            hold.holder,
-            DEFAULT_BODY.hands_together_m,
-            hold.place,
-            hold.rotation,
-            hold.covariance,
-            height,
+    def of(self, anchors: Anchors) -> Prediction:
+        """Predict the object's pose as it is held, for one body's anchors, or poses for many."""
+        return Prediction(
+            *kernels.held(
+                *find_holder(anchors, self.holder),
+                self.rotation,
+                self.grip,
+                self.pull,
+                self.covariance,
+            )
         )
-    )
 
 
 def rotation_near(matrix: Array) -> Array:

@@ -22,7 +22,8 @@ class PriorParameters:
     people who were not learned from, is stretched: far from what was learned the nearest of it is
     the best guess."""
     most_stretched: float = 3.0
-    """Factor, at the most, by which the guess's deviation is stretched as well."""
+    """Factor, at the most, by which the guess's deviation is stretched as well, and so is that of
+    the hold of a strange posture."""
     new_kernel: float = 0.7
     """Kernel below which, at all landmarks, a body is new, the more so the smaller it is: what
     carries the object along then says more than where it was usual."""
@@ -32,10 +33,9 @@ class PriorParameters:
     are above it, and few of real people's (docs/real_bodies.md)."""
     strange_posture: float = 0.6
     """Kernel to the nearest posture below which nothing but how people hold the object counts."""
-    held_doubt: float = 0.5
-    """Share of the square of what two predictions for a strange posture differ by, from what people
-    did and from how they hold the object, in the variance of what is stated. With less a mug in a
-    toast seems too sure (tests/lab/evaluation/test_failures.py); real bodies need less."""
+    held_doubt: float = 0.094
+    """Probability that an object is where people had it in what they did, and not held, however
+    strange a posture. One in 10.645 keeps that place within the 90 % region."""
 
 
 DEFAULT_PRIOR = PriorParameters()

@@ -28,11 +28,14 @@ def in_camera(covariance: Array, axes: Array, height: float) -> Array:
     return turn_blocks(covariance * scale[:, None] * scale, axes)
 
 
-def between(one: Prediction, other: Prediction, share: float, doubt: float) -> Prediction:
+def between(
+    one: Prediction, other: Prediction, share: float, *, doubt: float = 0.0, around: float = 0.0
+) -> Prediction:
     """Go a ``share``, from 0 to 1, of the way from one prediction to another.
 
-    Both may be true, so what they differ by adds to the covariance in every direction: its square,
-    times the variance of the choice between them, and at the other one still times ``doubt``.
+    Both may be true, the one still with a probability of ``doubt`` at the other one: the covariance
+    is that of both together. ``around`` times the square of what they differ by is added to it in
+    every direction.
     """
     return Prediction(
         *kernels.between(
@@ -44,5 +47,6 @@ def between(one: Prediction, other: Prediction, share: float, doubt: float) -> P
             other.covariance,
             share,
             doubt,
+            around,
         )
     )

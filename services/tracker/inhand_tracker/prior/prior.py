@@ -25,7 +25,7 @@ from inhand_tracker.prior.combination import (
     fuse,
     locality,
 )
-from inhand_tracker.prior.hold import Hold, held_in
+from inhand_tracker.prior.hold import Hold
 from inhand_tracker.prior.kernel_ridge import KernelRidge, usual_width
 from inhand_tracker.prior.kernels.distances import least_distance
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
@@ -119,17 +119,27 @@ def predict(
     regressed = _regressed(prior, descriptions, anchors, height, parameters)
     if prior.hold is None:
         return regressed
-    strangeness = _strangeness(prior.nearest_posture(descriptions[0][0]), parameters)
-    if strangeness == 0.0:
+    nearest = prior.nearest_posture(descriptions[0][0])
+    share = _strangeness(nearest, parameters)
+    if share == 0.0:
         return regressed
-    held = held_in(prior.hold, anchors, height)
-    return between(regressed, held, strangeness, parameters.held_doubt)
+    held = prior.hold.of(anchors)
+    grown = _growth(nearest, parameters) * held.covariance
+    held = Prediction(held.centre, held.rotation, grown)
+    return between(regressed, held, share, doubt=parameters.held_doubt)
 
 
 def _strangeness(nearest: float, parameters: PriorParameters) -> float:
     """How strange a posture is, from 0 to 1, by its kernel to the nearest one."""
     familiar, strange = parameters.familiar_posture, parameters.strange_posture
     return min(max((familiar - nearest) / max(familiar - strange, TINY), 0.0), 1.0)
+
+
+def _growth(nearest: float, parameters: PriorParameters) -> float:
+    """How much the hold's covariance grows: with the distance from the nearest posture, beyond that
+    at which nothing but the hold counts, as limbs may lie elsewhere too."""
+    square = math.log(max(nearest, TINY)) / math.log(parameters.strange_posture)
+    return min(math.sqrt(max(square, 1.0)), parameters.most_stretched**2)
 
 
 def _regressed(
@@ -165,7 +175,7 @@ def _regressed(
     at_nearest = (local @ targets.reshape(len(local), -1)).reshape(targets.shape[1:])
     taken = here.taken_along(novelty, at_nearest)
     moved = Prediction(*taken.fused(prior.spread, parameters.distrust), usual.covariance)
-    return between(usual, moved, 1.0, 1.0)
+    return between(usual, moved, 1.0, around=1.0)
 
 
 @dataclass(frozen=True)

@@ -50,11 +50,11 @@ def _set_forearm(axes: Array, joints: Array, side: int, up: Vector, straight_arm
     elbow, wrist = vector_in(joints[ELBOWS[side]]), vector_in(joints[WRISTS[side]])
     hand, shoulder = vector_in(joints[HANDS[side]]), vector_in(joints[SHOULDERS[side]])
     along = blended(minus(wrist, elbow), 0.5, minus(hand, wrist))
-    set_axes(axes, along, blended(minus(shoulder, elbow), straight_arm, up))
+    _set_axes(axes, along, blended(minus(shoulder, elbow), straight_arm, up))
 
 
 @njit(cache=True, nogil=True)
-def set_axes(axes: Array, along: Vector, towards: Vector) -> None:
+def _set_axes(axes: Array, along: Vector, towards: Vector) -> None:
     """Set columns with z along a direction and y as near to another as that allows."""
     z = unit(along)
     x = unit(cross(towards, z))
@@ -116,7 +116,7 @@ def anchors(joints: Array, straight_arm: float, nine: Array, origins: Array, axe
     set_vector(origins[0], _middle(hips, chest))
     set_columns(axes[0], x, up, forwards)
     set_vector(origins[1], head)
-    set_axes(axes[1], minus(head, chest), forwards)
+    _set_axes(axes[1], minus(head, chest), forwards)
     palms = _palm(joints, RIGHT), _palm(joints, LEFT)
     for side in range(2):
         hand, shank = 2 + 2 * side, 7 + side
@@ -126,6 +126,6 @@ def anchors(joints: Array, straight_arm: float, nine: Array, origins: Array, axe
         set_columns(axes[hand + 1], x, up, forwards)
         ankle = vector_in(joints[ANKLES[side]])
         set_vector(origins[shank], ankle)
-        set_axes(axes[shank], minus(vector_in(joints[KNEES[side]]), ankle), forwards)
+        _set_axes(axes[shank], minus(vector_in(joints[KNEES[side]]), ankle), forwards)
     set_vector(origins[6], _middle(palms[RIGHT], palms[LEFT]))
-    set_axes(axes[6], minus(palms[LEFT], palms[RIGHT]), up)
+    _set_axes(axes[6], minus(palms[LEFT], palms[RIGHT]), up)

@@ -3,7 +3,6 @@
 import numpy as np
 from inhand_runtime.compiled import vectorised
 
-from inhand_tracker.body.kernels.holders import set_holder
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.kernels.nearest_rotation import nearest_rotation
 from inhand_tracker.geometry.kernels.pose_normals import set_turned_blocks
@@ -17,38 +16,36 @@ from inhand_tracker.geometry.kernels.quaternions import (
 )
 
 
-@vectorised("(a,v),(a,v,v),(),(),(v),(v,v),(i,i),()->(v),(v,v),(i,i)")
+@vectorised("(v),(v,v),(v),(v,v),(v),(v),(i,i)->(v),(v,v),(i,i)")
 def held(
-    origins: Array,
+    origin: Array,
     axes: Array,
-    holder: float,
-    hands_together_m: float,
-    place: Array,
+    way: Array,
     turn: Array,
+    grip: Array,
+    pull: Array,
     spread: Array,
-    height: float,
     centre: Array,
     rotation: Array,
     covariance: Array,
 ) -> None:
-    """Fill the pose and covariance, in the camera frame and metres, of an object with ``place``
-    (3,), ``turn`` (3, 3) and covariance ``spread`` (6, 6) in a holder, in body heights."""
-    own = np.empty((3, 3))
-    set_holder(origins, axes, np.int64(holder), hands_together_m, centre, own)
+    """Fill the pose, and its covariance in the camera frame, of an object that is held as
+    ``hold.Hold`` says by a holder with an ``origin`` (3,), ``axes`` (3, 3) and a ``way`` (3,)."""
     turned = np.zeros((3, 3))
     for row in range(3):
-        for k in range(3):
-            centre[row] += height * own[row, k] * place[k]
-            for column in range(3):
-                turned[row, column] += own[row, k] * turn[k, column]
+        for column in range(3):
+            turned[row, column] = way[row] * pull[column]
+            for k in range(3):
+                turned[row, column] += axes[row, k] * turn[k, column]
     nearest_rotation(turned, rotation)
-    scaled = spread.copy()
-    scaled[:3] *= height
-    scaled[:, :3] *= height
-    set_turned_blocks(scaled, own, covariance)
+    for row in range(3):
+        centre[row] = origin[row]
+        for k in range(3):
+            centre[row] -= rotation[row, k] * grip[k]
+    set_turned_blocks(spread, rotation, covariance)
 
 
-@vectorised("(v),(v,v),(i,i),(v),(v,v),(i,i),(),()->(v),(v,v),(i,i)")
+@vectorised("(v),(v,v),(i,i),(v),(v,v),(i,i),(),(),()->(v),(v,v),(i,i)")
 def between(
     one_centre: Array,
     one_rotation: Array,
@@ -58,6 +55,7 @@ def between(
     other_covariance: Array,
     share: float,
     doubt: float,
+    around: float,
     centre: Array,
     rotation: Array,
     covariance: Array,
@@ -68,14 +66,20 @@ def between(
     turned = vector_of(product(quaternion_of_matrix(other_rotation), inverse(start)))
     step = quaternion_of((share * turned[0], share * turned[1], share * turned[2]))
     set_matrix(rotation, product(step, start))
-    unsure = share * (1.0 - share) + share * doubt
-    moves, turns = 0.0, 0.0
+    apart = np.empty(6)
+    square = np.zeros(2)
+    still = 1.0 - share + share * doubt
+    apart_share = still * share * share + (1.0 - still) * (1.0 - share) * (1.0 - share)
     for axis in range(3):
-        moved = other_centre[axis] - one_centre[axis]
-        centre[axis] = one_centre[axis] + share * moved
-        moves += moved * moved
-        turns += turned[axis] * turned[axis]
-    covariance[:] = (1.0 - share) * one_covariance + share * other_covariance
-    for axis in range(3):
-        covariance[axis, axis] += unsure * moves
-        covariance[3 + axis, 3 + axis] += unsure * turns
+        apart[axis], apart[3 + axis] = other_centre[axis] - one_centre[axis], turned[axis]
+        centre[axis] = one_centre[axis] + share * apart[axis]
+        square[0] += apart[axis] * apart[axis]
+        square[1] += turned[axis] * turned[axis]
+    for row in range(6):
+        for column in range(6):
+            covariance[row, column] = (
+                still * one_covariance[row, column]
+                + (1.0 - still) * other_covariance[row, column]
+                + apart_share * apart[row] * apart[column]
+            )
+        covariance[row, row] += around * square[row // 3]
