@@ -42,6 +42,7 @@ class Slow:
     """A tracker whose steps take a fixed time, and more with its effort."""
 
     effort = 1.0
+    trouble = None
 
     def __init__(self, fixed_s: float, by_effort_s: float) -> None:
         self.costs = fixed_s, by_effort_s

@@ -7,6 +7,7 @@ of simulated people true for real ones.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from inhand_tracker.body.anchors import ANCHORS
@@ -26,7 +27,9 @@ from inhand_lab.benchmarks.ablation_data import (
 from inhand_lab.benchmarks.variation import vary
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import track_together
+from inhand_lab.datasets.recorded_frames import RecordedFrame
 from inhand_lab.datasets.stretches import entry_frames
+from inhand_lab.datasets.tracks import Track
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.evaluation.scoring import Judge
@@ -40,7 +43,10 @@ WITH_IMAGES_ONLY = ("likelihood", "search")
 
 @dataclass(frozen=True)
 class FusionVariant:
-    """``fusion`` with something taken out, or ``instead`` of it something else."""
+    """``fusion`` with something taken out, or ``instead`` of it something else.
+
+    Where it does not map (``maps``), skeletons are taken as if they were of the model's convention.
+    """
 
     part: str
     without: str
@@ -49,6 +55,7 @@ class FusionVariant:
     terms: tuple[SightTerm, ...] = SIGHT_TERMS
     changed: Callable[[Prior], Prior] = lambda prior: prior
     learn: Callable[[AblationData, Fold], Model] = learn_usually
+    maps: bool = True
 
     def tracker(self, model: Model, *, left_handed: bool) -> FusionTracker:
         """A tracker of that kind; raises DatasetError for a model without a prior."""
@@ -127,6 +134,7 @@ TRANSFER: tuple[FusionVariant, ...] = (
             prior=replace(DEFAULT_FUSION.prior, most_stretched=1.0, held_doubt=0.0),
         ),
     ),
+    FusionVariant("transfer", "the canonical body", maps=False),
     FusionVariant("transfer", "people's variety", learn=learn_from_plain_people),
 )
 """What makes models true for people of another kind than those who taught."""
@@ -184,6 +192,7 @@ def variants_for(data: AblationData, settings: Sequence[str] = ()) -> tuple[Fusi
         for variant in (*VARIANTS, *TRANSFER)
         if (data.images or variant.part not in WITH_IMAGES_ONLY)
         and (data.plain is not None or variant.learn is not learn_from_plain_people)
+        and (data.tested is not None or variant.maps)
     )
 
 
@@ -204,12 +213,36 @@ def _figures(
     """The vertex error of each variant in one recording, in metres, and its region's share."""
     path = dataset.path(entry)
     frames = entry_frames(dataset, entry)
-    left_handed = entry.handedness == "left"
-    trackers = [variant.tracker(model, left_handed=left_handed) for variant, model in variants]
-    joints, tracks = track_together(trackers, path, frames, METHODS[FUSION].needs(SIGHT_TERMS))
+    joints, tracks = _track_variants(path, frames, variants, left_handed=entry.handedness == "left")
     judge = Judge(frames, joints, ErrorGauge(variants[0][1].shape))
     for track in tracks:
         score = judge.score(track)
         if score is None:
             raise DatasetError(f"{entry.file}: no frame has both a pose and a label")
         yield score.vertex_error_m, np.nan if score.region_share is None else score.region_share
+
+
+def _track_variants(
+    path: Path,
+    frames: Sequence[RecordedFrame],
+    variants: Sequence[tuple[FusionVariant, Model]],
+    *,
+    left_handed: bool,
+) -> tuple[Array, list[Track]]:
+    """The joints (T, 20, 3) of a recording, and each track; bodies are read once for variants
+    that map joints, and once for those that do not."""
+    needs = METHODS[FUSION].needs(SIGHT_TERMS)
+    tracks: dict[int, Track] = {}
+    for maps in (False, True):
+        numbers = [n for n, (variant, _) in enumerate(variants) if variant.maps is maps]
+        if not numbers:
+            continue
+        chosen = [variants[number] for number in numbers]
+        shown = frames
+        if not maps:
+            learned_as = chosen[0][1].mapping.convention
+            shown = [replace(frame, convention=learned_as) for frame in frames]
+        trackers = [variant.tracker(model, left_handed=left_handed) for variant, model in chosen]
+        joints, some = track_together(trackers, path, shown, needs)
+        tracks |= dict(zip(numbers, some, strict=True))
+    return joints, [tracks[number] for number in range(len(variants))]

@@ -1,6 +1,8 @@
 """Reads a recording as training needs it."""
 
 import numpy as np
+from inhand_tracker.body.convention_map import canonical_joints
+from inhand_tracker.body.convention_table import CANONICAL, TABLE
 from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.wire.conversion import joints_of
 
@@ -16,8 +18,8 @@ from inhand_lab.datasets.wild_labels import without_wild_labels
 def labelled_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence:
     """Read the bodies and labels of a recording or stretch; frames without either hold NaN.
 
-    So do labels that are wild, which a warning names.
-    Raises DatasetError or RecordingError.
+    So do labels that are wild, which a warning names. Bodies are canonical where their convention
+    is tabulated. Raises DatasetError or RecordingError.
     """
     frames = entry_frames(dataset, entry)
     joints = np.full((len(frames), 20, 3), np.nan)
@@ -26,13 +28,14 @@ def labelled_sequence(dataset: Dataset, entry: DatasetEntry) -> LabelledSequence
             joints[index] = joints_of(followed.person)
     times_ns = np.array([frame.time_ns for frame in frames], np.int64)
     truth = without_wild_labels(entry.file, true_track(frames), times_ns)
+    convention = convention_of(frames)
     return LabelledSequence(
         entry.participant,
         entry.handedness == "left",
-        joints,
+        canonical_joints(joints, convention),
         truth.translations,
         truth.rotations,
         frame_rate_of(entry, times_ns),
-        convention_of(frames),
+        CANONICAL if convention in TABLE else convention,
         entry.file,
     )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from inhand_schemas.conventions import SIMULATED
 from inhand_schemas.errors import MessageError
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.estimate import Estimate
@@ -33,18 +34,20 @@ class Observation:
 
     ``joints`` (20, 3) are those of the person followed, None where nobody is seen; ``image`` is
     None where there are no pixels, or none are needed. ``somebody_else`` is true where another
-    person is followed from this frame on.
+    person is followed from this frame on; ``convention`` names whose joints they are.
     """
 
     time_ns: int
     joints: Array | None
     image: Image | None
     somebody_else: bool
+    convention: str | None = None
 
     def show(self, tracker: ObjectTracker) -> Estimate:
         """Show the frame to a tracker, and return its estimate."""
         if self.somebody_else:
             tracker.restart()
+        tracker.convention = self.convention
         return tracker.step(self.joints, self.time_ns, self.image)
 
 
@@ -67,7 +70,7 @@ def observe(
                 image = image_of(current, info, needs)
             number, current = next(pixels, _NO_PIXELS)
         joints = None if followed.person is None else joints_of(followed.person)
-        yield Observation(frame.time_ns, joints, image, followed.somebody_else)
+        yield Observation(frame.time_ns, joints, image, followed.somebody_else, frame.convention)
 
 
 def observe_simulation(
@@ -77,11 +80,12 @@ def observe_simulation(
     info = camera_info(simulation.intrinsics, simulation.frame_rate)
     for frame in range(simulation.frames):
         time_ns = round(frame * 1e9 / simulation.frame_rate)
+        joints = joints_of(person_message(simulation, frame))
         image = None
         if needs:
             seen = simulation.render(frame)
             image = image_of(pixels_message(seen, sequence=frame, time_ns=time_ns), info, needs)
-        yield Observation(time_ns, joints_of(person_message(simulation, frame)), image, False)
+        yield Observation(time_ns, joints, image, False, SIMULATED)
 
 
 def track_together(
@@ -103,7 +107,7 @@ def track_together(
         body = None
         if seen.joints is not None:
             joints[index] = seen.joints
-            body = reader.read(seen.joints)
+            body = reader.read(seen.joints, seen.convention)
         for tracker, track in zip(trackers, tracks, strict=True):
             if seen.somebody_else:
                 tracker.restart()

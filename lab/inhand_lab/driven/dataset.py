@@ -12,8 +12,9 @@ from inhand_tracker.wire.conversion import joints_of
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.followed_people import follow_people
 from inhand_lab.datasets.generation import Take, write_takes
-from inhand_lab.datasets.recorded_frames import convention_of, load_frames
+from inhand_lab.datasets.recorded_frames import convention_of
 from inhand_lab.datasets.recording_times import frame_rate_of
+from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.driven.recorded_body import RecordedBody, drive
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.world.interactions import INTERACTIONS
@@ -134,7 +135,7 @@ def recorded_body(
 
     Raises NobodyInSightError where nobody ever is, and DatasetError where a joint never is.
     """
-    frames = load_frames(dataset.path(entry), entry.object)
+    frames = entry_frames(dataset, entry)
     joints = np.full((len(frames), 20, 3), np.nan)
     states = np.zeros((len(frames), 20), np.uint8)
     confidences = np.zeros((len(frames), 20))
@@ -163,7 +164,7 @@ def recorded_body(
         entry.handedness,
         participant,
         recording,
-        entry.convention or convention_of(frames),
+        convention_of(frames),
     )
 
 

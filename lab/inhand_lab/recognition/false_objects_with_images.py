@@ -13,7 +13,8 @@ from inhand_tracker.recognition.recogniser import LearnedCascade
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry
 from inhand_lab.datasets.observations import Observation, observe, observe_simulation
-from inhand_lab.datasets.recorded_frames import has_images, load_frames
+from inhand_lab.datasets.recorded_frames import has_images
+from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.people.joint_sequence import JointSequence
 from inhand_lab.recognition.cascade_learning import labelled_entries, learn_models
 from inhand_lab.recognition.false_objects import FalseObjectProtocol, FalseObjects
@@ -170,7 +171,7 @@ def _on_never_trained(
 
 def _share_in(cascade: Cascade, dataset: Dataset, entry: DatasetEntry) -> float:
     path = dataset.path(entry)
-    frames = load_frames(path, entry.object)
+    frames = entry_frames(dataset, entry)
     return _recognised_share(cascade, observe(path, frames, NEEDS), len(frames))
 
 

@@ -20,7 +20,8 @@ from inhand_tracker.wire.conversion import Need
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import observe
-from inhand_lab.datasets.recorded_frames import RecordedFrame, load_camera, load_frames
+from inhand_lab.datasets.recorded_frames import RecordedFrame, load_camera
+from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.evaluation.pose_errors import ErrorGauge
 from inhand_lab.recognition.adaptive_comparison import follow_adaptively
 from inhand_lab.recognition.cascade_learning import (
@@ -157,7 +158,7 @@ def _prepare(dataset: Dataset, taught: TaughtCascade, entry: DatasetEntry) -> _T
     """Read a recording; raises DatasetError where recognition cannot be tried on it."""
     if entry.interaction not in taught.recogniser.actions:
         raise DatasetError(f"only {entry.participant} does {entry.interaction}: nobody teaches it")
-    frames = load_frames(dataset.path(entry), entry.object)
+    frames = entry_frames(dataset, entry)
     camera = load_camera(dataset.path(entry))
     if camera is None:
         raise DatasetError(f"{entry.file} does not say how its camera sees: record it again")

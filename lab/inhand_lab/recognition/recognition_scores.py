@@ -75,6 +75,7 @@ def answer_together(
         for recogniser, answer in zip(recognisers, answers, strict=True):
             if seen.somebody_else:
                 recogniser.restart()
+            recogniser.convention = seen.convention
             answer.put(index, recogniser.step(seen.joints, seen.time_ns, seen.image, camera))
     return answers
 

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry
 from inhand_lab.datasets.observations import observe
-from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.training.parameters import DEFAULT_TRAINING
 
 NEEDS = METHODS[DEFAULT_METHOD].needs(METHODS[DEFAULT_METHOD].usual_terms)
@@ -84,7 +84,7 @@ def _look_in(
 ) -> Iterator[dict[str, Support]]:
     """Yield, for each look in a recording, the support of each object that has one."""
     path = dataset.path(entry)
-    frames = load_frames(path, entry.object)
+    frames = entry_frames(dataset, entry)
     steps = DEFAULT_TRAINING.look_frames
     firsts = [int(share * (len(frames) - steps)) for share in DEFAULT_TRAINING.looks_at]
     looked_at = [frames[first + step] for first in firsts for step in range(steps)]
@@ -95,7 +95,7 @@ def _look_in(
     }
     reader = next(iter(trackers.values())).new_reader()
     for index, seen in enumerate(observe(path, frames)):
-        body = None if seen.joints is None else reader.read(seen.joints)
+        body = None if seen.joints is None else reader.read(seen.joints, seen.convention)
         if body is None:
             continue
         image = images.get(seen.time_ns)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_tracker.body.convention_map import canonical_joints
 from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.body.skeleton import (
     body_pose,
@@ -17,7 +18,8 @@ from inhand_tracker.wire.conversion import joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.followed_people import follow_people
-from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.datasets.recorded_frames import convention_of
+from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.people.joint_sequence import JointSequence
 from inhand_lab.training.parameters import DEFAULT_TRAINING
 from inhand_lab.training.recording_checks import check_facing
@@ -41,8 +43,11 @@ class RecordedMovement:
 
 
 def read_joints(dataset: Dataset, entry: DatasetEntry) -> JointSequence:
-    """Read the joints of a recording's person; raises DatasetError or RecordingError."""
-    frames = load_frames(dataset.path(entry), entry.object)
+    """Read the joints of a recording's person; raises DatasetError or RecordingError.
+
+    Bodies are canonical where their convention is tabulated.
+    """
+    frames = entry_frames(dataset, entry)
     joints = np.full((len(frames), 20, 3), np.nan)
     for index, followed in enumerate(follow_people(frames)):
         if followed.person is not None:
@@ -50,6 +55,7 @@ def read_joints(dataset: Dataset, entry: DatasetEntry) -> JointSequence:
     check_facing(entry, joints)
     times_ns = np.array([frame.time_ns for frame in frames], np.int64)
     left_handed = entry.handedness == "left"
+    joints = canonical_joints(joints, convention_of(frames))
     return JointSequence(entry.interaction, entry.participant, left_handed, joints, times_ns)
 
 

@@ -199,12 +199,14 @@ class TrackerService:
         source = self._source(skeletons)
         for person, thing in worth_publishing(objects):
             self._publish(person, thing, source, frame.camera)
+        self._note_convention()
         self._daemon.health.latency(skeletons.time_ns)
 
     def _decoded(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> CameraFrame:
         camera = None if self._info is None else intrinsics_of(self._info)
         image = self._image(pixels)
-        return CameraFrame(skeletons.time_ns, image, camera, self._effort.share)
+        share, convention = self._effort.share, skeletons.convention
+        return CameraFrame(skeletons.time_ns, image, camera, share, convention)
 
     def _image(self, frame: RgbdFrame | None) -> Image | None:
         if frame is None or self._info is None:
@@ -235,6 +237,14 @@ class TrackerService:
             class_probabilities=thing.class_probabilities,
         )
         self._publishers[thing.name].put(message)
+
+    def _note_convention(self) -> None:
+        """Say while skeletons are of another convention than the models, and cannot be mapped."""
+        trouble = self._people.trouble
+        if trouble is None:
+            self._daemon.health.well("convention")
+        else:
+            self._daemon.health.trouble("convention", trouble)
 
     def _note_failure(self, name: str, error: Exception) -> None:
         """Report a failure as a trouble while it lasts."""

@@ -25,6 +25,7 @@ class AtPixel:
     """A tracker of an object whose box is a square around one pixel; it keeps what it saw."""
 
     effort = 1.0
+    learned_as = None
 
     def __init__(self, left: float) -> None:
         self.left = left

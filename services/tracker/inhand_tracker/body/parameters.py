@@ -26,6 +26,21 @@ class BodyParameters:
     learned_poses: int = 1000
     """Number of body poses, about, that the usual proportions come from."""
 
+    # How conventions of skeletons are told from postures and people (convention_map).
+    upright_cosine: float = 0.82
+    """Cosine of the angle, 35 degrees, within which thighs and upper arms hang below the trunk of
+    somebody who stands and does not reach up: other postures say nothing of the trunk's joints."""
+    least_measured: int = 45
+    """Number of the last ``height_frames`` frames from which a measure counts: 1.5 s at 30 Hz."""
+    measured_every: int = 15
+    """Number of frames after which what differs is reckoned anew."""
+    apart_deviations: float = 3.0
+    """Root mean square of what measures differ by, in deviations of people of one convention, above
+    which two bodies are of two conventions. Of recordings of simulated people all are below 2.6,
+    and of UTD-MHAD's half are above 3.9."""
+    patience: int = 150
+    """Number of frames, 5 s at 30 Hz, after which it is said that nobody shows a convention."""
+
     # What a window keeps (window). Priors are learned with lags and memories: with others, train
     # again.
     lags_s: tuple[float, ...] = (0.13, 0.33)

@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from inhand_tracker.body.convention_map import ConventionMap
 from inhand_tracker.body.parameters import DEFAULT_BODY, BodyParameters
 from inhand_tracker.body.skeleton import (
     Bases,
@@ -56,7 +57,8 @@ class BodyReader:
 
     A missing joint keeps its last place in the pelvis basis; before it was ever seen it has that
     of the people who were learned from. Joints that were ``absent`` in training have stand-ins.
-    Left-handed people are mirrored.
+    Left-handed people are mirrored. Joints of another convention than ``convention``, whose the
+    learned bodies are, are mapped to it (``convention_map``).
     """
 
     def __init__(
@@ -65,22 +67,32 @@ class BodyReader:
         *,
         left_handed: bool,
         absent: Collection[int] = (),
+        convention: str | None = None,
         parameters: BodyParameters = DEFAULT_BODY,
     ) -> None:
         step = max(1, len(learned.body_poses) // parameters.learned_poses)
         poses = np.asarray(learned.body_poses[::step], float).reshape(-1, 20, 3)
         self._last_pose = poses.mean(axis=0)
-        self._height = RunningHeight(np.median(part_lengths(poses), axis=0), parameters)
+        proportions = np.median(part_lengths(poses), axis=0)
+        self._height = RunningHeight(proportions, parameters)
+        self._map = ConventionMap(convention, poses, proportions, parameters)
         self._stand_ins = RunningStandIns(absent) if absent else None
         self._left_handed = left_handed
         self._farthest_joint_m = parameters.farthest_joint_m
 
-    def read(self, joints: Array) -> Body | None:
-        """Read joints (20, 3) in the camera frame, missing ones NaN.
+    @property
+    def trouble(self) -> str | None:
+        """What is wrong with the convention of the joints; None where nothing is."""
+        return self._map.trouble
+
+    def read(self, joints: Array, convention: str | None = None) -> Body | None:
+        """Read joints (20, 3) in the camera frame, missing ones NaN, of a source that says it is of
+        a convention, or does not say.
 
         None while the pelvis is not seen or the person's height is unknown.
         """
         joints = without_impossible(joints, self._farthest_joint_m)
+        joints = self._map.apply(joints, convention)
         if self._stand_ins is not None:
             joints = self._stand_ins.put(joints)
         if not has_pelvis(joints):

@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 from inhand_runtime.wording import counted
 
+from inhand_tracker.body.convention_table import shared_convention
 from inhand_tracker.body.skeleton import (
     body_pose,
     mirror_joints,
@@ -134,15 +135,9 @@ def learn(
         translations=poses.translations,
         rotations=poses.rotations,
         absent_joints=absent_joints,
-        convention=_shared_convention(sequences),
+        convention=shared_convention(sequence.convention for sequence in sequences),
         **vars(measures),
     )
-
-
-def _shared_convention(sequences: Sequence[LabelledSequence]) -> str | None:
-    """Name the convention that all sequences have; None where one is not said, or they differ."""
-    names = {sequence.convention for sequence in sequences}
-    return names.pop() if len(names) == 1 else None
 
 
 def _relative_poses(

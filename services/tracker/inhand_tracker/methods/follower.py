@@ -19,7 +19,8 @@ from inhand_tracker.sight.support import Support
 class Follower(ABC):
     """Follows one object of one person, from when they came into view.
 
-    ``effort`` is the share of its usual work that the next estimate may take.
+    ``effort`` is the share of its usual work that the next estimate may take; ``convention`` names
+    whose joints it gets.
     """
 
     def __init__(self, reader: BodyReader) -> None:
@@ -28,6 +29,12 @@ class Follower(ABC):
         self._time_ns = 0
         self._looked = False
         self.effort = 1.0
+        self.convention: str | None = None
+
+    @property
+    def trouble(self) -> str | None:
+        """What is wrong with the convention of the joints; None where nothing is."""
+        return self._reader.trouble
 
     @property
     def support(self) -> Support | None:
@@ -43,7 +50,7 @@ class Follower(ABC):
         """Take a frame in which the object is not looked for."""
 
     def step(self, joints: Array | None, time_ns: int, image: Image | None) -> Estimate:
-        body = None if joints is None else self._reader.read(joints)
+        body = None if joints is None else self._reader.read(joints, self.convention)
         return self.step_body(body, time_ns, image)
 
     def step_body(self, body: Body | None, time_ns: int, image: Image | None) -> Estimate:
@@ -55,7 +62,7 @@ class Follower(ABC):
         return self._estimate
 
     def remember_joints(self, joints: Array, time_ns: int) -> None:
-        body = self._reader.read(joints)
+        body = self._reader.read(joints, self.convention)
         if body is not None:
             self.remember(body, time_ns)
 
@@ -76,6 +83,7 @@ class FollowingTracker(ABC):
         self._mapping = model.mapping
         self._left_handed = left_handed
         self.effort = 1.0
+        self.convention: str | None = None
         self._outline = VisiblePoints(model.viewpoints.directions, model.viewpoints.boundaries)
         self._follower: Follower
 
@@ -94,12 +102,23 @@ class FollowingTracker(ABC):
         predicted; then the object is lost.
         """
         self._follower.effort = self.effort
+        self._follower.convention = self.convention
         return self._follower.step(joints, time_ns, image)
 
     def step_body(self, body: Body | None, time_ns: int, image: Image | None = None) -> Estimate:
         """Take a frame, as ``step``, of a body that a reader of ``new_reader`` has read."""
         self._follower.effort = self.effort
         return self._follower.step_body(body, time_ns, image)
+
+    @property
+    def learned_as(self) -> str | None:
+        """The convention of the bodies that were learned from; None where that was not said."""
+        return self._mapping.convention
+
+    @property
+    def trouble(self) -> str | None:
+        """What is wrong with the convention of the joints; None where nothing is."""
+        return self._follower.trouble
 
     @property
     def support(self) -> Support | None:
@@ -112,11 +131,14 @@ class FollowingTracker(ABC):
 
     def remember_joints(self, joints: Array, time_ns: int) -> None:
         """Take a frame, as ``remember``, of joints (20, 3) in the camera frame."""
+        self._follower.convention = self.convention
         self._follower.remember_joints(joints, time_ns)
 
     def estimate_single_frame(self, joints: Array, image: Image | None = None) -> Estimate:
         """Estimate the pose in a frame by itself; what is tracked is neither used nor changed."""
-        return self._start(alone=True).step(joints, 1, image)
+        follower = self._start(alone=True)
+        follower.convention = self.convention
+        return follower.step(joints, 1, image)
 
     def outline(self, estimate: Estimate, camera: Intrinsics) -> Array | None:
         """Pixels (B, 2) of the boundary of the object at an estimate; None for a lost one."""
@@ -128,5 +150,8 @@ class FollowingTracker(ABC):
     def new_reader(self) -> BodyReader:
         """A reader of bodies for trackers of this model and handedness."""
         return BodyReader(
-            self._mapping, left_handed=self._left_handed, absent=self._mapping.absent_joints
+            self._mapping,
+            left_handed=self._left_handed,
+            absent=self._mapping.absent_joints,
+            convention=self._mapping.convention,
         )

@@ -14,10 +14,20 @@ class ObjectTracker(Protocol):
     """Follows one object of one person through the frames of one camera.
 
     ``effort``, above 0 and up to 1, is the share of its usual work that a step may take: a method
-    that can do with less searches less, the others ignore it.
+    that can do with less searches less, the others ignore it. ``convention`` names whose joints
+    the next frames have, None where that is not said.
     """
 
     effort: float
+    convention: str | None
+
+    @property
+    def learned_as(self) -> str | None:
+        """The convention of the bodies that were learned from; None where that was not said."""
+
+    @property
+    def trouble(self) -> str | None:
+        """What is wrong with the convention of the joints; None where nothing is."""
 
     @property
     def support(self) -> Support | None:

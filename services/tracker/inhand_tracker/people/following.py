@@ -81,6 +81,12 @@ class PeopleWatched:
             for number, person in chosen.items()
         }
 
+    @property
+    def trouble(self) -> str | None:
+        """What is wrong with the convention of people's joints; None where nothing is."""
+        troubles = (watcher.trouble for watcher in self._watchers.values())
+        return next((trouble for trouble in troubles if trouble is not None), None)
+
     def remember(self, people: Sequence[Person], time_ns: int, on_failure: OnFailure) -> None:
         """Take a frame that is skipped: who is who, and what bodies did, counts later."""
         for number, person in self._choose(people, time_ns).items():

@@ -20,13 +20,15 @@ OnFailure = Callable[[str, Exception], None]
 class CameraFrame:
     """A frame of a camera without the people in it: when, the image and the camera, if known.
 
-    ``effort``, above 0 and up to 1, is the share of the trackers' usual work that it is worth.
+    ``effort``, above 0 and up to 1, is the share of the trackers' usual work that it is worth;
+    ``convention`` names whose joints the people in it have, None where that is not said.
     """
 
     time_ns: int
     image: Image | None = None
     camera: Intrinsics | None = None
     effort: float = 1.0
+    convention: str | None = None
 
 
 @dataclass(frozen=True)
@@ -48,6 +50,11 @@ class Watcher(ABC):
     def __init__(self, names: Sequence[str], *, needs_hips: bool = True) -> None:
         self.names = tuple(names)
         self.needs_hips = needs_hips
+
+    @property
+    @abstractmethod
+    def trouble(self) -> str | None:
+        """What is wrong with the convention of the person's joints; None where nothing is."""
 
     @abstractmethod
     def restart(self) -> None:
@@ -74,6 +81,11 @@ class GivenObjects(Watcher):
     def __init__(self, trackers: Mapping[str, ObjectTracker], *, needs_hips: bool = True) -> None:
         super().__init__(tuple(trackers), needs_hips=needs_hips)
         self._trackers = trackers
+
+    @property
+    def trouble(self) -> str | None:
+        troubles = (tracker.trouble for tracker in self._trackers.values())
+        return next((trouble for trouble in troubles if trouble is not None), None)
 
     def restart(self) -> None:
         for tracker in self._trackers.values():
@@ -105,6 +117,7 @@ def _track(
     name: str, tracker: ObjectTracker, joints: Array | None, frame: CameraFrame
 ) -> WatchedObject:
     tracker.effort = frame.effort
+    tracker.convention = frame.convention
     estimate = tracker.step(joints, frame.time_ns, frame.image)
     outline = None if frame.camera is None else tracker.outline(estimate, frame.camera)
     return WatchedObject(name, estimate, outline)
@@ -119,6 +132,10 @@ class RecognisedObjects(Watcher):
         self._cascade = cascade
         self._objects = tuple(objects)
 
+    @property
+    def trouble(self) -> str | None:
+        return self._cascade.trouble
+
     def restart(self) -> None:
         self._cascade.restart()
 
@@ -126,6 +143,7 @@ class RecognisedObjects(Watcher):
         self, joints: Array | None, frame: CameraFrame, on_failure: OnFailure
     ) -> list[WatchedObject]:
         self._cascade.effort = frame.effort
+        self._cascade.convention = frame.convention
         try:
             recognition = self._cascade.step(joints, frame.time_ns, frame.image, frame.camera)
             outline = None

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from inhand_tracker.body.convention_table import shared_convention
 from inhand_tracker.body.reader import Body
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
@@ -37,7 +38,12 @@ class Cascade(ObjectRecogniser):
         left_handed: bool = False,
         parameters: RecognitionParameters = DEFAULT_RECOGNITION,
     ) -> None:
-        super().__init__(recogniser, len(trackers), left_handed=left_handed)
+        super().__init__(
+            recogniser,
+            len(trackers),
+            left_handed=left_handed,
+            learned_as=shared_convention(tracker.learned_as for tracker in trackers),
+        )
         self._parameters = parameters
         self._movement = MovementRecogniser(recogniser.movements, recogniser.temper, parameters)
         self._looks = Looks(recogniser.presence, parameters)
@@ -58,7 +64,7 @@ class Cascade(ObjectRecogniser):
 
     def remember(self, joints: Array, time_ns: int) -> None:
         """Take a frame in which nothing is looked for: joints (20, 3) in the camera frame."""
-        body = self._reader.read(joints)
+        body = self._reader.read(joints, self.convention)
         if body is not None:
             self._movement.remember(time_ns, body)
             self._remember({}, body, time_ns)

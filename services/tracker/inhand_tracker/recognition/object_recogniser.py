@@ -14,18 +14,30 @@ from inhand_tracker.recognition.recognition import Recognition
 class ObjectRecogniser(ABC):
     """Recognises, frame by frame, which of K objects one person uses, and where it is.
 
-    ``learned`` is what was learned from people. A recogniser calls ``restart`` when it has made
-    itself.
+    ``learned`` is what was learned from people, whose joints are of the convention ``learned_as``.
+    ``convention`` names whose joints the next frames have, None where that is not said. A
+    recogniser calls ``restart`` when it has made itself.
     """
 
-    def __init__(self, learned: HasBodyPoses, objects: int, *, left_handed: bool) -> None:
+    def __init__(
+        self,
+        learned: HasBodyPoses,
+        objects: int,
+        *,
+        left_handed: bool,
+        learned_as: str | None = None,
+    ) -> None:
+        self.convention: str | None = None
+        self._learned_as = learned_as
         self._learned = learned
         self._objects = objects
         self._left_handed = left_handed
 
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""
-        self._reader = BodyReader(self._learned, left_handed=self._left_handed)
+        self._reader = BodyReader(
+            self._learned, left_handed=self._left_handed, convention=self._learned_as
+        )
         self._last = Recognition(np.zeros(self._objects))
 
     def step(
@@ -39,12 +51,17 @@ class ObjectRecogniser(ABC):
 
         Joints are None while nobody is seen. ``camera`` is for the box where there is no image.
         """
-        body = None if joints is None else self._reader.read(joints)
+        body = None if joints is None else self._reader.read(joints, self.convention)
         if body is None:
             return self._without_body(time_ns)
         camera = camera if image is None else image.camera
         self._last = self._recognise(body, time_ns, image, camera)
         return self._last
+
+    @property
+    def trouble(self) -> str | None:
+        """What is wrong with the convention of the joints; None where nothing is."""
+        return self._reader.trouble
 
     @abstractmethod
     def _recognise(

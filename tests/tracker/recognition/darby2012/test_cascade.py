@@ -38,6 +38,7 @@ def model_of(joints: np.ndarray, place: np.ndarray) -> SimpleNamespace:
     translations, turns = bases.from_camera(np.tile(place, (len(PARTS), 1)), turned)
     return SimpleNamespace(
         mapping=SimpleNamespace(
+            convention=None,
             body_poses=pose_of(joints)[None],
             translations=translations[None] / height_of(joints),
             rotations=turns[None],

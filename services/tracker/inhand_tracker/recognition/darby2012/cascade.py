@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from inhand_tracker.body.convention_table import shared_convention
 from inhand_tracker.body.reader import Body
 from inhand_tracker.body.skeleton import Bases, mirror_pose
 from inhand_tracker.body.window import continues
@@ -51,7 +52,12 @@ class Cascade2012(ObjectRecogniser):
         seed: int = 0,
         parameters: Darby2012Parameters = DEFAULT_DARBY2012,
     ) -> None:
-        super().__init__(recogniser, len(models), left_handed=left_handed)
+        super().__init__(
+            recogniser,
+            len(models),
+            left_handed=left_handed,
+            learned_as=shared_convention(model.mapping.convention for model in models),
+        )
         self._svm = recogniser.svm
         self._models = models
         self._poses = [TrainingPoses(m.mapping.body_poses.astype(np.float32)) for m in models]
