@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from inhand_lab.datasets.dataset import load_dataset
-from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
+from inhand_lab.evaluation.folds import leave_out, train_on_one_test_on_other
 from inhand_lab.evaluation.protocol import Protocol, Terms, Trial, evaluate
 from inhand_lab.evaluation.summary import summarise, terms_name, with_terms, worth
 from inhand_lab.report.report_folder import prepare_report_folder, write_report
@@ -18,6 +18,7 @@ from inhand_tracker.methods.darby2014.variants import TABLE_1
 from inhand_tracker.methods.registry import ALL_TERMS, FUSION, METHODS, MethodName
 from rich.console import Console
 
+from inhand.looking import positive_count
 from inhand.progress import add_progress_option, progress_bar
 from inhand.results import write_json
 
@@ -25,7 +26,16 @@ from inhand.results import write_json
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's arguments."""
     parser.add_argument("dataset", type=Path, metavar="DATASET", help="learn from it")
-    parser.add_argument("--test-on", type=Path, metavar="DATASET", help="test on another one")
+    tested = parser.add_mutually_exclusive_group()
+    tested.add_argument("--test-on", type=Path, metavar="DATASET", help="test on another one")
+    tested.add_argument(
+        "--leave-out",
+        type=positive_count,
+        default=1,
+        metavar="N",
+        help="test on any N people (recordings, of one person), taught by the others, every choice "
+        "(default: 1)",
+    )
     parser.add_argument(
         "--methods",
         default=",".join((*TABLE_1, FUSION)),
@@ -86,7 +96,7 @@ def _protocol(arguments: argparse.Namespace) -> Protocol:
     trained = load_dataset(arguments.dataset)
     tested = trained if arguments.test_on is None else load_dataset(arguments.test_on)
     folds = (
-        leave_one_out(trained)
+        leave_out(trained, arguments.leave_out)
         if arguments.test_on is None
         else train_on_one_test_on_other(trained, tested)
     )

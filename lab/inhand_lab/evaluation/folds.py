@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.stretches import RecordingStretch, stretches_of
@@ -21,25 +22,38 @@ class Fold:
 
 
 def leave_one_out(dataset: Dataset) -> list[Fold]:
-    """Leave out one participant a fold, or one recording where there is one participant only.
+    """Leave out one participant a fold, as ``leave_out`` does; raises DatasetError."""
+    return leave_out(dataset, 1)
 
-    Of a single recording one stretch is left out. Where one recording is left to learn from, it is
-    cut into stretches. Raises DatasetError where it is too short.
+
+def leave_out(dataset: Dataset, count: int) -> list[Fold]:
+    """Leave out every choice of ``count`` participants, or recordings of a single participant, a
+    fold each.
+
+    Of a single recording stretches are left out. Where one recording is left to learn from, it is
+    cut into stretches. Raises DatasetError where it is too short, or nobody would be left.
     """
     folds = []
     for interaction in dataset.interactions():
         entries = _labelled(dataset, interaction)
         if len(entries) == 1:
-            entries = stretches_of(dataset, entries[0], FEWEST_LEARNED + 1)
+            entries = stretches_of(dataset, entries[0], FEWEST_LEARNED + count)
         participants = sorted({entry.participant for entry in entries})
         groups = (
             [[e for e in entries if e.participant == participant] for participant in participants]
             if len(participants) > 1
             else [[entry] for entry in entries]
         )
-        for group in groups:
-            rest = tuple(entry for entry in entries if entry not in group)
-            folds.append(Fold(interaction, tuple(group), _enough(dataset, rest)))
+        if 0 < len(groups) <= count:
+            who = "participants" if len(participants) > 1 else "recordings"
+            raise DatasetError(
+                f"{dataset.folder}: {interaction} has {len(groups)} {who}, and nothing is left to "
+                f"learn from without {count} of them: leave out fewer"
+            )
+        for chosen in combinations(groups, count):
+            tested = tuple(entry for group in chosen for entry in group)
+            rest = tuple(entry for entry in entries if entry not in tested)
+            folds.append(Fold(interaction, tested, _enough(dataset, rest)))
     return _checked(folds, dataset)
 
 

@@ -2,7 +2,7 @@
 
 A participant's error is the mean over its recordings and seeds; a cell is the mean and the standard
 deviation over participants (over recordings, where there is one participant); a method's figure is
-the mean over interactions.
+the mean over interactions, of the worst recording the worst of all.
 """
 
 from collections import defaultdict
@@ -17,6 +17,8 @@ from inhand_lab.evaluation.published import REFERENCE_METHOD, VERTEX_ERROR_CM
 from inhand_lab.evaluation.scoring import Score
 
 Figures = dict[str, float | None]
+WORST = "worst_recording_cm"
+"""The figure that is the largest vertex error of a recording in any fold."""
 
 
 def summarise(trials: Sequence[Trial]) -> dict[str, Any]:
@@ -28,7 +30,7 @@ def summarise(trials: Sequence[Trial]) -> dict[str, Any]:
             interaction: _cell([t for t in of_method if t.interaction == interaction])
             for interaction in _distinct(trial.interaction for trial in of_method)
         }
-        means = {key: _mean_of_given(cell[key] for cell in cells.values()) for key in _FIGURES}
+        means = {key: _over_interactions(key, cells.values()) for key in _FIGURES}
         summary[method] = {**means, "paper_cm": VERTEX_ERROR_CM.get(method), "interactions": cells}
     reference = summary.get(REFERENCE_METHOD)
     for figures in summary.values():
@@ -60,6 +62,14 @@ def worth(trials: Sequence[Trial], terms: Terms, without: Terms) -> dict[str, An
 def terms_name(terms: Terms) -> str:
     """Return terms as people write them: ``own``, ``edges``, ``edges+depth``, or ``none``."""
     return terms if terms == "own" else "+".join(terms) or "none"
+
+
+def _over_interactions(key: str, cells: Iterable[Figures]) -> float | None:
+    """Return the mean of a figure, and of the worst recording's error the worst."""
+    given = [value for cell in cells if (value := cell[key]) is not None]
+    if not given:
+        return None
+    return max(given) if key == WORST else _mean(given)
 
 
 def _cell(trials: Sequence[Trial]) -> Figures:
@@ -95,6 +105,7 @@ def _mean_recovery(
 _FIGURES: dict[str, Callable[[Sequence[Trial]], float | None]] = {
     "vertex_error_cm": lambda trials: _mean(_errors_cm(trials)),
     "sd": lambda trials: float(np.std(_errors_cm(trials))),
+    WORST: lambda trials: max(100.0 * trial.score.vertex_error_m for trial in trials),
     "rotation_deg": _mean_of(lambda score: float(np.degrees(score.rotation_rad))),
     "translation_cm": _mean_of(lambda score: 100.0 * score.translation_m),
     "within_5cm_5deg_percent": _mean_of(lambda score: 100.0 * score.close_share),

@@ -12,6 +12,7 @@ from inhand_lab.evaluation.published import (
 from inhand_lab.report.grid import NOTHING, Grid
 
 MEASURES = {
+    "worst_recording_cm": "worst recording, cm",
     "rotation_deg": "rotation, °",
     "translation_cm": "translation, cm",
     "within_5cm_5deg_percent": "within 5 cm 5°, %",

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.stretches import RecordingStretch
-from inhand_lab.evaluation.folds import leave_one_out, train_on_one_test_on_other
+from inhand_lab.evaluation.folds import leave_one_out, leave_out, train_on_one_test_on_other
 from waving import write_dataset
 
 
@@ -34,6 +34,20 @@ def test_of_a_single_participant_every_recording_is_left_out_once() -> None:
     folds = leave_one_out(dataset(*(entry(f"swing{n}", "a") for n in range(5))))
     assert [fold.tested[0].file for fold in folds] == [f"swing{n}" for n in range(5)]
     assert all(len(fold.trained) == 4 for fold in folds)
+
+
+def test_every_two_of_five_recordings_are_left_out_together_once() -> None:
+    swings = [f"swing{n}" for n in range(5)]
+    folds = leave_out(dataset(*(entry(name, "a") for name in swings)), 2)
+    assert len(folds) == 10
+    assert len({tuple(e.file for e in fold.tested) for fold in folds}) == 10
+    for fold in folds:
+        assert sorted(e.file for e in (*fold.tested, *fold.trained)) == swings
+
+
+def test_leaving_everybody_out_is_refused_in_one_line() -> None:
+    with pytest.raises(DatasetError, match="wave has 2 participants, and nothing is left to learn"):
+        leave_out(dataset(entry("a", "a"), entry("b", "b")), 2)
 
 
 def test_interactions_are_kept_apart_and_unlabelled_recordings_left_out() -> None:

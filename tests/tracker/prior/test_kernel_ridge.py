@@ -1,11 +1,15 @@
 """Kernel ridge regression against dense solutions of what its sources define."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inhand_tracker.prior import kernel_ridge
 from inhand_tracker.prior.kernel_ridge import fit, gaussian, squared_distances
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR_LEARNING
 from scipy.spatial.distance import cdist
+
+ONE_RIDGE = replace(DEFAULT_PRIOR_LEARNING, ridges=(0.1,))
 
 
 def problem(samples: int = 60, groups: int = 4) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -22,7 +26,7 @@ def dense(
 ) -> tuple[np.ndarray, float]:
     """Weights and kernel width of the subset of regressors, by its normal equations in double
     precision: (K_nm' K_nm + ridge (K_mm + jitter)) a = K_nm' y."""
-    ridge, jitter = DEFAULT_PRIOR_LEARNING.ridge, DEFAULT_PRIOR_LEARNING.jitter
+    (ridge,), jitter = ONE_RIDGE.ridges, ONE_RIDGE.jitter
     between = cdist(landmarks, landmarks, "sqeuclidean")
     width = DEFAULT_PRIOR_LEARNING.kernel_width**2 * np.median(between)
     small = np.exp(-between / (2 * width)) + jitter * np.eye(len(landmarks))
@@ -34,7 +38,7 @@ def dense(
 def test_it_is_the_dense_solution() -> None:
     inputs, targets, groups = problem()
     rows = np.arange(0, 60, 3)
-    learned, _ = fit(inputs, targets, groups, rows)
+    learned, _ = fit(inputs, targets, groups, rows, ONE_RIDGE)
     offset = targets.astype(float).mean(axis=0)
     weights, width = dense(inputs.astype(float), targets.astype(float), inputs[rows], offset)
     assert learned.width == pytest.approx(width)
@@ -46,7 +50,7 @@ def test_it_is_the_dense_solution() -> None:
 def test_held_out_residuals_are_those_of_a_fit_without_the_group() -> None:
     inputs, targets, groups = problem()
     rows = np.arange(0, 60, 3)
-    _, residuals = fit(inputs, targets, groups, rows)
+    _, residuals = fit(inputs, targets, groups, rows, ONE_RIDGE)
     offset = targets.astype(float).mean(axis=0)
     for group in range(4):
         kept = groups != group
@@ -59,12 +63,29 @@ def test_held_out_residuals_are_those_of_a_fit_without_the_group() -> None:
         np.testing.assert_allclose(residuals[held_out], expected, atol=1e-5)
 
 
+@pytest.mark.parametrize("noise", [0.001, 3.0])
+def test_that_ridge_is_taken_which_errs_least_on_groups_that_were_held_out(noise: float) -> None:
+    inputs, targets, groups = problem()
+    random = np.random.default_rng(7)
+    targets += (noise * random.normal(size=targets.shape)).astype(np.float32)
+    rows = np.arange(0, 60, 3)
+    ridges = (10.0, 0.01)
+    both, left = fit(inputs, targets, groups, rows, replace(ONE_RIDGE, ridges=ridges))
+    alone = [
+        fit(inputs, targets, groups, rows, replace(ONE_RIDGE, ridges=(ridge,))) for ridge in ridges
+    ]
+    best = int(np.argmin([np.square(residuals).sum() for _, residuals in alone]))
+    assert best == (noise < 1.0)
+    np.testing.assert_allclose(left, alone[best][1])
+    np.testing.assert_allclose(both.coefficients, alone[best][0].coefficients)
+
+
 def test_chunks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     inputs, targets, groups = problem()
     rows = np.arange(0, 60, 3)
-    whole, residuals = fit(inputs, targets, groups, rows)
+    whole, residuals = fit(inputs, targets, groups, rows, ONE_RIDGE)
     monkeypatch.setattr(kernel_ridge, "CHUNK", 7)
-    pieces, same = fit(inputs, targets, groups, rows)
+    pieces, same = fit(inputs, targets, groups, rows, ONE_RIDGE)
     np.testing.assert_allclose(pieces.coefficients, whole.coefficients, atol=1e-7)
     np.testing.assert_allclose(same, residuals, atol=1e-7)
 

@@ -76,7 +76,8 @@ def fit(
 ) -> tuple[KernelRidge, Array]:
     """Learn from inputs (N, D) and targets (N, M); also the landmarks' held-out residuals (L, M).
 
-    Samples of one of ``groups`` (N,) are held out together: a landmark's residual, target less
+    Of the ridges that is taken which leaves the least of these, the first where nothing is held
+    out. Samples of one of ``groups`` (N,) are held out together: a landmark's residual, target less
     prediction, is that of a regression without any sample of its group. Needs the extra ``lab``.
     """
     from scipy.linalg import solve_triangular
@@ -95,14 +96,18 @@ def fit(
     sums = [_sums(features, targets, offset, np.flatnonzero(groups == name)) for name in names]
     scatter = np.sum([group for group, _ in sums], axis=0)
     cross = np.sum([group for _, group in sums], axis=0)
-    residuals = np.empty((len(landmarks), targets.shape[1]))
+    residuals = np.empty((len(parameters.ridges), len(landmarks), targets.shape[1]))
     for name, (group_scatter, group_cross) in zip(names, sums, strict=True):
         held_out = np.flatnonzero(groups[landmark_rows] == name)
-        weights = _solve(scatter - group_scatter, cross - group_cross, parameters.ridge)
         rows = landmark_rows[held_out]
-        residuals[held_out] = targets[rows] - offset - features(rows) @ weights
-    coefficients = solve_triangular(root.T, _solve(scatter, cross, parameters.ridge), lower=False)
-    return KernelRidge(landmarks, width, np.asarray(coefficients), offset), residuals
+        away, described = targets[rows] - offset, features(rows)
+        for tried, ridge in enumerate(parameters.ridges):
+            weights = _solve(scatter - group_scatter, cross - group_cross, ridge)
+            residuals[tried, held_out] = away - described @ weights
+    best = int(np.square(residuals).sum(axis=(1, 2)).argmin())
+    weights = _solve(scatter, cross, parameters.ridges[best])
+    coefficients = solve_triangular(root.T, weights, lower=False)
+    return KernelRidge(landmarks, width, np.asarray(coefficients), offset), residuals[best]
 
 
 def _sums(

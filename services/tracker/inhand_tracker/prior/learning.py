@@ -8,7 +8,7 @@ from inhand_tracker.body.window import VIEWS
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
 from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.prior import combination
-from inhand_tracker.prior.calibration import calibration_of, widened, widening_of
+from inhand_tracker.prior.calibration import calibration_of, widening_of
 from inhand_tracker.prior.hold_learning import learn_hold
 from inhand_tracker.prior.kernel_ridge import KernelRidge, fit
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR_LEARNING, PriorLearningParameters
@@ -39,8 +39,8 @@ def learn_prior(
     kernel[landmarks.groups[:, None] == landmarks.groups] = 0.0
     local, nearness = combination.locality(kernel)
     errors = _errors(landmarks, residuals, local, products, spread)
+    covariances = combination.covariance_at(local, nearness, errors)
     units = min(units_of(sequences), parameters.groups)
-    covariances = widened(combination.covariance_at(local, nearness, errors), widening_of(units))
     return Prior(
         centre,
         spread,
