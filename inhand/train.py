@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from inhand_lab.datasets.dataset import Dataset, load_dataset
+from inhand_lab.datasets.joint_names import named_joints
 from inhand_lab.datasets.stretches import stretches_note
-from inhand_lab.training.absent_joints import named_joints
 from inhand_lab.training.model_summary import summarise_model
 from inhand_lab.training.model_training import entries_for, model_stages, train
 from inhand_lab.training.presence_training import learn_presence

@@ -12,6 +12,7 @@ from inhand_tracker.wire.conversion import joints_of
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.followed_people import follow_people
 from inhand_lab.datasets.generation import Take, write_takes
+from inhand_lab.datasets.joint_names import named_joints
 from inhand_lab.datasets.recorded_frames import convention_of
 from inhand_lab.datasets.recording_times import frame_rate_of
 from inhand_lab.datasets.stretches import entry_frames
@@ -33,11 +34,13 @@ FITTING = {
 LONGEST_GAP_S = 0.5
 """Time out of sight for which a body is made up, seconds; a longer gap ends the stretch."""
 
+_NEEDED = "a body with all twenty joints is needed to hold things"
+
 log = logging.getLogger(__name__)
 
 
 class NobodyInSightError(DatasetError):
-    """A recording shows nobody in any frame."""
+    """A recording shows nobody in any frame, or nobody whole."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +136,7 @@ def recorded_body(
 ) -> RecordedBody:
     """Return the longest stretch of a recording in which somebody is in sight.
 
-    Raises NobodyInSightError where nobody ever is, and DatasetError where a joint never is.
+    Raises NobodyInSightError where nobody, or some joint, never is.
     """
     frames = entry_frames(dataset, entry)
     joints = np.full((len(frames), 20, 3), np.nan)
@@ -150,12 +153,11 @@ def recorded_body(
     confidences[~seen] = 0.0
     frame_rate = frame_rate_of(entry, np.array([frame.time_ns for frame in frames], np.int64))
     if not seen.any():
-        raise NobodyInSightError(
-            f"{entry.file} shows nobody: a body with all twenty joints is needed to hold things"
-        )
+        raise NobodyInSightError(f"{entry.file} shows nobody: {_NEEDED}")
     stretch = _in_sight(seen, frame_rate)
-    if not seen[stretch].any(axis=0).all():
-        raise DatasetError(f"{entry.file}: a body with all twenty joints is needed to hold things")
+    unseen = np.flatnonzero(~seen[stretch].any(axis=0)).tolist()
+    if unseen:
+        raise NobodyInSightError(f"{entry.file} never shows {named_joints(unseen)}: {_NEEDED}")
     return RecordedBody(
         joints[stretch],
         states[stretch],

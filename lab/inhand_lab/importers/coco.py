@@ -102,7 +102,10 @@ COCO = JointTable(
     {
         Joint.HIP_CENTER: (_trunk_line(DEFAULT_LIFTING.hip_centre),),
         Joint.SPINE: (_trunk_line(DEFAULT_LIFTING.spine),),
-        Joint.SHOULDER_CENTER: (_trunk_line(DEFAULT_LIFTING.shoulder_centre),),
+        Joint.SHOULDER_CENTER: (
+            _trunk_line(DEFAULT_LIFTING.shoulder_centre),
+            JointMean({"left_shoulder": 0.5, "right_shoulder": 0.5}, inferred=True),
+        ),
         Joint.HEAD: _head(),
         **_side("left", "right"),
         **_side("right", "left"),

@@ -1,8 +1,9 @@
-"""Reads motion archives (.npz): a measured body and a measured object in some world frame.
+"""Reads motion archives (.npz): a measured body, and a measured object, in some world frame.
 
-``joints`` (T, 20, 3) in metres, ``joint_names`` (20,), ``object_pose`` (T, 7) as x y z qw qx qy
-qz, ``vertices`` (M, 3) marked points in the object's frame, ``fps``, ``interaction``, ``object``,
-``participant``, ``handedness``. What was not measured is NaN or zero.
+``joints`` (T, J, 3) in metres of the Kinect's joints, or those that were measured, ``joint_names``
+(J,), ``object_pose`` (T, 7) as x y z qw qx qy qz, ``vertices`` (M, 3) marked points in the object's
+frame, ``fps``, ``interaction``, ``object``, ``participant``, ``handedness``. What was not measured
+is NaN or zero. An archive of a body alone has no ``object_pose``, ``vertices`` and ``object``.
 """
 
 import logging
@@ -12,7 +13,7 @@ from typing import Any, Literal
 
 import numpy as np
 from inhand_schemas.joints import JOINT_NAMES
-from inhand_tracker.body.skeleton import PARTS, has_pelvis, part_lengths
+from inhand_tracker.body.skeleton import PARTS, part_lengths
 from inhand_tracker.geometry.arrays import Array
 from numpy.typing import NDArray
 
@@ -25,13 +26,17 @@ from inhand_lab.importers.sources import NobodyError, without_zeros
 
 log = logging.getLogger(__name__)
 
+_OF_OBJECTS = ("object_pose", "vertices", "object")
+"""Arrays that an archive of a body alone has none of."""
+
 
 @dataclass(frozen=True)
 class Motion:
     """One archive, in its world frame.
 
     ``joints`` (T, 20, 3) are in the order of ``JOINT_NAMES``; ``translations`` (T, 3) and
-    ``orientations`` (T, 4) are the object's.
+    ``orientations`` (T, 4) are the object's. Of a body alone these are NaN, there is no
+    ``object``, and ``marked_vertices`` (M, 3) are none.
     """
 
     path: Path
@@ -41,7 +46,7 @@ class Motion:
     marked_vertices: Array
     recorded_rate: float
     interaction: str
-    object: str
+    object: str | None
     participant: str
     handedness: Literal["left", "right"]
 
@@ -50,7 +55,10 @@ def read_motion(path: Path) -> Motion:
     """Read one archive, and warn of a body that cannot be; raises DatasetError."""
     values = _read_archive(path)
     joints = _joints(path, values)
-    poses = _object_poses(path, values, len(joints))
+    alone = not any(name in values for name in _OF_OBJECTS)
+    poses = np.full((len(joints), 7), np.nan)
+    if not alone:
+        poses = _object_poses(path, values, len(joints))
     recorded_rate = float(_array(path, values, "fps", "fiu", ()))
     if not 0.0 < recorded_rate < np.inf:
         raise DatasetError(f"{path}: fps is {recorded_rate:g}, and must be above 0")
@@ -59,24 +67,27 @@ def read_motion(path: Path) -> Motion:
         joints,
         poses[:, :3],
         poses[:, 3:],
-        _marked_vertices(path, values),
+        np.empty((0, 3)) if alone else _marked_vertices(path, values),
         recorded_rate,
         str(_array(path, values, "interaction", "U", ())),
-        object_name(str(_array(path, values, "object", "U", ()))),
+        None if alone else object_name(str(_array(path, values, "object", "U", ()))),
         str(_array(path, values, "participant", "U", ())),
         _handedness(path, str(_array(path, values, "handedness", "U", ()))),
     )
 
 
 def _joints(path: Path, values: dict[str, Any]) -> Array:
-    names = _array(path, values, "joint_names", "U", (20,)).tolist()
-    if sorted(names) != sorted(JOINT_NAMES):
-        raise DatasetError(f"{path}: joint_names are not the 20 joints of a Kinect")
-    measured = _array(path, values, "joints", "f", (None, 20, 3)).astype(np.float64)
-    ordered = measured[:, [names.index(name) for name in JOINT_NAMES]]
+    names = _array(path, values, "joint_names", "U", (None,)).tolist()
+    if len(set(names)) < len(names) or not set(names) <= set(JOINT_NAMES):
+        raise DatasetError(
+            f"{path}: joint_names are not the 20 joints of a Kinect, or some of them"
+        )
+    measured = _array(path, values, "joints", "f", (None, len(names), 3)).astype(np.float64)
+    ordered = np.full((len(measured), len(JOINT_NAMES), 3), np.nan)
+    ordered[:, [JOINT_NAMES.index(name) for name in names]] = measured
     joints = without_zeros(np.where(np.isfinite(ordered), ordered, np.nan))
-    if not any(map(has_pelvis, joints)):
-        raise NobodyError(f"{path} has no frame with a body: its hips and spine are never seen")
+    if not np.isfinite(joints).all(axis=2).any():
+        raise NobodyError(f"{path} has no frame with a body: no joint is ever seen")
     _warn_of_odd_parts(path, joints)
     return joints
 

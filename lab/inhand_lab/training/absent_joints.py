@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 
 import numpy as np
-from inhand_schemas.joints import JOINT_NAMES
 from inhand_tracker.body.stand_ins import REPLACEABLE
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.mapping.learning import LabelledSequence
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
+from inhand_lab.datasets.joint_names import named_joints
 from inhand_lab.training.parameters import DEFAULT_TRAINING
 
 
@@ -40,8 +40,3 @@ def absent_joints(
                 "as missing in all"
             )
     return by_recording[0]
-
-
-def named_joints(joints: Sequence[int]) -> str:
-    """Name joints, as ``KneeLeft, AnkleLeft``."""
-    return ", ".join(JOINT_NAMES[joint] for joint in joints)

@@ -28,6 +28,7 @@ from inhand_lab.importers.zed import ZED, import_zed
 from inhand_recorder.verification import examine_recording
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import CameraInfo, Skeletons
+from inhand_tracker.body.stand_ins import REPLACEABLE
 
 from inhand.__main__ import main
 
@@ -56,6 +57,7 @@ FORMATS: dict[str, tuple[Import, Callable[[Path, int], Path]]] = {
 HUMAN36M = [11, 12, 14, 16, 11, 13, 15, 6, 5, 0, 1, 5, 7, 9, 6, 8, 10]
 
 
+LEGS = ("hip", "knee", "ankle")
 WRISTS = {
     name: table.joints.index(joint)
     for name, table, joint in (
@@ -243,6 +245,17 @@ class TestPlausibility:
         ]
         with pytest.raises(DatasetError, match="left and right joints have each other's names"):
             import_azure_kinect([save_json(tmp_path / "a.json", text)], tmp_path / "out")
+
+
+def test_people_at_a_table_without_hips_are_upper_bodies(tmp_path: Path) -> None:
+    values = coco_values()
+    hidden = [COCO.joints.index(f"{side}_{name}") for side in ("left", "right") for name in LEGS]
+    values["keypoints"][:, hidden] = np.nan
+    (*_, last) = skeletons_of(import_coco([save_npz(tmp_path / "a.npz", values)], tmp_path / "out"))
+    (person,) = last.people
+    missing = {joint for joint in Joint if person.states[joint] == "missing"}
+    assert missing <= set(REPLACEABLE)
+    assert {Joint.HIP_CENTER, Joint.KNEE_LEFT, Joint.FOOT_RIGHT} <= missing
 
 
 class TestTimes:

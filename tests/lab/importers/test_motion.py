@@ -21,7 +21,7 @@ from inhand_lab.datasets.recorded_frames import load_camera, load_frames
 from inhand_lab.importers.motion import import_motion
 from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_schemas.messages import CameraInfo
-from inhand_tracker.body.skeleton import pelvis_basis
+from inhand_tracker.body.skeleton import PELVIS_JOINTS, pelvis_basis
 from inhand_tracker.geometry.rotations import to_matrix
 from real_data import DATA, needs_real_data
 from scipy.spatial.transform import Rotation
@@ -143,6 +143,50 @@ class TestMotion:
         assert missing == ["WristLeft", "HandLeft"]
         assert [frame.label is None for frame in frames] == [False, False, False, True, True, False]
         assert "no unit quaternions are left out: frame 32" in caplog.text
+
+    def test_an_archive_of_a_body_alone_becomes_a_recording_without_labels(
+        self, tmp_path: Path
+    ) -> None:
+        alone = dict.fromkeys(("object_pose", "vertices", "object"))
+        dataset = import_motion([save_archive(tmp_path / "walk.npz", **alone)], tmp_path / "out")
+        entry = only_entry(load_dataset(tmp_path / "out"))
+        assert (entry.interaction, entry.object) == ("carryCube", None)
+        assert not (tmp_path / "out" / "objects").exists()
+        assert all(frame.label is None for frame in load_frames(dataset.path(entry), None))
+        joints = labelled_sequence(dataset, entry).joints
+        np.testing.assert_allclose(joints[0, Joint.HIP_CENTER], [0.0, 0.0, 3.0], atol=1e-9)
+
+    @pytest.mark.parametrize("left_out", [True, False])
+    def test_an_upper_body_stands_where_its_shoulders_and_neck_put_it(
+        self, tmp_path: Path, left_out: bool
+    ) -> None:
+        values = archive_values()
+        lower = {
+            *PELVIS_JOINTS,
+            *(j for j in Joint if j.name.startswith(("KNEE", "ANKLE", "FOOT"))),
+        }
+        upper = [joint for joint in range(20) if joint not in lower]
+        if left_out:
+            values["joints"] = values["joints"][:, upper]
+            values["joint_names"] = values["joint_names"][upper]
+        else:
+            values["joints"][:, sorted(lower)] = 0.0
+        dataset = import_motion([save_archive(tmp_path / "walk.npz", **values)], tmp_path / "out")
+        joints = labelled_sequence(dataset, only_entry(dataset)).joints
+        assert np.flatnonzero(np.isfinite(joints).all(axis=(0, 2))).tolist() == upper
+        aside = joints[0, Joint.SHOULDER_LEFT] - joints[0, Joint.SHOULDER_RIGHT]
+        np.testing.assert_allclose(aside, [0.4, 0.0, 0.0], atol=1e-6)
+        assert joints[0, Joint.HEAD, 1] < joints[0, Joint.SHOULDER_CENTER, 1]
+        assert 2.3 < joints[0, Joint.SHOULDER_CENTER, 2] < 3.5
+
+    def test_a_body_that_cannot_be_placed_is_refused_by_the_joints_that_it_lacks(
+        self, tmp_path: Path
+    ) -> None:
+        joints = archive_values()["joints"]
+        joints[:, [*PELVIS_JOINTS, Joint.HEAD]] = np.nan
+        source = save_archive(tmp_path / "walk.npz", joints=joints)
+        with pytest.raises(DatasetError, match=r"HipCenter, Spine, Head, HipLeft, HipRight never"):
+            import_motion([source], tmp_path / "out")
 
     def test_the_camera_says_that_it_has_no_pixels(self, tmp_path: Path) -> None:
         dataset = import_motion([save_archive(tmp_path / "walk.npz")], tmp_path / "out")
