@@ -6,9 +6,9 @@ import zlib
 
 import numpy as np
 
-GENERATOR_VERSION = 6
+GENERATOR_VERSION = 7
 """Version of the generator: the same version and seed make the same bytes."""
-PEOPLE_VERSION = 4
+PEOPLE_VERSION = 7
 """Version whose people and movements these are: what a version leaves alone stays the same."""
 
 

@@ -211,7 +211,9 @@ def simulate(
 
     person = sample_person(seed, participant)
     enacted = _enact(interaction, person, stream("motion", performance), frames, camera.frame_rate)
-    facing, camera_from_world = place_camera(person, camera.intrinsics, stream("camera"))
+    facing, camera_from_world = place_camera(
+        person, camera.intrinsics, stream("camera"), enacted.furniture
+    )
     body_in_camera = enacted.body.seen_from(camera_from_world)
     return Simulation(
         interaction=interaction,
