@@ -137,7 +137,7 @@ def _pivot(person: SimulatedPerson, sole: Array, heel: Array) -> Transform:
 def _lean_on_rack(
     person: SimulatedPerson, random: np.random.Generator
 ) -> tuple[Furniture, Transform]:
-    """A low rack at the right, clear of the foot, and the club leaning on its front edge, world_from_object."""
+    """A low rack, clear of the right foot, and the club leaning on its edge, world_from_object."""
     x, head = RACK_PLACE + random.normal(0.0, 0.015, 2)
     x += max(person.manner.stance_width - 1.0, 0.0) * STANCE_HALF_WIDTH
     rotation = rotation_about("x", LEAN) @ rotation_about("z", ROLL)

@@ -25,7 +25,7 @@ pace of the movement itself."""
 class Interruption:
     """A stop: after how much of a stage, for how long, and whether the stage is then undone.
 
-    ``after`` and ``stop`` are seconds. ``slowing`` is the time that stopping and going on each take.
+    ``after``, ``stop`` and ``slowing``, the time that stopping and going on each take, are seconds.
     """
 
     after: float

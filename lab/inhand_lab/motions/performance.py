@@ -75,7 +75,7 @@ def feet_apart(
 ) -> tuple[Array, Array]:
     """Right and left soles (T, 3) on the floor, as far apart as the task and the person have it.
 
-    ``half_width`` is the task's, in metres; people differ as much in wide stances as in narrow ones.
+    ``half_width`` is the task's, in metres; people differ as much in wide stances as in others.
     """
     own = half_width + (person.manner.stance_width - 1.0) * STANCE_HALF_WIDTH
     ahead = 0.5 * person.manner.foot_ahead * person.height

@@ -18,6 +18,7 @@ from inhand_lab.geometry.transforms import Transform, interpolate
 from inhand_lab.motions.parameters import DEFAULT_PERFORMANCE
 from inhand_lab.people.person import SimulatedPerson
 
+
 @dataclass(frozen=True)
 class Move:
     """A stage in which something moves; its duration is for a person of average tempo.
@@ -103,7 +104,7 @@ def schedule(
 
 
 def spare_time(person: SimulatedPerson, duration: float, plan: Plan) -> float:
-    """Seconds of the duration that the plan with two rounds of use leaves, at the person's tempo."""
+    """Seconds of the duration that a plan with two rounds of use leaves, at the person's tempo."""
     steps = [*plan.opening, *plan.use, *plan.use, *plan.closing]
     pace = _pace(person)
     usual = [replace(step, seconds=step.seconds * pace[type(step)]) for step in steps]
@@ -133,7 +134,10 @@ def _timed(
 
 def _least(steps: Sequence[Step]) -> float:
     """Seconds that the steps take with the shortest pauses."""
-    return sum(s.seconds * (DEFAULT_PERFORMANCE.shortest_pause if isinstance(s, Pause) else 1.0) for s in steps)
+    return sum(
+        s.seconds * (DEFAULT_PERFORMANCE.shortest_pause if isinstance(s, Pause) else 1.0)
+        for s in steps
+    )
 
 
 def _fill(steps: Sequence[Step], duration: float) -> list[float]:

@@ -23,8 +23,8 @@ class JointLimits:
     """Turn of a collar bone forward for an arm that reaches straight across the chest; it can by 15
     to 30 degrees (Neumann, *Kinesiology of the Musculoskeletal System*)."""
     follow: float = float(np.radians(30.0))
-    """Turn of a collar bone after a hand that is out of reach or too near; it is raised by 35 to 45 degrees and
-    protracted by 15 to 30 at the most (the same source)."""
+    """Turn of a collar bone after a hand that is out of reach or too near, at the most; it can be
+    raised by 35 to 45 degrees and protracted by 15 to 30 (the same source)."""
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,9 @@ def hidden(person: SimulatedPerson, position: Array, furniture: Furniture) -> bo
     """Whether a piece of furniture hides half of the person's height, or more, from a position (3,)
     in the person's world."""
     points = np.outer(SEEN_AT, [0.0, 0.0, person.height])
-    return any(2 * sum(_between(box, position, p) for p in points) >= len(points) for box in furniture)
+    return any(
+        2 * sum(_between(box, position, p) for p in points) >= len(points) for box in furniture
+    )
 
 
 def _between(box: Cuboid, one: Array, other: Array) -> bool:
