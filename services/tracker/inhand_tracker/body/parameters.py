@@ -36,8 +36,8 @@ class BodyParameters:
     """Number of frames after which what differs is reckoned anew."""
     apart_deviations: float = 3.0
     """Root mean square of what measures differ by, in deviations of people of one convention, above
-    which two bodies are of two conventions. Of recordings of simulated people all are below 2.6,
-    and of UTD-MHAD's half are above 3.9."""
+    which two bodies are of two conventions. Of recordings of simulated people all are below 2.3,
+    and of UTD-MHAD's half are above 3.5."""
     patience: int = 150
     """Number of frames, 5 s at 30 Hz, after which it is said that nobody shows a convention."""
 

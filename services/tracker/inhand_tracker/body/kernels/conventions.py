@@ -1,7 +1,7 @@
 """Where a convention's joints lie in a body, and joints that are moved from one to another.
 
-Everything stands on joints that all sources measure alike: shoulders, hips, wrists and ankles give
-the trunk's directions and the limbs'. Joints that are missing (NaN) are neither measured nor moved.
+Everything stands on joints that all sources measure. Shoulders, hips, wrists and ankles give the
+directions of trunk and limbs, and stay. What is missing (NaN) is neither measured nor moved.
 """
 
 import numpy as np
@@ -119,13 +119,17 @@ def _push(moved: Array, joint: int, way: float, direction: Vector) -> None:
 
 @vectorised("(j,v),(m),()->(j,v)")
 def move(joints: Array, differences: Array, height: float, moved: Array) -> None:
-    """Move the joints of a body (20, 3) by ``differences`` of its measures, in body heights."""
+    """Move the joints of a body (20, 3) by ``differences`` of its measures, in body heights.
+
+    Shoulders and hips stay, wherever they lie: a shoulder that is raised turns the front of a
+    forearm that hangs, and what it holds.
+    """
     moved[:] = joints
     for limb in LIMBS:
         for side in range(2):
             root, end = vector_in(joints[limb[0][side]]), vector_in(joints[limb[1][side]])
             _push(moved, limb[1][side], height * differences[limb[2]], unit(minus(end, root)))
-    left, up, forwards = _trunk(joints, _middle(joints, PAIR))
+    _, up, forwards = _trunk(joints, _middle(joints, PAIR))
     neck = unit(minus(vector_in(joints[HEAD]), vector_in(joints[CHEST])))
     _push(moved, HIPS, height * differences[HIP_CENTRE_UP], up)
     _push(moved, SPINE, height * differences[SPINE_UP], up)
@@ -133,7 +137,3 @@ def move(joints: Array, differences: Array, height: float, moved: Array) -> None
     _push(moved, CHEST, height * differences[CHEST_UP], up)
     _push(moved, HEAD, height * differences[CHEST_UP], up)
     _push(moved, HEAD, height * differences[NECK], neck)
-    for side, sign in ((0, -1.0), (1, 1.0)):
-        _push(moved, SHOULDERS[side], height * differences[SHOULDERS_UP], up)
-        _push(moved, SHOULDERS[side], sign * height * differences[SHOULDERS_ASIDE], left)
-        _push(moved, PAIR[side], sign * height * differences[HIPS_ASIDE], left)
