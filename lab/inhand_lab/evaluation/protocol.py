@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Literal
 
-from inhand_tracker.body.skeleton import has_pelvis
+import numpy as np
+from inhand_tracker.body.skeleton import PELVIS_JOINTS, has_pelvis
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import METHODS, AnyTerm, MethodName, new_tracker
@@ -17,6 +18,7 @@ from inhand_tracker.model.model import Model
 from inhand_tracker.wire.conversion import Need
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.joint_names import named_joints
 from inhand_lab.datasets.observations import track_together
 from inhand_lab.datasets.stretches import entry_frames, entry_name, stretches_note
 from inhand_lab.evaluation.fold_model import learn_fold_model
@@ -150,9 +152,12 @@ def _evaluate_recording(
 def _unscored(entry: DatasetEntry, model: Model, joints: Array) -> DatasetError:
     """Say why nothing could be scored in a recording whose joints (T, 20, 3) were seen."""
     if not model.mapping.absent_joints and not any(map(has_pelvis, joints)):
+        seen = np.asarray(np.isfinite(joints).all(axis=2)).any(axis=0)
+        lacking = [joint for joint in PELVIS_JOINTS.tolist() if not seen[joint]]
+        never = named_joints(lacking or PELVIS_JOINTS.tolist())
         return DatasetError(
-            f"{entry.file} never shows a pelvis, and what was learned from does: learn from "
-            "recordings that lack the same joints"
+            f"{entry.file} never shows a pelvis ({never}), and what was learned from does: learn "
+            "from recordings that lack the same joints"
         )
     return DatasetError(
         f"{entry.file}: no frame has both a pose and a label of {entry.object!r}: label it, or "

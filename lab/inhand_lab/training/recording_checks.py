@@ -7,7 +7,7 @@ from inhand_runtime.wording import counted
 from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_tracker.body.skeleton import PELVIS_JOINTS
 from inhand_tracker.geometry import rotations
-from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.arrays import Array, Flags
 from inhand_tracker.mapping.learning import LabelledSequence
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
@@ -68,14 +68,21 @@ def check_hands(entries: Sequence[DatasetEntry], sequences: Sequence[LabelledSeq
 
 
 def _check_labels(entry: DatasetEntry, sequence: LabelledSequence) -> None:
-    frames = len(sequence.translations)
-    unlabelled = int((~np.isfinite(sequence.translations).all(axis=1)).sum())
+    labelled = np.asarray(np.isfinite(sequence.translations).all(axis=1))
+    # Frames without body and label say nothing: somebody else has the object, or nobody is there.
+    frames = int((labelled | _shown(sequence)).sum())
+    unlabelled = frames - int(labelled.sum())
     if unlabelled > DEFAULT_TRAINING.most_missing_share * frames:
         raise DatasetError(
             f"{entry.file} has no label of {entry.object!r} in {_share(unlabelled, frames)}, and "
             f"{DEFAULT_TRAINING.most_missing_share:.0%} may lack one: label it, or take it out of "
             "dataset.toml"
         )
+
+
+def _shown(sequence: LabelledSequence) -> Flags:
+    """Flag (T,) the frames that show a joint."""
+    return np.asarray(np.isfinite(sequence.joints).all(axis=2)).any(axis=1)
 
 
 def _check_jumps(entry: DatasetEntry, sequence: LabelledSequence) -> None:
@@ -95,6 +102,8 @@ def _check_jumps(entry: DatasetEntry, sequence: LabelledSequence) -> None:
 
 def _check_bodies(entry: DatasetEntry, sequence: LabelledSequence) -> None:
     seen = np.asarray(np.isfinite(sequence.joints).all(axis=2))
+    labelled = np.asarray(np.isfinite(sequence.translations).all(axis=1))
+    seen = seen[labelled | seen.any(axis=1)]
     frames = len(seen)
     most_missing = DEFAULT_TRAINING.most_missing_share * frames
     nobody = int((~seen.any(axis=1)).sum())

@@ -11,6 +11,7 @@ from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.observations import observe
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.training.recorded_movements import read_joints
+from inhand_lab.training.recording_checks import check_sequence
 from inhand_schemas.messages import Message, ObjectPose, Person, Skeletons
 from inhand_tracker.wire.conversion import joints_of
 from waving import entry_of, waving
@@ -83,6 +84,30 @@ def test_who_is_named_next_is_followed_from_there_on_as_somebody_else(tmp_path: 
     assert [n for n, one in enumerate(seen) if one.somebody_else] == [0, 9]
     assert seen[9].joints is not None
     np.testing.assert_array_equal(seen[9].joints, joints_of(frames[9].people[0]))
+
+
+def test_an_object_that_passes_to_another_person_is_learned_of_the_one_who_has_it_most(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    joints, *_ = followed_joints(tmp_path, crowded(lambda n: USER if n < 20 else 7))
+    np.testing.assert_allclose(joints[:20], waving(30, 0)[0][:20])
+    assert np.isnan(joints[20:]).all()
+    assert "passes from one person to another: 10 of 30 frames" in caplog.text
+    sequence = labelled_sequence(Dataset(tmp_path, (entry_of("p0"),)), entry_of("p0"))
+    assert np.isnan(sequence.translations[20:]).all()
+    check_sequence(entry_of("p0"), sequence)
+
+
+def test_one_person_whom_a_tracker_numbers_anew_is_one_person(tmp_path: Path) -> None:
+    def renumbered(message: Message) -> Message:
+        if isinstance(message, Skeletons):
+            return replace(message, people=(replace(message.people[0], id=message.sequence // 10),))
+        if isinstance(message, ObjectPose):
+            return replace(message, person=message.sequence // 10)
+        return message
+
+    for joints in followed_joints(tmp_path, renumbered):
+        np.testing.assert_allclose(joints, waving(30, 0)[0])
 
 
 def test_without_a_name_the_nearest_is_followed_as_a_tracker_does(tmp_path: Path) -> None:
