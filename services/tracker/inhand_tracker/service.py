@@ -199,7 +199,7 @@ class TrackerService:
         source = self._source(skeletons)
         for person, thing in worth_publishing(objects):
             self._publish(person, thing, source, frame.camera)
-        self._note_convention()
+        self._note_bodies()
         self._daemon.health.latency(skeletons.time_ns)
 
     def _decoded(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> CameraFrame:
@@ -238,13 +238,19 @@ class TrackerService:
         )
         self._publishers[thing.name].put(message)
 
-    def _note_convention(self) -> None:
-        """Say while skeletons are of another convention than the models, and cannot be mapped."""
+    def _note_bodies(self) -> None:
+        """Say while skeletons are of another convention than the models, and cannot be mapped, or
+        lack the hips that the models need."""
         trouble = self._people.trouble
         if trouble is None:
             self._daemon.health.well("convention")
         else:
             self._daemon.health.trouble("convention", trouble)
+        lacking = self._people.hips_trouble
+        if lacking is None:
+            self._daemon.health.well("hips")
+        else:
+            self._daemon.health.trouble("hips", lacking)
 
     def _note_failure(self, name: str, error: Exception) -> None:
         """Report a failure as a trouble while it lasts."""

@@ -1,5 +1,6 @@
-from inhand_tracker.people.following import PersonFollower
+from inhand_tracker.people.following import PeopleWatched, PersonFollower
 from inhand_tracker.people.parameters import DEFAULT_PEOPLE
+from inhand_tracker.people.watching import CameraFrame, GivenObjects
 from msgspec.structs import replace
 from people import person
 
@@ -54,6 +55,22 @@ def test_where_hips_are_not_needed_the_nearest_chest_is_chosen() -> None:
     people = [person(1, 3.0), person(2, 1.0, missing=(0,)), person(3, 0.5, missing=(0, 2))]
     assert PersonFollower(needs_hips=False).choose(people, 0) is people[1]
     assert PersonFollower().choose(people, 0) is people[0]
+
+
+def test_models_of_whole_bodies_say_which_joints_upper_bodies_lack_until_somebody_has_them() -> (
+    None
+):
+    def see(needs_hips: bool, *missing: tuple[int, ...]) -> str | None:
+        watched = PeopleWatched(lambda: GivenObjects({}, needs_hips=needs_hips), most=1)
+        for joints in missing:
+            watched.see([person(1, missing=joints)], CameraFrame(0), lambda *_: None)
+        return watched.hips_trouble
+
+    pelvis = (0, 1, 12, 16)
+    assert "without HipCenter, Spine, HipLeft, HipRight" in str(see(True, pelvis))
+    assert see(True) is None
+    assert see(True, pelvis, (), (0,)) is None
+    assert see(False, pelvis) is None
 
 
 def test_a_skeleton_that_is_all_zero_is_nobody_to_follow() -> None:

@@ -3,9 +3,10 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
-from inhand_schemas.joints import Joint
+from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_schemas.messages import Person
 
+from inhand_tracker.body.skeleton import PELVIS_JOINTS
 from inhand_tracker.people.identities import Identities
 from inhand_tracker.people.parameters import DEFAULT_PEOPLE, PeopleParameters
 from inhand_tracker.people.watching import CameraFrame, OnFailure, WatchedObject, Watcher
@@ -66,6 +67,18 @@ class PeopleWatched:
         self._identities = Identities(parameters, needs_hips=needs_hips)
         self._watchers: dict[int | None, Watcher] = {}
         self._seen_ns: dict[int | None, int] = {}
+        self._needs_hips = needs_hips
+        self._hips_lack: tuple[str, ...] | None = None
+
+    @property
+    def hips_trouble(self) -> str | None:
+        """What the models need and nobody has shown yet; None where nothing is."""
+        if not self._needs_hips or not self._hips_lack:
+            return None
+        return (
+            f"people are seen without {', '.join(self._hips_lack)}, which the models need: train "
+            "them with recordings of upper bodies, or see to it that the hips are in view"
+        )
 
     def see(
         self, people: Sequence[Person], frame: CameraFrame, on_failure: OnFailure
@@ -95,8 +108,21 @@ class PeopleWatched:
 
     def _choose(self, people: Sequence[Person], time_ns: int) -> dict[int | None, Person | None]:
         """Choose who is watched, by their numbers; None for those out of view."""
+        self._note_hips(people)
         choose = self._choose_one if self._most == 1 else self._choose_several
         return choose(people, time_ns)
+
+    def _note_hips(self, people: Sequence[Person]) -> None:
+        """Note the joints of the pelvis that people lack, until somebody has shown it whole."""
+        if self._hips_lack == ():
+            return
+        lacking = [
+            tuple(JOINT_NAMES[j] for j in PELVIS_JOINTS if person.states[j] == "missing")
+            for person in people
+            if any(state != "missing" for state in person.states)
+        ]
+        if lacking:
+            self._hips_lack = min(lacking, key=len)
 
     def _choose_one(
         self, people: Sequence[Person], time_ns: int
