@@ -15,6 +15,7 @@ from inhand_tracker.prior.hold import rotation_near
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.prior.prediction import in_camera
 from inhand_tracker.prior.prior import Prior
+from inhand_tracker.prior.samples import samples_of
 from people import HAND, STANDING, WRIST, quaternion_of, waving, wedge
 from predictions import MIDDLE, predictions
 from scipy.spatial.transform import Rotation
@@ -176,3 +177,33 @@ def test_what_people_did_in_such_postures_lies_in_the_region_however_strange() -
         )
     )
     assert off @ np.linalg.solve(predicted.covariance, off) < CHI_SQUARE_90
+
+
+def who_holds_it_all_the_time(participant: str, *, own: bool = False) -> LabelledSequence:
+    """A body of another sensor whose hanging arm holds the object."""
+    random = np.random.default_rng(len(participant))
+    joints = as_another_sensor_has_them(STANDING + 0.004 * random.normal(size=(60, 20, 3)))
+    joints = joints + np.linspace(0.0, 2.0, 60)[:, None, None] * np.array([1.0, 0.0, 0.0])
+    middles, turns = gripped(joints)
+    places = middles - turns.apply(MIDDLE)
+    return LabelledSequence(participant, False, joints, places, quaternion_of(turns), own=own)
+
+
+def test_where_the_hold_was_better_for_who_was_held_out_it_counts_in_known_postures_too() -> None:
+    people = [who_takes_it_from_a_table(seed) for seed in range(4)]
+    joined = learn_prior([*people, who_holds_it_all_the_time("user", own=True)], wedge())
+    joints = who_holds_it_all_the_time("other").joints
+    middles, _ = gripped(joints)
+    predicted = predictions(joined, joints)[-1]
+    assert np.linalg.norm(predicted.centre - middles[-1]) < 0.03
+    lying = predictions(joined, np.tile(STANDING, (5, 1, 1)))[-1]
+    assert np.linalg.norm(lying.centre - TABLE) < 0.03
+
+
+def test_a_users_own_recordings_weigh_as_much_as_all_others() -> None:
+    people = [who_takes_it_from_a_table(seed) for seed in range(4)]
+    own = replace(who_takes_it_from_a_table(5), own=True)
+    samples = samples_of([*people, own], wedge(), MIDDLE, 8)
+    assert samples.weights().sum() == pytest.approx(1.0)
+    assert samples.weights()[samples.own].sum() == pytest.approx(0.5)
+    assert samples_of([own], wedge(), MIDDLE, 8).weights().sum() == pytest.approx(1.0)

@@ -48,7 +48,7 @@ class LabelledSequence:
     usable (a missing joint or label) hold NaN and are left out, with the step into them.
     ``frame_rate`` is in Hz; ``convention`` names whose joints these are, None where that is not
     said. Stretches of one recording have its name as their ``recording``; one without a name is a
-    recording by itself.
+    recording by itself. ``own`` are the user's, by which what was learned of others is adapted.
     """
 
     participant: str
@@ -59,6 +59,7 @@ class LabelledSequence:
     frame_rate: float = 30.0
     convention: str | None = None
     recording: str = ""
+    own: bool = False
 
     def right_handed(self, mirror_normal: Array) -> "LabelledSequence":
         """The sequence with unit quaternions, and mirrored where the person is left-handed.

@@ -9,21 +9,8 @@ CHI_SQUARE_90 = 10.645
 """Square of the radius of a normal distribution's 90 % region in six dimensions."""
 
 
-def widened(covariances: Array, share: float) -> Array:
-    """Add to covariances (..., 6, 6) a share of what they are on average in any direction.
-
-    Errors of few people, or of few recordings, point in few directions; in the others it is not
-    known how large the next one's are. Translations and rotations each by themselves.
-    """
-    wider = np.array(covariances, np.float64)
-    for block in (slice(0, 3), slice(3, 6)):
-        usual = np.trace(wider[..., block, block], axis1=-2, axis2=-1) / 3.0
-        wider[..., block, block] += share * usual[..., None, None] * np.eye(3)
-    return wider
-
-
 def widening_of(units: int) -> float:
-    """The share by which a covariance is ``widened`` that a number of people tell."""
+    """The share by which a covariance is ``widened`` (combination) that a number of people tell."""
     return 1.0 / units**2
 
 

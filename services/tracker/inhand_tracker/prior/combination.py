@@ -75,6 +75,27 @@ def covariance_at(
     return kernels.moments_at(local, nearness, errors, everywhere_share)
 
 
+def widened(covariances: Array, share: float) -> Array:
+    """Add to covariances (..., 6, 6) a share of what they are on average in any direction.
+
+    Errors of few people, or of few recordings, point in few directions; in the others it is not
+    known how large the next one's are. Translations and rotations each by themselves.
+    """
+    return kernels.widened(covariances, share)
+
+
+def lower_triangles(triangles: Singles, count: int) -> Array:
+    """Put the lower triangles (..., T), row by row, into matrices (..., E, E) for a count E."""
+    return kernels.lower_triangles(triangles.astype(np.float64), np.empty(count))
+
+
+def vertex_squares(errors: Array, heights: Array, spread: Array) -> Array:
+    """Mean squared distances (T,), in m², of marked vertices of covariance ``spread`` (3, 3) by
+    errors (T, 6) in body heights and radians, a rotation's about any axis."""
+    moved = np.square(errors[:, :3]).sum(axis=1) * heights**2
+    return moved + 2.0 / 3.0 * np.trace(spread) * np.square(errors[:, 3:]).sum(axis=1)
+
+
 def rotation_error(estimated: Array, true: Array) -> Array:
     """Rotation vectors (..., 3) on the left that take true rotations (..., 3, 3) to estimated."""
     return rotations.to_vector(rotations.from_matrix(estimated @ np.swapaxes(true, -1, -2)))

@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from inhand_tracker.body.holders import HOLDERS, find_holder
 from inhand_tracker.geometry.arrays import Array, Flags
-from inhand_tracker.prior.calibration import calibration_of, widened, widening_of
-from inhand_tracker.prior.combination import rotation_error
+from inhand_tracker.prior.calibration import calibration_of, widening_of
+from inhand_tracker.prior.combination import rotation_error, vertex_squares, widened
 from inhand_tracker.prior.hold import Hold, rotation_near
 from inhand_tracker.prior.parameters import PriorLearningParameters
 from inhand_tracker.prior.prediction import Prediction
@@ -16,10 +17,15 @@ from inhand_tracker.prior.samples import Samples
 
 
 def learn_hold(
-    samples: Samples, spread: Array, units: int, parameters: PriorLearningParameters
+    samples: Samples,
+    landmarks: Samples,
+    regressed_squares: Array,
+    spread: Array,
+    units: int,
+    parameters: PriorLearningParameters,
 ) -> Hold | None:
     """Learn the hold from samples of ``units`` people; ``spread`` (3, 3) is that of the marked
-    vertices.
+    vertices, ``regressed_squares`` (L,) their squared held-out errors at the prior's landmarks.
 
     The holder, by itself or with the other hand, is the one by which the others' mean says best
     where each group that is held out has the object. None where fewer than two groups carry it.
@@ -32,7 +38,12 @@ def learn_hold(
     carried = samples.take(rows[np.unique(spaced)])
     trials = [trial for number in range(len(HOLDERS)) for trial in _trials(carried, number)]
     scores = [trial.score(root) * trial.caution(parameters) for trial in trials]
-    return trials[int(np.argmin(scores))].hold(units)
+    best = trials[int(np.argmin(scores))]
+    held = best.tried_on(landmarks)
+    errors = _errors_in_object(held.centre, held.rotation, landmarks)
+    held_squares = vertex_squares(errors, np.ones(len(errors)), spread)
+    squares = np.stack((held_squares, regressed_squares), axis=1)
+    return replace(best.hold(units), squares=squares)
 
 
 def carried_frames(samples: Samples, root: Array, parameters: PriorLearningParameters) -> Flags:
@@ -72,90 +83,99 @@ def _moving(samples: Samples, root: Array, parameters: PriorLearningParameters) 
 
 @dataclass(frozen=True)
 class _Trial:
-    """A way to hold it, tried on samples (T,) in which the object is carried: what is predicted of
-    groups that are held out."""
+    """A way to hold it, tried on samples (T,) in which the object is carried: by a holder, and with
+    the other hand's place so much ``surer`` than the rotation, in 1/m²."""
 
     samples: Samples
-    mean: Hold
-    held_out: Prediction
+    holder: int
+    surer: float = 0.0
+
+    @cached_property
+    def held_out(self) -> Prediction:
+        """What is predicted of groups that are held out."""
+        return self.tried_on(self.samples)
+
+    def tried_on(self, samples: Samples) -> Prediction:
+        """Predict samples, each by the mean of groups other than its own; without covariances."""
+        centres, turns = np.empty_like(samples.centres), np.empty_like(samples.rotations)
+        for group in np.unique(samples.groups):
+            rows = samples.groups == group
+            hold = self.mean(self.samples.groups != group)
+            predicted = hold.of(samples.take(np.flatnonzero(rows)).anchors)
+            centres[rows], turns[rows] = predicted.centre, predicted.rotation
+        return Prediction(centres, turns, np.zeros((len(centres), 6, 6)))
+
+    def mean(self, rows: Flags) -> Hold:
+        """The mean hold of some samples, as yet without a covariance."""
+        samples = self.samples.take(np.flatnonzero(rows))
+        weights = samples.weights()
+        origins, axes, ways = find_holder(samples.anchors, self.holder)
+        turns = np.swapaxes(axes, 1, 2) @ samples.rotations
+        grips = _turned_back(samples.rotations, origins - samples.centres)
+        return Hold(
+            self.holder,
+            rotation_near(np.einsum("t,tij->ij", weights, turns)),
+            weights @ grips,
+            self.surer * (weights @ _turned_back(samples.rotations, ways)),
+            np.zeros((6, 6)),
+            np.empty((0, 2)),
+        )
 
     def score(self, root: Array) -> float:
         """Root mean square, in metres, of the marked vertices' held-out errors."""
         moved = self.held_out.centre - self.samples.centres
         turned = (self.held_out.rotation - self.samples.rotations) @ root
         square = np.square(moved).sum(axis=1) + np.square(turned).sum(axis=(1, 2))
-        return float(np.sqrt(square.mean()))
+        return float(np.sqrt(self.samples.weights() @ square))
 
     def caution(self, parameters: PriorLearningParameters) -> float:
         """Factor on the score, by how readily such a hold seems steady that is none."""
-        if HOLDERS[self.mean.holder].upright:
+        if HOLDERS[self.holder].upright:
             return parameters.upright_holder_ratio
-        return 1.0 if self.mean.holder == 0 else parameters.other_holder_ratio
+        return 1.0 if self.holder == 0 else parameters.other_holder_ratio
+
+    def errors(self) -> Array:
+        """Held-out errors (T, 6), in the axes of the predicted objects, in metres and radians."""
+        return _errors_in_object(self.held_out.centre, self.held_out.rotation, self.samples)
 
     def hold(self, units: int) -> Hold:
         """The mean of all samples, with the calibrated covariance of the held-out errors of
         ``units`` people."""
-        errors = _in_object(self.held_out, self.samples)
+        errors = self.errors()
         least = _LEAST_VARIANCE * np.eye(6)
-        covariance = widened(errors.T @ errors / len(errors) + least, widening_of(units))
+        weighted = self.samples.weights()[:, None] * errors
+        covariance = widened(errors.T @ weighted + least, widening_of(units))
         at_each = np.broadcast_to(covariance, (len(errors), 6, 6))
         calibration = calibration_of(at_each, errors, units)
-        return replace(self.mean, covariance=calibration * covariance + least)
+        everybody = self.mean(np.full(len(errors), True))
+        return replace(everybody, covariance=calibration * covariance + least)
 
 
 def _trials(samples: Samples, holder: int) -> Iterator[_Trial]:
     """Try a holder by itself, and with the other hand where there is one."""
-    alone = _trial(samples, holder)
+    alone = _Trial(samples, holder)
     yield alone
     if HOLDERS[holder].other is not None:
-        turned = _in_object(alone.held_out, samples)[:, 3:]
         _, _, ways = find_holder(samples.anchors, holder)
         apart = _turned_back(samples.rotations, ways)
-        off = [apart[rows] - apart[~rows].mean(axis=0) for rows in _held_out(samples)]
+        off = np.empty_like(apart)
+        for group in np.unique(samples.groups):
+            rows = samples.groups == group
+            off[rows] = apart[rows] - apart[~rows].mean(axis=0)
         # Of the likelihood of a rotation and of the other hand's place, both normal.
-        variance = np.square(np.concatenate(off)).mean() + _LEAST_VARIANCE
-        surer = 2.0 * float(np.square(turned).mean()) / variance
-        yield _trial(samples, holder, surer)
+        turned = float(np.square(alone.errors()[:, 3:]).mean())
+        yield _Trial(samples, holder, 2.0 * turned / (np.square(off).mean() + _LEAST_VARIANCE))
 
 
-def _trial(samples: Samples, holder: int, surer: float = 0.0) -> _Trial:
-    """Try a holder; the other hand's place is so much ``surer`` than the rotation, in 1/m²."""
-    centres, turns = np.empty_like(samples.centres), np.empty_like(samples.rotations)
-    for rows in _held_out(samples):
-        others = _mean_hold(samples.take(np.flatnonzero(~rows)), holder, surer)
-        predicted = others.of(samples.take(np.flatnonzero(rows)).anchors)
-        centres[rows], turns[rows] = predicted.centre, predicted.rotation
-    nothing = np.zeros((len(centres), 6, 6))
-    return _Trial(samples, _mean_hold(samples, holder, surer), Prediction(centres, turns, nothing))
-
-
-def _held_out(samples: Samples) -> Iterator[Flags]:
-    """Flag the samples (T,) of each group in turn."""
-    for group in np.unique(samples.groups):
-        yield samples.groups == group
-
-
-def _mean_hold(samples: Samples, holder: int, surer: float) -> Hold:
-    """The mean hold of samples, as yet without a covariance."""
-    origins, axes, ways = find_holder(samples.anchors, holder)
-    turns = np.swapaxes(axes, 1, 2) @ samples.rotations
-    grips = _turned_back(samples.rotations, origins - samples.centres)
-    pulls = surer * _turned_back(samples.rotations, ways)
-    rotation = rotation_near(turns.mean(axis=0))
-    return Hold(holder, rotation, grips.mean(axis=0), pulls.mean(axis=0), np.zeros((6, 6)))
-
-
-def _in_object(predicted: Prediction, samples: Samples) -> Array:
-    """Errors (T, 6) of predictions, in the axes of the predicted objects."""
-    moved = predicted.centre - samples.centres
-    turned = rotation_error(predicted.rotation, samples.rotations)
-    return np.concatenate(
-        [_turned_back(predicted.rotation, one) for one in (moved, turned)], axis=1
-    )
+def _errors_in_object(centres: Array, turns: Array, samples: Samples) -> Array:
+    """Errors (T, 6) of predicted centres (T, 3) and rotations (T, 3, 3), in these axes."""
+    moved = centres - samples.centres
+    turned = rotation_error(turns, samples.rotations)
+    return np.concatenate([_turned_back(turns, one) for one in (moved, turned)], axis=1)
 
 
 def _turned_back(turns: Array, vectors: Array) -> Array:
-    """Vectors (T, 3) in the axes of rotations (T, 3, 3)."""
+    """Give vectors (T, 3) in the axes of rotations (T, 3, 3)."""
     return np.einsum("tji,tj->ti", turns, vectors)
 
 

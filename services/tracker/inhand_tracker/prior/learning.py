@@ -51,7 +51,14 @@ def learn_prior(
         persistence_of(
             errors, landmarks.sequences, landmarks.times, parameters.longest_persistence_s
         ),
-        learn_hold(samples, spread, units, parameters),
+        learn_hold(
+            samples,
+            landmarks,
+            combination.vertex_squares(errors, landmarks.heights, spread),
+            spread,
+            units,
+            parameters,
+        ),
         widening_of(units),
     )
 

@@ -16,18 +16,19 @@ import numpy as np
 from inhand_schemas.joints import JOINT_NAMES
 
 from inhand_tracker.body.anchors import Anchors
-from inhand_tracker.geometry.arrays import Array, Indices, Singles
-from inhand_tracker.prior.calibration import widened
+from inhand_tracker.geometry.arrays import Array, Singles
 from inhand_tracker.prior.combination import (
     TINY,
     combination_weights,
     covariance_at,
     fuse,
     locality,
+    lower_triangles,
+    widened,
 )
 from inhand_tracker.prior.hold import Hold
 from inhand_tracker.prior.kernel_ridge import KernelRidge, usual_width
-from inhand_tracker.prior.kernels.distances import least_distance
+from inhand_tracker.prior.kernels.distances import distances_of, nearest_of
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
 from inhand_tracker.prior.prediction import Prediction, between, in_camera
 
@@ -65,16 +66,12 @@ class Prior:
     widening: float = 0.0
 
     @cached_property
-    def _lower(self) -> tuple[Indices, Indices]:
-        """Rows and columns (T,) of a lower triangle."""
-        return np.tril_indices(self.translation_products.shape[-1])
-
-    @cached_property
     def _triangles(self) -> Singles:
         """The lower triangles (L, 2 T) of both products side by side: they are symmetric, and what
         is read for each body is half as much."""
         both = self.translation_products, self.rotation_products
-        return np.concatenate([products[:, *self._lower] for products in both], axis=1)
+        lower = np.tril_indices(self.translation_products.shape[-1])
+        return np.concatenate([products[:, *lower] for products in both], axis=1)
 
     @cached_property
     def _postures(self) -> tuple[Singles, float]:
@@ -83,19 +80,21 @@ class Prior:
         landmarks = np.ascontiguousarray(self.regressions[0].landmarks[:, :POSTURE])
         return landmarks, usual_width(landmarks)
 
-    def nearest_posture(self, described: Singles) -> float:
-        """Find the kernel, from 0 to 1, between a body described whole (D,) and the landmark of the
-        nearest posture: who moves as nobody did may well stand as somebody did."""
+    def posture_of(self, described: Singles, hold: Hold) -> "_Posture":
+        """Compare the posture of a body described whole (D,) with those of the landmarks: who moves
+        as nobody did may well stand as somebody did."""
         landmarks, width = self._postures
-        return math.exp(least_distance(described[:POSTURE], landmarks) / (-2.0 * width))
+        distances = distances_of(described[:POSTURE], landmarks)
+        least, held, regressed = nearest_of(distances, width, hold.squares)
+        better = 1.0 - (held / max(regressed, TINY)) ** 2
+        return _Posture(math.exp(least / (-2.0 * width)), max(better, 0.0))
 
     def products_at(self, local: Array) -> Array:
         """The lower triangles (2, E, E) of both products that are expected, by landmarks' shares
         (L,)."""
         count = self.translation_products.shape[-1]
-        expected = np.zeros((2, count, count))
-        expected[:, *self._lower] = (local.astype(np.float32) @ self._triangles).reshape(2, -1)
-        return expected
+        triangles = (local.astype(np.float32) @ self._triangles).reshape(2, -1)
+        return lower_triangles(triangles, count)
 
     @cached_property
     def landmark_targets(self) -> Array:
@@ -114,65 +113,83 @@ def predict(
     """Predict the object's pose for one body: descriptions (1, D) of each view, its anchors and
     height.
 
-    By what people did in such postures; of a posture unlike all of theirs by how they hold it.
+    By what people did in such postures; by how they hold the object, where that was better there
+    for people who were held out; and of a posture unlike all of theirs by how they hold it alone.
     """
-    regressed = _regressed(prior, descriptions, anchors, height, parameters)
-    if prior.hold is None:
-        return regressed
-    nearest = prior.nearest_posture(descriptions[0][0])
-    share = _strangeness(nearest, parameters)
-    if share == 0.0:
-        return regressed
-    held = prior.hold.of(anchors)
-    grown = _growth(nearest, parameters) * held.covariance
-    held = Prediction(held.centre, held.rotation, grown)
-    return between(regressed, held, share, doubt=parameters.held_doubt)
-
-
-def _strangeness(nearest: float, parameters: PriorParameters) -> float:
-    """How strange a posture is, from 0 to 1, by its kernel to the nearest one."""
-    familiar, strange = parameters.familiar_posture, parameters.strange_posture
-    return min(max((familiar - nearest) / max(familiar - strange, TINY), 0.0), 1.0)
-
-
-def _growth(nearest: float, parameters: PriorParameters) -> float:
-    """How much the hold's covariance grows: with the distance from the nearest posture, beyond that
-    at which nothing but the hold counts, as limbs may lie elsewhere too."""
-    square = math.log(max(nearest, TINY)) / math.log(parameters.strange_posture)
-    return min(math.sqrt(max(square, 1.0)), parameters.most_stretched**2)
-
-
-def _regressed(
-    prior: Prior,
-    descriptions: Sequence[Singles],
-    anchors: Anchors,
-    height: float,
-    parameters: PriorParameters,
-) -> Prediction:
-    """Predict by the regressions."""
     kernels = [
         regression.kernel_of(description[0])
         for regression, description in zip(prior.regressions, descriptions, strict=True)
     ]
+    local, nearness = locality(kernels[0])
+    regressed = _regressed(
+        prior, kernels, _Locality(local, float(nearness)), anchors, height, parameters
+    )
+    if prior.hold is None:
+        return regressed
+    posture = prior.posture_of(descriptions[0][0], prior.hold)
+    share = max(posture.strangeness(parameters), posture.better_held)
+    if share == 0.0:
+        return regressed
+    held = prior.hold.of(anchors, posture.growth(parameters))
+    return between(regressed, held, share, doubt=parameters.held_doubt)
+
+
+@dataclass(frozen=True)
+class _Posture:
+    """A body's posture beside those that were learned: the kernel to the ``nearest`` of them, from
+    0 to 1, and how much better people who were held out were predicted by their hold around there,
+    from 0, where it erred by as much as the regressions or more, to 1."""
+
+    nearest: float
+    better_held: float
+
+    def strangeness(self, parameters: PriorParameters) -> float:
+        """How strange the posture is, from 0 to 1."""
+        familiar, strange = parameters.familiar_posture, parameters.strange_posture
+        return min(max((familiar - self.nearest) / max(familiar - strange, TINY), 0.0), 1.0)
+
+    def growth(self, parameters: PriorParameters) -> float:
+        """How much the hold's covariance grows: with the distance from the nearest posture, beyond
+        that at which nothing but the hold counts, as limbs may lie elsewhere too."""
+        square = math.log(max(self.nearest, TINY)) / math.log(parameters.strange_posture)
+        return min(math.sqrt(max(square, 1.0)), parameters.most_stretched**2)
+
+
+@dataclass(frozen=True)
+class _Locality:
+    """Landmarks' shares (L,) at a body, and how near the nearest of them is, from 0 to 1."""
+
+    shares: Array
+    nearness: float
+
+
+def _regressed(
+    prior: Prior,
+    kernels: list[Array],
+    at: _Locality,
+    anchors: Anchors,
+    height: float,
+    parameters: PriorParameters,
+) -> Prediction:
+    """Predict by the regressions, by their kernels (L,) at a body."""
     nearest = [float(kernel.max()) for kernel in kernels]
     stretches = [max(parameters.farthest_kernel / max(one, TINY), 1.0) for one in nearest]
-    local, nearness = locality(kernels[0])
     here = _Predictions(
         _predicted(prior, kernels, stretches),
         anchors,
         height,
-        prior.products_at(local),
+        prior.products_at(at.shares),
     )
     centre, rotation = here.fused(prior.spread, parameters.distrust)
     doubt = min(max(stretches[0], 1.0), parameters.most_stretched) ** 2
-    covariance = covariance_at(local, nearness, prior.errors, parameters.everywhere_share)
+    covariance = covariance_at(at.shares, at.nearness, prior.errors, parameters.everywhere_share)
     scaled = doubt * prior.calibration * widened(covariance, prior.widening)
     usual = Prediction(centre, rotation, in_camera(scaled, anchors.axes[0], height))
     novelty = 1.0 - nearest[0] / parameters.new_kernel
     if novelty <= 0.0:
         return usual
     targets = prior.landmark_targets
-    at_nearest = (local @ targets.reshape(len(local), -1)).reshape(targets.shape[1:])
+    at_nearest = (at.shares @ targets.reshape(len(targets), -1)).reshape(targets.shape[1:])
     taken = here.taken_along(novelty, at_nearest)
     moved = Prediction(*taken.fused(prior.spread, parameters.distrust), usual.covariance)
     return between(usual, moved, 1.0, around=1.0)

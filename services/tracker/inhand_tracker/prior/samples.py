@@ -15,7 +15,7 @@ from inhand_tracker.body.window import (
     trunk_places,
 )
 from inhand_tracker.geometry import rotations
-from inhand_tracker.geometry.arrays import Array, Indices, Singles
+from inhand_tracker.geometry.arrays import Array, Flags, Indices, Singles
 from inhand_tracker.mapping.learning import LabelledSequence
 from inhand_tracker.shape.shape import ObjectShape
 
@@ -25,7 +25,8 @@ class Samples:
     """The usable frames (N,) of all sequences; those of one of ``groups`` are held out together.
 
     ``centres`` (N, 3) and ``rotations`` (N, 3, 3) of the object are in the camera frame of
-    right-handed people, ``times`` (N,) in seconds from the sequence's start.
+    right-handed people, ``times`` (N,) in seconds from the sequence's start; ``own`` (N,) flags
+    those by which a model of others is adapted.
     """
 
     descriptions: list[Singles]
@@ -37,6 +38,16 @@ class Samples:
     groups: Indices
     sequences: Indices
     times: Array
+    own: Flags
+
+    def weights(self) -> Array:
+        """Give each sample (N,) its weight in a mean; they sum to 1. Where some are the user's
+        ``own``, these weigh as much as all others: one person of theirs says as much of the next
+        real one as all simulated people."""
+        count = int(self.own.sum())
+        if count in (0, len(self.own)):
+            return np.full(len(self.own), 1.0 / len(self.own))
+        return np.where(self.own, 0.5 / count, 0.5 / (len(self.own) - count))
 
     @staticmethod
     def joined(parts: "Sequence[Samples]") -> "Samples":
@@ -61,7 +72,7 @@ class Samples:
         )
 
 
-_ROWS = ("targets", "heights", "centres", "rotations", "groups", "sequences", "times")
+_ROWS = ("targets", "heights", "centres", "rotations", "groups", "sequences", "times", "own")
 """Names of the samples' plain arrays."""
 
 
@@ -114,6 +125,7 @@ def _samples_of(
         np.full(len(usable), group),
         np.full(len(usable), number),
         times,
+        np.full(len(usable), sequence.own),
     )
 
 

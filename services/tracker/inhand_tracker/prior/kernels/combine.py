@@ -82,5 +82,32 @@ def moments_at(
     for landmark in range(len(local)):
         share = local[landmark] + everywhere
         for one in range(moments.shape[0]):
-            for other in range(moments.shape[0]):
-                moments[one, other] += share * errors[landmark, one] * errors[landmark, other]
+            scaled = share * errors[landmark, one]
+            for other in range(one + 1):
+                moments[one, other] += scaled * errors[landmark, other]
+    for one in range(moments.shape[0]):
+        for other in range(one):
+            moments[other, one] = moments[one, other]
+
+
+@vectorised("(i,i),()->(i,i)")
+def widened(covariance: Array, share: float, wider: Array) -> None:
+    """Fill ``wider`` (6, 6) with a covariance and a share of its mean variance in each block."""
+    wider[:] = covariance
+    for first in range(0, 6, 3):
+        usual = 0.0
+        for axis in range(first, first + 3):
+            usual += covariance[axis, axis] / 3.0
+        for axis in range(first, first + 3):
+            wider[axis, axis] += share * usual
+
+
+@vectorised("(t),(e)->(e,e)")
+def lower_triangles(triangle: Array, count: Array, matrix: Array) -> None:
+    """Fill the lower triangle of ``matrix`` (E, E), row by row, and the rest with 0."""
+    matrix[:] = 0.0
+    index = 0
+    for row in range(len(count)):
+        for column in range(row + 1):
+            matrix[row, column] = triangle[index]
+            index += 1

@@ -1,9 +1,12 @@
-"""Squared distances of one body from landmarks, and the least of them."""
+"""Squared distances of one body from landmarks, and what is near it."""
 
 import numpy as np
 from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array, Singles
+
+FARTHEST = 20.0
+"""Exponent beyond which a landmark's share is nothing beside that of the nearest."""
 
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})
@@ -23,15 +26,17 @@ def distances_of(one: Singles, landmarks: Singles) -> Array:
     return distances
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})
-def least_distance(one: Singles, landmarks: Singles) -> float:
-    """Return the squared distance of (D,) from the nearest of landmarks (L, D)."""
-    least = np.float32(np.inf)
-    for landmark in range(len(landmarks)):
-        square = np.float32(0.0)
-        for index in range(len(one)):
-            off = one[index] - landmarks[landmark, index]
-            square += off * off
-        if square < least:
-            least = square
-    return float(least)
+@njit(cache=True, nogil=True)
+def nearest_of(distances: Array, width: float, values: Array) -> tuple[float, float, float]:
+    """Return the least of squared distances (L,), and means of two ``values`` (L, 2) by the squares
+    of kernels of a squared ``width``, which is as ``combination.locality`` weighs landmarks."""
+    least = distances.min()
+    total, first, second = 0.0, 0.0, 0.0
+    for landmark in range(len(distances)):
+        off = (distances[landmark] - least) / width
+        if off < FARTHEST:
+            share = np.exp(-off)
+            total += share
+            first += share * values[landmark, 0]
+            second += share * values[landmark, 1]
+    return least, first / total, second / total

@@ -16,7 +16,7 @@ from inhand_tracker.geometry.kernels.quaternions import (
 )
 
 
-@vectorised("(v),(v,v),(v),(v,v),(v),(v),(i,i)->(v),(v,v),(i,i)")
+@vectorised("(v),(v,v),(v),(v,v),(v),(v),(i,i),()->(v),(v,v),(i,i)")
 def held(
     origin: Array,
     axes: Array,
@@ -25,12 +25,14 @@ def held(
     grip: Array,
     pull: Array,
     spread: Array,
+    growth: float,
     centre: Array,
     rotation: Array,
     covariance: Array,
 ) -> None:
     """Fill the pose, and its covariance in the camera frame, of an object that is held as
-    ``hold.Hold`` says by a holder with an ``origin`` (3,), ``axes`` (3, 3) and a ``way`` (3,)."""
+    ``hold.Hold`` says by a holder with an ``origin`` (3,), ``axes`` (3, 3) and a ``way`` (3,); the
+    covariance is ``growth`` times ``spread`` (6, 6)."""
     turned = np.zeros((3, 3))
     for row in range(3):
         for column in range(3):
@@ -42,7 +44,7 @@ def held(
         centre[row] = origin[row]
         for k in range(3):
             centre[row] -= rotation[row, k] * grip[k]
-    set_turned_blocks(spread, rotation, covariance)
+    set_turned_blocks(growth * spread, rotation, covariance)
 
 
 @vectorised("(v),(v,v),(i,i),(v),(v,v),(i,i),(),(),()->(v),(v,v),(i,i)")
