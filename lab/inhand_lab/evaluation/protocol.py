@@ -152,7 +152,7 @@ def _evaluate_recording(
 def _unscored(entry: DatasetEntry, model: Model, joints: Array) -> DatasetError:
     """Say why nothing could be scored in a recording whose joints (T, 20, 3) were seen."""
     if not model.mapping.absent_joints and not any(map(has_pelvis, joints)):
-        seen = np.asarray(np.isfinite(joints).all(axis=2)).any(axis=0)
+        seen = np.asarray(np.asarray(np.isfinite(joints).all(axis=2)).any(axis=0))
         lacking = [joint for joint in PELVIS_JOINTS.tolist() if not seen[joint]]
         never = named_joints(lacking or PELVIS_JOINTS.tolist())
         return DatasetError(

@@ -82,7 +82,7 @@ def _check_labels(entry: DatasetEntry, sequence: LabelledSequence) -> None:
 
 def _shown(sequence: LabelledSequence) -> Flags:
     """Flag (T,) the frames that show a joint."""
-    return np.asarray(np.isfinite(sequence.joints).all(axis=2)).any(axis=1)
+    return np.asarray(np.asarray(np.isfinite(sequence.joints).all(axis=2)).any(axis=1))
 
 
 def _check_jumps(entry: DatasetEntry, sequence: LabelledSequence) -> None:
