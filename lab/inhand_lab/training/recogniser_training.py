@@ -1,7 +1,7 @@
 """Trains a recogniser of actions from a dataset, or from people's joints."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -27,6 +27,10 @@ from inhand_lab.world.idle_people import watch_idle
 READING, LEARNING = "recordings", "actions"
 
 
+NOTHING = "none"
+"""Action of people who use nothing."""
+
+
 def recogniser_stages(recordings: int) -> dict[str, int]:
     """Name the stages of training a recogniser, each with the number of its steps."""
     return {READING: recordings, LEARNING: 1}
@@ -37,13 +41,19 @@ def train_recogniser(
     entries: Sequence[DatasetEntry],
     on_step: Callable[[str], None] = lambda stage: None,
 ) -> Recogniser:
-    """Learn the actions of recordings, labelled or not; raises DatasetError or RecordingError.
+    """Learn the actions of recordings; raises DatasetError or RecordingError.
+
+    Where some are labelled, those of other interactions without an object are of people who use
+    nothing. Where none is, each interaction is an action.
 
     ``on_step`` is called at every step of ``recogniser_stages``.
     """
+    used = {entry.interaction for entry in entries if entry.object is not None}
     people = []
     for entry in entries:
-        people.append(_read_joints(dataset, entry))
+        one = _read_joints(dataset, entry)
+        uses_nothing = bool(used) and entry.interaction not in used
+        people.append(replace(one, action=NOTHING) if uses_nothing else one)
         on_step(READING)
     recogniser = learn_recogniser(people, str(dataset.folder))
     on_step(LEARNING)
@@ -86,8 +96,11 @@ class LearnedMovements:
 def learn_movements(
     people: Sequence[JointSequence], origin: str = "the recordings"
 ) -> LearnedMovements:
-    """Learn actions without the support vector machine; raises DatasetError."""
-    actions = tuple(dict.fromkeys(one.action for one in people))
+    """Learn actions without the support vector machine; raises DatasetError.
+
+    People whose action is ``NOTHING`` teach, as simulated idle ones do, what none is.
+    """
+    actions = tuple(dict.fromkeys(one.action for one in people if one.action != NOTHING))
     _check_enough(people, actions, origin)
     usual = usual_poses(people)
     poses, labels, sequences = [], [], list(_idle_movements(len(actions)))
@@ -95,9 +108,10 @@ def learn_movements(
         read = read_movement(one, usual, DEFAULT_TRAINING.body_step)
         if not len(read.frames):
             continue
-        number = actions.index(one.action)
-        poses.append(read.body_poses)
-        labels.append(np.full(len(read.frames), number))
+        number = len(actions) if one.action == NOTHING else actions.index(one.action)
+        if number < len(actions):
+            poses.append(read.body_poses)
+            labels.append(np.full(len(read.frames), number))
         times_ns = one.times_ns[read.frames]
         sequences.append(MovementSequence(number, one.participant, read.features, times_ns))
     missing = set(range(len(actions))) - {one.action for one in sequences}
