@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from inhand_lab.datasets.dataset import load_dataset
-from inhand_lab.evaluation.folds import leave_out, train_on_one_test_on_other
+from inhand_lab.evaluation.folds import Added, leave_out, train_on_one_test_on_other
 from inhand_lab.evaluation.protocol import Protocol, Terms, Trial, evaluate
 from inhand_lab.evaluation.summary import summarise, terms_name, with_terms, worth
 from inhand_lab.report.report_folder import prepare_report_folder, write_report
@@ -35,6 +35,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="test on any N people (recordings, of one person), taught by the others, every choice "
         "(default: 1)",
+    )
+    parser.add_argument(
+        "--with",
+        dest="added",
+        type=_added,
+        action="append",
+        default=[],
+        metavar="PARTICIPANT[:N]",
+        help="with --test-on: learn from a participant of the tested dataset as well, by N of the "
+        "recordings of each interaction or all, and test the others; may be given again",
     )
     parser.add_argument(
         "--methods",
@@ -88,6 +98,8 @@ def _protocol(arguments: argparse.Namespace) -> Protocol:
     unknown = [name for name in methods if name not in METHODS]
     if unknown:
         raise SettingsError(f"no method {unknown[0]!r}; there are: {', '.join(METHODS)}")
+    if arguments.added and arguments.test_on is None:
+        raise SettingsError("--with adds people of what --test-on tests: name that as well")
     if arguments.seeds < 1:
         raise SettingsError("--seeds is 1 or more")
     methods = tuple(name for name in METHODS if name in methods)
@@ -98,7 +110,7 @@ def _protocol(arguments: argparse.Namespace) -> Protocol:
     folds = (
         leave_out(trained, arguments.leave_out)
         if arguments.test_on is None
-        else train_on_one_test_on_other(trained, tested)
+        else train_on_one_test_on_other(trained, tested, arguments.added)
     )
     return Protocol(
         trained,
@@ -108,6 +120,12 @@ def _protocol(arguments: argparse.Namespace) -> Protocol:
         chosen,
         arguments.seeds,
     )
+
+
+def _added(text: str) -> Added:
+    """Read PARTICIPANT or PARTICIPANT:N, as argparse does."""
+    name, separator, count = text.rpartition(":")
+    return Added(name, positive_count(count)) if separator else Added(text)
 
 
 def _terms(name: str, methods: Sequence[MethodName]) -> Terms:

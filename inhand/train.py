@@ -8,8 +8,14 @@ from pathlib import Path
 from inhand_lab.datasets.dataset import Dataset, load_dataset
 from inhand_lab.datasets.joint_names import named_joints
 from inhand_lab.datasets.stretches import stretches_note
+from inhand_lab.training.model_adaptation import adapt
 from inhand_lab.training.model_summary import summarise_model
-from inhand_lab.training.model_training import entries_for, model_stages, train
+from inhand_lab.training.model_training import (
+    entries_for,
+    model_stages,
+    recordings_of,
+    train,
+)
 from inhand_lab.training.presence_training import learn_presence
 from inhand_lab.training.recogniser_training import recogniser_stages, train_recogniser
 from inhand_runtime.errors import SettingsError
@@ -26,6 +32,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the verb's arguments."""
     parser.add_argument("dataset", type=Path, metavar="DATASET", help="a dataset's folder")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="MODEL")
+    parser.add_argument(
+        "--from",
+        dest="start",
+        type=Path,
+        metavar="MODEL",
+        help="adapt a model, of simulated people say, by the dataset's recordings: one is enough",
+    )
     parser.add_argument("--object", metavar="O", help="which one, where there are several")
     parser.add_argument(
         "--without",
@@ -55,12 +68,19 @@ def run(arguments: argparse.Namespace) -> int:
     dataset = load_dataset(arguments.dataset)
     if arguments.models and not arguments.recogniser:
         raise SettingsError("--models is for --recogniser: a model is learned by itself")
+    if arguments.start is not None and arguments.recogniser:
+        raise SettingsError("--from adapts a model of one object: leave --recogniser out")
     if arguments.recogniser:
         return _train_recogniser(dataset, arguments)
-    entries = entries_for(dataset, arguments.object, arguments.without)
-    stages = {**model_stages(len(entries)), "saving": 1}
+    start = None if arguments.start is None else load_model(arguments.start)
+    choose = entries_for if start is None else recordings_of
+    entries = choose(dataset, arguments.object, arguments.without)
+    stages = {**model_stages(len(entries), start), "saving": 1}
     with progress_bars(stages, lines=arguments.progress_lines) as advance:
-        model = train(dataset, entries, advance)
+        if start is None:
+            model = train(dataset, entries, advance)
+        else:
+            model = adapt(start, dataset, entries, advance)
         save_model(model, arguments.output)
         advance("saving")
     console = Console()

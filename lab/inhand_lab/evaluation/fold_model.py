@@ -14,23 +14,29 @@ from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.evaluation.folds import Fold
 from inhand_lab.training.absent_joints import absent_joints
 from inhand_lab.training.appearance_samples import appearance_samples
+from inhand_lab.training.model_adaptation import as_own
 from inhand_lab.training.model_training import checked_sequence, checked_shape
 from inhand_lab.training.recording_checks import check_hands
 from inhand_lab.training.rotation_checks import check_rotations
 
 
-def learn_fold_model(trained: Dataset, fold: Fold, *, images: bool, fused: bool) -> Model:
-    """Learn from the recordings of ``trained`` that a fold does not test.
+def learn_fold_model(
+    trained: Dataset, fold: Fold, *, images: bool, fused: bool, tested: Dataset | None = None
+) -> Model:
+    """Learn from the recordings of ``trained`` that a fold does not test, and from those of
+    ``tested`` that it adds, as the user's own.
 
     Boundaries are looked for with ``images`` only; a prior is learned, and with images an
     appearance, for a ``fused`` method only. Raises DatasetError or RecordingError.
     """
     shape = _shape(trained, fold)
     sequences = [_sequence(trained, entry) for entry in fold.trained]
-    check_hands(fold.trained, sequences)
-    absent = absent_joints(fold.trained, sequences)
+    sequences += [as_own(_sequence(tested or trained, entry)) for entry in fold.added]
+    entries = (*fold.trained, *fold.added)
+    check_hands(entries, sequences)
+    absent = absent_joints(entries, sequences)
     sequences = [sequence.with_stand_ins(absent) for sequence in sequences]
-    check_rotations(fold.trained, sequences, shape.mirror_normal)
+    check_rotations(entries, sequences, shape.mirror_normal)
     try:
         mapping = learn(sequences, shape.mirror_normal, absent_joints=absent)
     except UnusableSequenceError as error:

@@ -13,12 +13,14 @@ from inhand_lab.training.model_training import FEWEST_LEARNED
 class Fold:
     """The recordings of one interaction that are tested, and those that are learned from.
 
-    Where one recording is all there is to learn from, they are stretches.
+    Where one recording is all there is to learn from, they are stretches. Those that are ``added``
+    are of the dataset that is tested, of people who are not, and adapt what is learned.
     """
 
     interaction: str
     tested: tuple[DatasetEntry, ...]
     trained: tuple[DatasetEntry, ...]
+    added: tuple[DatasetEntry, ...] = ()
 
 
 def leave_one_out(dataset: Dataset) -> list[Fold]:
@@ -57,27 +59,61 @@ def leave_out(dataset: Dataset, count: int) -> list[Fold]:
     return _checked(folds, dataset)
 
 
-def train_on_one_test_on_other(trained: Dataset, tested: Dataset) -> list[Fold]:
-    """Make a fold of each interaction: all recordings of one set to learn from, all of the other to
-    test.
+@dataclass(frozen=True)
+class Added:
+    """A participant of the tested dataset who is learned from, by the first ``recordings`` of each
+    interaction, or by all of them (None)."""
 
-    Raises DatasetError where they share no interaction.
+    participant: str
+    recordings: int | None = None
+
+
+def train_on_one_test_on_other(
+    trained: Dataset, tested: Dataset, added: Sequence[Added] = ()
+) -> list[Fold]:
+    """Make a fold of each interaction: all recordings of one set to learn from, all of the other to
+    test; but for those of people who are ``added`` to what is learned.
+
+    Raises DatasetError where they share no interaction, or nobody of that name is there, or nobody
+    else.
     """
-    folds = [
-        Fold(
-            interaction,
-            _labelled(tested, interaction),
-            _enough(trained, _labelled(trained, interaction)),
+    folds = []
+    for interaction in tested.interactions():
+        entries = _labelled(tested, interaction)
+        names = [one.participant for one in added]
+        more = tuple(
+            entry
+            for one in added
+            for entry in [e for e in entries if e.participant == one.participant][: one.recordings]
         )
-        for interaction in tested.interactions()
-    ]
+        left = tuple(entry for entry in entries if entry.participant not in names)
+        enough = _enough(trained, _labelled(trained, interaction))
+        folds.append(Fold(interaction, left, enough, more))
     shared = [fold for fold in folds if fold.trained]
     if not shared:
         raise DatasetError(
             f"{trained.folder} and {tested.folder} share no labelled interaction: the one has "
             f"{_named(trained.interactions())}, the other {_named(tested.interactions())}"
         )
+    _check_added(shared, tested, added)
     return _checked(shared, trained)
+
+
+def _check_added(folds: Sequence[Fold], tested: Dataset, added: Sequence[Added]) -> None:
+    for fold in folds:
+        entries = (*fold.tested, *fold.added)
+        people = sorted({entry.participant for entry in entries})
+        there = {entry.participant for entry in fold.added}
+        for one in added:
+            if one.participant not in there:
+                raise DatasetError(
+                    f"{tested.folder} has no participant {one.participant!r} with "
+                    f"{fold.interaction}; there are: {', '.join(people)}"
+                )
+        if not fold.tested:
+            raise DatasetError(
+                f"{tested.folder} has nobody else to test with {fold.interaction}: add fewer"
+            )
 
 
 def _labelled(dataset: Dataset, interaction: str) -> tuple[DatasetEntry, ...]:
@@ -95,7 +131,9 @@ def _checked(folds: list[Fold], dataset: Dataset) -> list[Fold]:
     if not folds:
         raise DatasetError(f"{dataset.folder} has no labelled interaction to evaluate")
     for fold in folds:
-        objects = sorted({str(entry.object) for entry in (*fold.trained, *fold.tested)})
+        objects = sorted(
+            {str(entry.object) for entry in (*fold.trained, *fold.added, *fold.tested)}
+        )
         if len(objects) > 1:
             raise DatasetError(
                 f"{dataset.folder}: {fold.interaction} is done with {len(objects)} objects "

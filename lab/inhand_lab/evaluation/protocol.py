@@ -100,7 +100,7 @@ class Protocol:
     def learn(self, fold: Fold, *, images: bool) -> Model:
         """Learn what the methods need for a fold; raises DatasetError or RecordingError."""
         fused = any(METHODS[name].learns_prior for name in self.methods)
-        return learn_fold_model(self.trained, fold, images=images, fused=fused)
+        return learn_fold_model(self.trained, fold, images=images, fused=fused, tested=self.tested)
 
 
 def evaluate(

@@ -5,8 +5,10 @@ from functools import lru_cache
 
 from inhand_schemas.errors import MessageError
 from inhand_tracker.mapping.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
+from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.methods.registry import DEFAULT_METHOD, new_tracker
 from inhand_tracker.model.model import Model
+from inhand_tracker.model.taught import TaughtRecordings
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.shape.viewpoints import count_views, find_viewpoints
@@ -26,12 +28,14 @@ FEWEST_LEARNED = 2
 READING, VIEWPOINTS, APPEARANCE, PRIOR = "recordings", "viewpoints", "appearance", "prior"
 
 
-def model_stages(recordings: int) -> dict[str, int]:
-    """Name the stages of training a model, each with the number of its steps."""
+def model_stages(recordings: int, start: Model | None = None) -> dict[str, int]:
+    """Name the stages of training a model, or of adapting one, each with its number of steps."""
+    taught = 0 if start is None else len(start.mapping.participants)
+    viewpoints = {VIEWPOINTS: count_views()} if start is None else {}
     return {
         READING: recordings,
-        **dict.fromkeys(STAGES, recordings),
-        VIEWPOINTS: count_views(),
+        **dict.fromkeys(STAGES, taught + recordings),
+        **viewpoints,
         APPEARANCE: 1,
         PRIOR: 1,
     }
@@ -40,10 +44,21 @@ def model_stages(recordings: int) -> dict[str, int]:
 def entries_for(
     dataset: Dataset, object_name: str | None = None, without: Collection[str] = ()
 ) -> list[DatasetEntry]:
+    """Choose the labelled recordings of one object, as ``recordings_of`` does; where one is left it
+    is cut into stretches.
+
+    Raises DatasetError.
+    """
+    left = recordings_of(dataset, object_name, without)
+    return list(stretches_of(dataset, left[0], FEWEST_LEARNED)) if len(left) == 1 else left
+
+
+def recordings_of(
+    dataset: Dataset, object_name: str | None = None, without: Collection[str] = ()
+) -> list[DatasetEntry]:
     """Choose the labelled recordings of one object, but for some participants'.
 
-    Where one recording is left it is cut into stretches. ``object_name`` may be left out where the
-    dataset has one object. Raises DatasetError.
+    ``object_name`` may be left out where the dataset has one object. Raises DatasetError.
     """
     labelled = [entry for entry in dataset.entries if entry.object is not None]
     objects = sorted({entry.object for entry in labelled if entry.object is not None})
@@ -66,8 +81,7 @@ def entries_for(
             f"{dataset.folder} has no participant {unknown[0]!r} with {name!r}; there are: "
             f"{', '.join(participants)}"
         )
-    left = [entry for entry in chosen if entry.participant not in without]
-    return list(stretches_of(dataset, left[0], FEWEST_LEARNED)) if len(left) == 1 else left
+    return [entry for entry in chosen if entry.participant not in without]
 
 
 def _only(objects: Sequence[str], dataset: Dataset) -> str:
@@ -91,23 +105,35 @@ def train(
     """
     first = _first_of(dataset, entries)
     shape = checked_shape(dataset, str(first.object))
-    sequences = _read(dataset, entries, on_step)
+    sequences = read_recordings(dataset, entries, on_step)
     absent = absent_joints(entries, sequences)
     sequences = [sequence.with_stand_ins(absent) for sequence in sequences]
     check_rotations(entries, sequences, shape.mirror_normal)
-    try:
-        mapping = learn(sequences, shape.mirror_normal, on_step, absent_joints=absent)
-    except UnusableSequenceError as error:
-        raise DatasetError(f"{dataset.folder}: {error}") from None
+    mapping = learned_mapping(dataset, sequences, shape, absent, on_step)
     viewpoints = find_viewpoints(shape, on_view=lambda: on_step(VIEWPOINTS))
     appearance = learn_appearance(shape, appearance_samples(dataset, entries))
     on_step(APPEARANCE)
     prior = learn_prior(sequences, shape)
     on_step(PRIOR)
-    model = Model(first.interaction, shape, mapping, viewpoints, appearance, prior)
+    taught = TaughtRecordings.of(sequences)
+    model = Model(first.interaction, shape, mapping, viewpoints, appearance, prior, taught)
     # Compiles, once an installation, what the start of a rig would otherwise wait for.
     new_tracker(model, DEFAULT_METHOD)
     return model
+
+
+def learned_mapping(
+    dataset: Dataset,
+    sequences: Sequence[LabelledSequence],
+    shape: ObjectShape,
+    absent: tuple[int, ...],
+    on_step: Callable[[str], None],
+) -> Mapping:
+    """Learn the mapping of sequences; raises DatasetError."""
+    try:
+        return learn(sequences, shape.mirror_normal, on_step, absent_joints=absent)
+    except UnusableSequenceError as error:
+        raise DatasetError(f"{dataset.folder}: {error}") from None
 
 
 def _first_of(dataset: Dataset, entries: Sequence[DatasetEntry]) -> DatasetEntry:
@@ -122,7 +148,7 @@ def _first_of(dataset: Dataset, entries: Sequence[DatasetEntry]) -> DatasetEntry
     return entries[0]
 
 
-def _read(
+def read_recordings(
     dataset: Dataset, entries: Sequence[DatasetEntry], on_step: Callable[[str], None]
 ) -> list[LabelledSequence]:
     """Read and check all recordings; raises DatasetError."""

@@ -96,3 +96,10 @@ def test_a_report_that_cannot_be_written_is_one_line_before_anything_is_tracked(
     assert main(["evaluate", str(tmp_path / "set"), *arguments]) == 2
     (told,) = capsys.readouterr().err.splitlines()
     assert told.startswith(f"inhand evaluate: cannot write to {tmp_path / 'file'}")
+
+
+def test_people_are_added_of_what_is_tested_on_and_of_nothing_else(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["evaluate", str(tmp_path), "--with", "s1"]) == 2
+    assert "--test-on" in capsys.readouterr().err

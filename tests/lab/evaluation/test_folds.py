@@ -5,7 +5,12 @@ from pathlib import Path
 import pytest
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.stretches import RecordingStretch
-from inhand_lab.evaluation.folds import leave_one_out, leave_out, train_on_one_test_on_other
+from inhand_lab.evaluation.folds import (
+    Added,
+    leave_one_out,
+    leave_out,
+    train_on_one_test_on_other,
+)
 from waving import write_dataset
 
 
@@ -114,3 +119,21 @@ def test_sets_that_share_nothing_are_refused_with_what_they_have() -> None:
     trained, tested = dataset(entry("a", "a")), dataset(entry("a", "a", "sweep", "broom"))
     with pytest.raises(DatasetError, match="the one has wave, the other sweep"):
         train_on_one_test_on_other(trained, tested)
+
+
+def test_who_is_added_is_learned_from_and_not_tested() -> None:
+    trained = dataset(entry("a1", "a"), entry("b1", "b"))
+    tested = dataset(*(entry(f"{p}{n}", p) for p in ("s1", "s2") for n in range(3)))
+    (fold,) = train_on_one_test_on_other(trained, tested, [Added("s1", 2)])
+    assert [e.file for e in fold.added] == ["s10", "s11"]
+    assert {e.participant for e in fold.tested} == {"s2"}
+    assert {e.participant for e in fold.trained} == {"a", "b"}
+
+
+def test_somebody_who_is_not_there_cannot_be_added_nor_can_everybody() -> None:
+    trained = dataset(entry("a1", "a"), entry("b1", "b"))
+    tested = dataset(entry("s", "s1"), entry("t", "s2"))
+    with pytest.raises(DatasetError, match="no participant 's3' with wave; there are: s1, s2"):
+        train_on_one_test_on_other(trained, tested, [Added("s3")])
+    with pytest.raises(DatasetError, match="nobody else to test"):
+        train_on_one_test_on_other(trained, tested, [Added("s1"), Added("s2")])

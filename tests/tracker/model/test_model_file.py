@@ -17,6 +17,7 @@ from inhand_tracker.mapping.learning import learn
 from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.model.model import Model, ModelError
 from inhand_tracker.model.model_file import load_model, save_model
+from inhand_tracker.model.taught import TaughtRecordings
 from inhand_tracker.shape.contours import find_contours
 from inhand_tracker.shape.viewpoints import Viewpoints, find_viewpoints
 from inhand_tracker.sight.appearance import Appearance
@@ -28,9 +29,23 @@ from people import sequence, wedge
 @lru_cache(maxsize=1)
 def small_model() -> Model:
     shape = wedge()
-    mapping = learn([sequence(f"p{i}", 4, seed=i) for i in range(2)], shape.mirror_normal)
+    sequences = [sequence(f"p{i}", 4, seed=i) for i in range(2)]
+    mapping = learn(sequences, shape.mirror_normal)
     boundaries, surfaces = np.random.default_rng(0).normal(size=(2, 3, 50, 3))
-    return Model("wave", shape, mapping, Viewpoints(np.eye(3), boundaries, surfaces))
+    viewpoints, taught = Viewpoints(np.eye(3), boundaries, surfaces), TaughtRecordings.of(sequences)
+    return Model("wave", shape, mapping, viewpoints, taught=taught)
+
+
+def test_recordings_that_taught_come_back_nearly_as_they_were() -> None:
+    some = [
+        replace(sequence("p", 5), left_handed=True, recording="long.mcap", convention="kinect_v1"),
+        replace(sequence("q", 3, seed=1), frame_rate=15.0),
+    ]
+    for one, other in zip(some, TaughtRecordings.of(some).sequences(), strict=True):
+        np.testing.assert_allclose(other.joints, one.joints, atol=1e-6)
+        np.testing.assert_allclose(other.rotations, one.rotations, atol=1e-6)
+        for name in ("participant", "left_handed", "frame_rate", "recording", "convention"):
+            assert getattr(other, name) == getattr(one, name)
 
 
 @pytest.fixture

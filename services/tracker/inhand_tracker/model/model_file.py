@@ -10,6 +10,7 @@ from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.model.archive import ArchiveKind, Arrays, read_archive, write_archive
 from inhand_tracker.model.model import Model
 from inhand_tracker.model.prior_arrays import prior_from_arrays, prior_to_arrays
+from inhand_tracker.model.taught import TaughtRecordings
 from inhand_tracker.shape.contours import Contours
 from inhand_tracker.shape.shape import ObjectShape, Symmetry
 from inhand_tracker.shape.viewpoints import Viewpoints
@@ -59,6 +60,8 @@ def save_model(model: Model, path: Path | str) -> None:
         arrays |= _named("appearance", _values(model.appearance))
     if model.prior is not None:
         arrays |= _named("prior", prior_to_arrays(model.prior))
+    if model.taught is not None:
+        arrays |= _named("taught", model.taught.arrays())
     write_archive(MODEL_FILE, path, description, arrays)
 
 
@@ -87,11 +90,7 @@ def _assemble(description: dict[str, Any], arrays: Arrays) -> Model:
         arrays.get("viewpoints.surfaces"),
         _part("contours", Contours, arrays),
     )
-    of_prior = {
-        name.removeprefix("prior."): array
-        for name, array in arrays.items()
-        if name.startswith("prior.")
-    }
+    of_prior, taught = _arrays_of("prior", arrays), _arrays_of("taught", arrays)
     return Model(
         description["interaction"],
         shape,
@@ -99,6 +98,7 @@ def _assemble(description: dict[str, Any], arrays: Arrays) -> Model:
         viewpoints,
         _part("appearance", Appearance, arrays),
         prior_from_arrays(of_prior) if of_prior else None,
+        TaughtRecordings.from_arrays(taught) if taught else None,
     )
 
 
@@ -110,6 +110,16 @@ def _text_or_none(value: Any) -> str | None:
 
 def _named(part: str, arrays: Arrays) -> Arrays:
     return {f"{part}.{name}": array for name, array in arrays.items()}
+
+
+def _arrays_of(part: str, arrays: Arrays) -> Arrays:
+    """The arrays of a part by their own names; none where a file lacks it."""
+    beginning = f"{part}."
+    return {
+        name.removeprefix(beginning): array
+        for name, array in arrays.items()
+        if name.startswith(beginning)
+    }
 
 
 def _values(part: Contours | Appearance) -> Arrays:
