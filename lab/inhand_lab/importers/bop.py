@@ -21,7 +21,7 @@ from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
 from inhand_lab.importers.bop_models import find_models_folder, read_bop_shape
 from inhand_lab.importers.bop_scenes import BopCamera, BopFrame, BopScene, read_scenes
-from inhand_lab.importers.images import read_image
+from inhand_lab.importers.images import first_readable, read_image
 from inhand_lab.importers.messages import imported_label
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.timing import Timing, thin
@@ -55,9 +55,10 @@ def import_bop(
     takes = [take for scene in scenes for take in _takes(scene, timing.step)]
     models = _models_folder(scenes)
     _refuse_same_files(takes)
+    infos = [_camera_info(take, timing) for take in takes]
     writer = DatasetWriter(folder)
     _add_shapes(writer, models, takes)
-    for take in takes:
+    for take, info in zip(takes, infos, strict=True):
         names = {label.name for frame in take.frames for label in frame.labels}
         entry = DatasetEntry(
             file=take.file,
@@ -66,7 +67,7 @@ def import_bop(
             object=names.pop() if len(names) == 1 else None,
             frame_rate=timing.frame_rate,
         )
-        writer.add_recording(entry, _messages(take, timing))
+        writer.add_recording(entry, _messages(take, info, timing))
     return writer.finish({"importer": "bop"})
 
 
@@ -134,17 +135,15 @@ def _add_shapes(writer: DatasetWriter, models: Path | None, takes: Sequence[_Tak
             writer.add_shape(replace(shape, name=name))
 
 
-def _messages(take: _Take, timing: Timing) -> Iterator[Message]:
-    yield _camera_info(take, timing)
+def _messages(take: _Take, info: CameraInfo, timing: Timing) -> Iterator[Message]:
+    yield info
     for frame in take.frames:
         time_ns = timing.time_ns(frame.number)
-        colour = None if frame.colour is None else _read_colour(frame.colour)
-        depth = None if frame.depth is None else _read_depth(frame.depth)
-        if colour is not None and depth is not None and depth.shape != colour.shape[:2]:
-            raise DatasetError(
-                f"{frame.depth} is {depth.shape[1]} × {depth.shape[0]}, and {frame.colour} "
-                f"{colour.shape[1]} × {colour.shape[0]}: they should be aligned"
-            )
+        try:
+            colour, depth = _read_pixels(frame)
+        except DatasetError as error:
+            log.warning("%s; the frame is left out", error)
+            continue
         yield RgbdFrame(
             sequence=frame.number,
             time_ns=time_ns,
@@ -159,11 +158,9 @@ def _messages(take: _Take, timing: Timing) -> Iterator[Message]:
 
 
 def _camera_info(take: _Take, timing: Timing) -> CameraInfo:
-    first, camera = take.frames[0], take.camera
-    path = first.colour or first.depth
-    if path is None:
-        raise DatasetError(f"{take.scene.folder} holds no image")
-    height, width = read_image(path, cv2.IMREAD_UNCHANGED).shape[:2]
+    camera = take.camera
+    colour, depth = first_readable(take.frames, _read_pixels)
+    height, width = next(one.shape[:2] for one in (colour, depth) if one is not None)
     try:
         return CameraInfo(
             sequence=0,
@@ -182,6 +179,20 @@ def _camera_info(take: _Take, timing: Timing) -> CameraInfo:
         )
     except ValueError as error:
         raise DatasetError(f"{take.scene.folder}: {error}") from None
+
+
+def _read_pixels(frame: BopFrame) -> tuple[NDArray[Any] | None, NDArray[Any] | None]:
+    """Read a frame's colour and depth, of which one may be None; raises DatasetError."""
+    colour = None if frame.colour is None else _read_colour(frame.colour)
+    depth = None if frame.depth is None else _read_depth(frame.depth)
+    if colour is None and depth is None:
+        raise DatasetError(f"image {frame.number} has neither colour nor depth")
+    if colour is not None and depth is not None and depth.shape != colour.shape[:2]:
+        raise DatasetError(
+            f"{frame.depth} is {depth.shape[1]} × {depth.shape[0]}, and {frame.colour} "
+            f"{colour.shape[1]} × {colour.shape[0]}: they should be aligned"
+        )
+    return colour, depth
 
 
 def _read_colour(path: Path) -> NDArray[Any]:

@@ -91,8 +91,8 @@ class BopScene:
 def read_scenes(source: Path) -> list[BopScene]:
     """Read the labelled scenes of a data set, of one of its splits, or one scene.
 
-    Raises DatasetError. Warns of scenes without truth, and of frames without an image: both are
-    left out.
+    Warns of scenes without truth or with damaged files, and of frames without an image, which are
+    left out. Raises DatasetError where no scene is left.
     """
     if not source.is_dir():
         raise DatasetError(f"{source} is no folder: name the folder of a BOP data set")
@@ -101,13 +101,20 @@ def read_scenes(source: Path) -> list[BopScene]:
         for pattern in ("", "*/", "*/*/")
         for path in sorted(source.glob(f"{pattern}{CAMERA_FILE}*.json"))
     ]
-    scenes = []
+    scenes, errors = [], []
     for path in cameras:
         sensor = path.stem.removeprefix(CAMERA_FILE)
-        if path.with_name(f"{TRUTH}{sensor}.json").is_file():
-            scenes.append(_read_scene(path.parent, sensor))
-        else:
+        if not path.with_name(f"{TRUTH}{sensor}.json").is_file():
             log.warning("%s has no %s%s.json: left out", path.parent, TRUTH, sensor)
+            continue
+        try:
+            scenes.append(_read_scene(path.parent, sensor))
+        except DatasetError as error:
+            errors.append(error)
+    if errors and not scenes:
+        raise errors[0]
+    for reason in errors:
+        log.warning("%s; the scene is left out", reason)
     if not scenes:
         raise DatasetError(
             f"{source} holds no test/000001/{TRUTH}.json with a {CAMERA_FILE}.json: name the "

@@ -5,6 +5,7 @@ A source is the data set's folder, or an excerpt of it: ``data/0000/000001-color
 as ``ycb_shapes`` does.
 """
 
+import logging
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,12 +19,14 @@ from numpy.typing import NDArray
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
-from inhand_lab.importers.images import read_image
+from inhand_lab.importers.images import first_readable, read_image
 from inhand_lab.importers.messages import imported_label
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.timing import Timing, thin
 from inhand_lab.importers.ycb_annotations import Annotation, read_annotation, read_poses_file
 from inhand_lab.importers.ycb_shapes import find_shape
+
+log = logging.getLogger(__name__)
 
 RECORDED_RATE = 30.0
 COLOUR_SUFFIX = "-color.png"
@@ -52,8 +55,9 @@ def import_ycb_video(
     """
     timing = thin(sources[0], RECORDED_RATE, frame_rate)
     clips = [clip for root in sources for clip in read_clips(root, timing.step)]
+    infos = [_camera_info(clip, timing) for clip in clips]
     writer = DatasetWriter(folder)
-    for clip in clips:
+    for clip, info in zip(clips, infos, strict=True):
         for name in dict.fromkeys(n for a in clip.annotations for n in a.camera_from_objects):
             shape = find_shape(name, clip.folder.parent.parent, clip.frames)
             if shape is not None:
@@ -64,7 +68,7 @@ def import_ycb_video(
             participant=PARTICIPANT,
             frame_rate=timing.frame_rate,
         )
-        writer.add_recording(entry, _messages(clip, timing))
+        writer.add_recording(entry, _messages(clip, info, timing))
     return writer.finish({"importer": "ycb-video"})
 
 
@@ -98,6 +102,17 @@ def read_depth_units(frame: Path) -> NDArray[Any]:
     return read_image(frame.with_name(frame.name + DEPTH_SUFFIX), cv2.IMREAD_UNCHANGED)
 
 
+def _read_pixels(frame: Path) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Read a frame's colour and depth, which are aligned; raises DatasetError."""
+    colour, depth = read_colour(frame), read_depth_units(frame)
+    if depth.dtype != np.uint16 or depth.shape != colour.shape[:2]:
+        raise DatasetError(
+            f"{frame}{DEPTH_SUFFIX} is {depth.dtype} {depth.shape}, and should be uint16 "
+            f"{colour.shape[:2]} as its colour image"
+        )
+    return colour, depth
+
+
 def _numbered_frames(folder: Path) -> dict[int, Path]:
     frames = {}
     for path in sorted(folder.glob(f"*{COLOUR_SUFFIX}")):
@@ -111,16 +126,15 @@ def _numbered_frames(folder: Path) -> dict[int, Path]:
     return frames
 
 
-def _messages(clip: Clip, timing: Timing) -> Iterator[Message]:
-    yield _camera_info(clip, timing)
+def _messages(clip: Clip, info: CameraInfo, timing: Timing) -> Iterator[Message]:
+    yield info
     for number, path, annotation in zip(clip.numbers, clip.frames, clip.annotations, strict=True):
         time_ns = timing.time_ns(number)
-        colour, depth = read_colour(path), read_depth_units(path)
-        if depth.dtype != np.uint16 or depth.shape != colour.shape[:2]:
-            raise DatasetError(
-                f"{path}{DEPTH_SUFFIX} is {depth.dtype} {depth.shape}, and should be uint16 "
-                f"{colour.shape[:2]} as its colour image"
-            )
+        try:
+            colour, depth = _read_pixels(path)
+        except DatasetError as error:
+            log.warning("%s; the frame is left out", error)
+            continue
         yield RgbdFrame(
             sequence=number,
             time_ns=time_ns,
@@ -133,7 +147,8 @@ def _messages(clip: Clip, timing: Timing) -> Iterator[Message]:
 
 def _camera_info(clip: Clip, timing: Timing) -> CameraInfo:
     first = clip.annotations[0]
-    height, width = read_colour(clip.frames[0]).shape[:2]
+    colour, _ = first_readable(clip.frames, _read_pixels)
+    height, width = colour.shape[:2]
     return CameraInfo(
         sequence=0,
         time_ns=timing.time_ns(0),

@@ -273,6 +273,17 @@ def test_a_damaged_data_set_is_refused(
         import_bop([root], tmp_path / "out")
 
 
+def test_a_damaged_scene_among_good_ones_is_named_and_left_out(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    root = save_bop(tmp_path / "in")
+    save_scene(root / "test/000002", {0: [instance()]})
+    (root / "test/000002/scene_gt.json").write_text("{")
+    assert len(import_bop([root], tmp_path / "out").entries) == 1
+    assert "000002" in caplog.text
+    assert "the scene is left out" in caplog.text
+
+
 def test_two_data_sets_are_not_mixed(tmp_path: Path) -> None:
     roots = [save_bop(tmp_path / name) for name in ("one", "other")]
     with pytest.raises(DatasetError, match="2 data sets"):
