@@ -97,6 +97,7 @@ def measure_stages(learned: LearnedObjects, first_frames: int, *, images: bool) 
     needs = method.needs(method.usual_terms) if images else ()
     booked: list[dict[str, int]] = []
     for seen in observe(learned.recording, frames, needs):
+        followed.convention = seen.convention
         with stages_timed() as clock, clock.running(REST):
             followed.step(seen.joints, seen.time_ns, seen.image)
         booked.append(clock.nanoseconds)

@@ -51,7 +51,12 @@ def main(arguments: Sequence[str]) -> None:
 
 
 def _step_ms(trackers: Sequence[Any], seen: Any) -> float:
-    """Milliseconds of processor time in which trackers see a frame, which is decoded already."""
+    """Milliseconds of processor time in which trackers see a frame, which is decoded already.
+
+    Checkouts of before there were conventions have frames that name none.
+    """
+    for tracker in trackers:
+        tracker.convention = getattr(seen, "convention", None)
     began = time.process_time_ns()
     for tracker in trackers:
         tracker.step(seen.joints, seen.time_ns, seen.image)

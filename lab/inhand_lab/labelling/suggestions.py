@@ -97,6 +97,7 @@ def tracked_suggestions(
     needs, suggestions = method.needs(method.usual_terms), _nothing(first, last)
     before: int | None = None
     with open_frames(scene.path, scene.camera) as frames:
+        tracker.convention = frames.skeletons(first).convention
         for frame in range(first, last + 1):
             person = scene.people[frame]
             if before is not None and person not in (None, before):
