@@ -42,7 +42,8 @@ class Track:
 
     def of(self, chosen: Flags) -> "Track":
         """Return the track of the chosen frames (T,) alone."""
-        return Track(self.translations[chosen], self.rotations[chosen])
+        covariances = None if self.covariances is None else self.covariances[chosen]
+        return Track(self.translations[chosen], self.rotations[chosen], covariances)
 
 
 def empty_track(frames: int) -> Track:

@@ -77,6 +77,19 @@ class ErrorGauge:
             self._add(estimated, true, between),
         )
 
+    def stated_m(self, track: Track) -> Array:
+        """Return the deviation of the marked vertices (T,), in metres, that the covariances of T
+        poses state, root mean square; NaN where there is none."""
+        stated = np.full(len(track.translations), np.nan)
+        if track.covariances is not None:
+            # A vertex at v from the origin moves by t + w x v of a deviation (t, w).
+            arms = rotations.rotate(track.rotations[:, None], self._shape.marked_vertices)
+            crosses = np.cross(np.eye(3), -arms[:, :, None], axis=-1)
+            moved = np.concatenate(np.broadcast_arrays(np.eye(3), crosses), axis=-2)
+            variances = np.einsum("tvai,tab,tvbi->t", moved, track.covariances, moved)
+            stated = np.sqrt(np.maximum(variances, 0.0) / len(self._shape.marked_vertices))
+        return stated
+
     def _add(self, estimated: Track, true: Track, between: Array) -> Array:
         """Return ADD(-S) (T,), in the true object's frame, where the surface stands still."""
         offsets = rotations.rotate(

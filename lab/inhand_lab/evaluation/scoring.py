@@ -27,6 +27,8 @@ class Score:
     counts until the next. Shares are of all labelled frames; a frame before the first pose is
     neither within 5 cm and 5° nor under the curve, and lost. ``region_share`` is the share of
     poses whose own 90 % region, by their covariance, holds the true one; None where none has one.
+    ``stated`` are, of each pose with a covariance, the deviation of its vertices that this states
+    and their error, in metres.
     """
 
     frames: int
@@ -39,6 +41,7 @@ class Score:
     recoveries: Recoveries
     body_recoveries: Recoveries
     region_share: float | None = None
+    stated: tuple[tuple[float, float], ...] = ()
 
 
 class Judge:
@@ -63,6 +66,8 @@ class Judge:
         errors = self._gauge.compare(track.held().of(self._labelled), self._true)
         if not np.isfinite(errors.vertex_m).any():
             return None
+        own = track.of(self._labelled)
+        stated = np.stack((self._gauge.stated_m(own), errors.vertex_m), axis=1)
         lost = lost_frames(errors.vertex_m, track.given[self._labelled])
         return Score(
             len(lost),
@@ -74,9 +79,6 @@ class Judge:
             float(lost.mean()),
             recoveries(lost, self._times),
             recoveries_after(self._body_lost, lost, self._times),
-            region_share(
-                track.of(self._labelled),
-                self._true,
-                None if track.covariances is None else track.covariances[self._labelled],
-            ),
+            region_share(own, self._true, own.covariances),
+            tuple((float(one), float(error)) for one, error in stated[np.isfinite(stated).all(1)]),
         )

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
+from scipy.stats import spearmanr
 
 from inhand_lab.evaluation.lost_tracks import Recoveries
 from inhand_lab.evaluation.protocol import Terms, Trial
@@ -19,6 +20,8 @@ from inhand_lab.evaluation.scoring import Score
 Figures = dict[str, float | None]
 WORST = "worst_recording_cm"
 """The figure that is the largest vertex error of a recording in any fold."""
+RANKED = "stated_rank_correlation"
+"""The figure that says how well stated deviations rank errors: Spearman's, over all frames."""
 
 
 def summarise(trials: Sequence[Trial]) -> dict[str, Any]:
@@ -31,6 +34,7 @@ def summarise(trials: Sequence[Trial]) -> dict[str, Any]:
             for interaction in _distinct(trial.interaction for trial in of_method)
         }
         means = {key: _over_interactions(key, cells.values()) for key in _FIGURES}
+        means[RANKED] = _rank_correlation(of_method)
         summary[method] = {**means, "paper_cm": VERTEX_ERROR_CM.get(method), "interactions": cells}
     reference = summary.get(REFERENCE_METHOD)
     for figures in summary.values():
@@ -112,11 +116,21 @@ _FIGURES: dict[str, Callable[[Sequence[Trial]], float | None]] = {
     "within_90_percent_region_percent": lambda trials: _mean_share(
         [trial.score.region_share for trial in trials]
     ),
+    RANKED: lambda trials: _rank_correlation(trials),
     "add_area_percent": _mean_of(lambda score: 100.0 * score.area_under_curve),
     "lost_percent": _mean_of(lambda score: 100.0 * score.lost_share),
     "recovery_s": _mean_recovery(lambda score: score.recoveries),
     "body_recovery_s": _mean_recovery(lambda score: score.body_recoveries),
 }
+
+
+def _rank_correlation(trials: Sequence[Trial]) -> float | None:
+    """Spearman's correlation of what covariances state with the errors, over all frames; None where
+    none has a covariance, or all state the same."""
+    pairs = np.array([pair for trial in trials for pair in trial.score.stated]).reshape(-1, 2)
+    if len(pairs) < 2 or (pairs == pairs[0]).all(axis=0).any():
+        return None
+    return float(spearmanr(pairs[:, 0], pairs[:, 1]).statistic)
 
 
 def _mean_share(shares: Sequence[float | None]) -> float | None:

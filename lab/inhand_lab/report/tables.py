@@ -17,6 +17,7 @@ MEASURES = {
     "translation_cm": "translation, cm",
     "within_5cm_5deg_percent": "within 5 cm 5°, %",
     "within_90_percent_region_percent": "within its 90 % region, %",
+    "stated_rank_correlation": "stated, rank of errors",
     "add_area_percent": "ADD(-S) area, %",
     "lost_percent": "lost, %",
     "recovery_s": "recovery, s",
@@ -48,7 +49,7 @@ def error_grid(methods: Mapping[str, Any], remark: str = "") -> Grid:
 def measures_grid(methods: Mapping[str, Any]) -> Grid:
     """Return the other measures, means over interactions."""
     rows = tuple(
-        (title, *(_number(method[key]) for method in methods.values()))
+        (title, *(_number(method[key], _digits(key)) for method in methods.values()))
         for key, title in MEASURES.items()
     )
     return Grid("means over interactions", ("measure", *methods), rows)
@@ -56,12 +57,12 @@ def measures_grid(methods: Mapping[str, Any]) -> Grid:
 
 def interaction_grid(measure: str, methods: Mapping[str, Any]) -> Grid:
     """Return one of the other measures for every interaction."""
-    interactions = next(iter(methods.values()))["interactions"]
+    interactions, digits = next(iter(methods.values()))["interactions"], _digits(measure)
     rows = tuple(
-        (name, *(_number(method["interactions"][name][measure]) for method in methods.values()))
+        (name, *(_number(one["interactions"][name][measure], digits) for one in methods.values()))
         for name in interactions
     )
-    mean = ("mean", *(_number(method[measure]) for method in methods.values()))
+    mean = ("mean", *(_number(method[measure], digits) for method in methods.values()))
     return Grid(MEASURES[measure], ("interaction", *methods), rows, (mean,))
 
 
@@ -101,6 +102,11 @@ def _published_ratio(value: float | None) -> float | None:
 
 def _spread(figures: Mapping[str, float]) -> str:
     return f"{figures['vertex_error_cm']:.1f} ± {figures['sd']:.1f}"
+
+
+def _digits(measure: str) -> int:
+    """Return the number of digits behind the point: of a correlation one says little."""
+    return 2 if measure == "stated_rank_correlation" else 1
 
 
 def _number(value: float | None, digits: int = 1) -> str:

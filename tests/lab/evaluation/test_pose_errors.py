@@ -122,3 +122,16 @@ def test_the_angle_is_the_least_over_equal_poses(
     between = quaternions(tuple(np.radians(turn).tolist()))
     assert np.degrees(least_angle(between, symmetries)) == pytest.approx([left_deg], abs=1e-5)
     assert np.degrees(least_angle(-between, symmetries)) == pytest.approx([left_deg], abs=1e-5)
+
+
+def test_the_stated_deviation_is_that_of_vertices_of_drawn_poses() -> None:
+    random = np.random.default_rng(0)
+    root = 0.01 * random.normal(size=(6, 6))
+    turn = Rotation.from_rotvec([0.4, -1.0, 0.3])
+    one = Track(np.zeros((1, 3)), turn.as_quat(scalar_first=True)[None], (root @ root.T)[None])
+    drawn = random.normal(size=(20000, 6)) @ root.T
+    arms = turn.apply(box().marked_vertices)
+    moved = drawn[:, None, :3] + np.cross(drawn[:, None, 3:], arms)
+    expected = np.sqrt(np.square(moved).sum(axis=-1).mean())
+    assert ErrorGauge(box()).stated_m(one)[0] == pytest.approx(expected, rel=0.02)
+    assert np.isnan(ErrorGauge(box()).stated_m(Track(one.translations, one.rotations))[0])

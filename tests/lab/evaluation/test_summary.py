@@ -91,3 +91,15 @@ def test_the_worth_of_a_term_is_over_all_methods_and_may_be_a_loss() -> None:
 )
 def test_terms_have_names(terms: Terms, name: str) -> None:
     assert terms_name(terms) == name
+
+
+def test_how_stated_deviations_rank_errors_is_seen_over_frames_of_all_interactions() -> None:
+    def stating(pairs: tuple[tuple[float, float], ...], interaction: str) -> Trial:
+        one = trial(10.0, interaction=interaction)
+        return dataclasses.replace(one, score=dataclasses.replace(one.score, stated=pairs))
+
+    small, large = ((0.02, 0.03), (0.03, 0.01)), ((0.2, 0.3), (0.3, 0.1))
+    summary = summarise([stating(small, "wave"), stating(large, "sweep")])["gd-stable-proximate"]
+    assert summary["interactions"]["wave"]["stated_rank_correlation"] == pytest.approx(-1.0)
+    assert summary["stated_rank_correlation"] == pytest.approx(0.6)
+    assert summarise([trial(10.0)])["gd-stable-proximate"]["stated_rank_correlation"] is None

@@ -15,6 +15,10 @@ from inhand_tracker.prior.parameters import PriorLearningParameters
 from inhand_tracker.prior.prediction import Prediction
 from inhand_tracker.prior.samples import Samples
 
+LEAST_VARIANCE = 1e-6
+"""Variance, of a millimetre and a milliradian, that a hold has at the least: joints are never known
+better."""
+
 
 def learn_hold(
     samples: Samples,
@@ -36,7 +40,9 @@ def learn_hold(
         return None
     spaced = np.linspace(0, len(rows) - 1, parameters.landmarks).round().astype(np.int64)
     carried = samples.take(rows[np.unique(spaced)])
-    trials = [trial for number in range(len(HOLDERS)) for trial in _trials(carried, number)]
+    trials = [
+        trial for number in range(len(HOLDERS)) for trial in _trials(carried, number, parameters)
+    ]
     scores = [trial.score(root) * trial.caution(parameters) for trial in trials]
     best = trials[int(np.argmin(scores))]
     held = best.tried_on(landmarks)
@@ -142,7 +148,7 @@ class _Trial:
         """The mean of all samples, with the calibrated covariance of the held-out errors of
         ``units`` people."""
         errors = self.errors()
-        least = _LEAST_VARIANCE * np.eye(6)
+        least = LEAST_VARIANCE * np.eye(6)
         weighted = self.samples.weights()[:, None] * errors
         covariance = widened(errors.T @ weighted + least, widening_of(units))
         at_each = np.broadcast_to(covariance, (len(errors), 6, 6))
@@ -151,20 +157,25 @@ class _Trial:
         return replace(everybody, covariance=calibration * covariance + least)
 
 
-def _trials(samples: Samples, holder: int) -> Iterator[_Trial]:
-    """Try a holder by itself, and with the other hand where there is one."""
+def _trials(samples: Samples, holder: int, parameters: PriorLearningParameters) -> Iterator[_Trial]:
+    """Try a holder by itself, and with the other hand where that is on the object as well."""
     alone = _Trial(samples, holder)
     yield alone
-    if HOLDERS[holder].other is not None:
-        _, _, ways = find_holder(samples.anchors, holder)
-        apart = _turned_back(samples.rotations, ways)
-        off = np.empty_like(apart)
-        for group in np.unique(samples.groups):
-            rows = samples.groups == group
-            off[rows] = apart[rows] - apart[~rows].mean(axis=0)
+    if HOLDERS[holder].other is None:
+        return
+    _, _, ways = find_holder(samples.anchors, holder)
+    places = _turned_back(samples.rotations, ways)
+    usual, mean = np.empty_like(places), np.empty_like(places)
+    for group in np.unique(samples.groups):
+        rows = samples.groups == group
+        usual[rows] = np.median(places[~rows], axis=0)
+        mean[rows] = places[~rows].mean(axis=0)
+    if np.median(np.linalg.norm(places - usual, axis=1)) < parameters.other_grip_m:
         # Of the likelihood of a rotation and of the other hand's place, both normal.
         turned = float(np.square(alone.errors()[:, 3:]).mean())
-        yield _Trial(samples, holder, 2.0 * turned / (np.square(off).mean() + _LEAST_VARIANCE))
+        yield _Trial(
+            samples, holder, 2.0 * turned / (np.square(places - mean).mean() + LEAST_VARIANCE)
+        )
 
 
 def _errors_in_object(centres: Array, turns: Array, samples: Samples) -> Array:
@@ -177,8 +188,3 @@ def _errors_in_object(centres: Array, turns: Array, samples: Samples) -> Array:
 def _turned_back(turns: Array, vectors: Array) -> Array:
     """Give vectors (T, 3) in the axes of rotations (T, 3, 3)."""
     return np.einsum("tji,tj->ti", turns, vectors)
-
-
-_LEAST_VARIANCE = 1e-6
-"""Variance, of a millimetre and a milliradian, that a hold has at the least: joints are never known
-better."""

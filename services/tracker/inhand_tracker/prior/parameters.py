@@ -68,6 +68,9 @@ class PriorLearningParameters:
     """Seconds that each of these windows lasts."""
     carried_pause_s: float = 0.8
     """Seconds between two such frames within which the object is carried all the time."""
+    other_grip_m: float = 0.07
+    """Metres from where it is on the object for others, in the median, within which the other hand
+    holds it as well: it is 0.04 of bars and clubs, 0.13 and more of what one hand holds."""
     other_holder_ratio: float = 1.1
     """Factor on the errors of a holder that is not the dominant hand: that one keeps its grip where
     the other slides along, which people in training may not have done."""
