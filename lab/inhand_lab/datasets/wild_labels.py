@@ -27,7 +27,7 @@ def without_wild_labels(
     if not frames:
         return truth
     log.warning(
-        "%s: %s where the object cannot have been between the others, and left out: %s",
+        "%s: %s left out, for the object cannot have been there between the others: %s",
         name,
         counted(len(frames), "label is", "labels are"),
         named_frames(frames, parameters.most_named),
