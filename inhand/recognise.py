@@ -2,6 +2,7 @@
 
 import argparse
 import time
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from inhand_lab.recognition.false_objects import FalseObjectProtocol
 from inhand_lab.recognition.false_objects_by_movement import count_by_movement
 from inhand_lab.recognition.false_objects_with_images import count_with_images
 from inhand_lab.recognition.movement_alone import RecognitionAlone, recognise_alone
+from inhand_lab.recognition.movement_on_others import recognise_others, transfer_steps
 from inhand_lab.recognition.parameters import DEFAULT_RECOGNITION_EVALUATION
 from inhand_lab.recognition.recognition_protocol import (
     CASCADES,
@@ -21,7 +23,11 @@ from inhand_lab.recognition.recognition_protocol import (
     evaluate_recognition,
 )
 from inhand_lab.recognition.recognition_summary import summarise_recognition
-from inhand_lab.recognition.recognition_tables import false_object_grid, recognition_grids
+from inhand_lab.recognition.recognition_tables import (
+    false_object_grid,
+    known_frames_grid,
+    recognition_grids,
+)
 from inhand_lab.report.grid import Grid
 from inhand_lab.report.report_folder import prepare_report_folder
 from inhand_lab.workers import usable_cores
@@ -48,11 +54,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="people who use nothing, and actions that were left out of training: with images "
         "where the dataset has some, else by skeletons alone",
     )
+    what.add_argument(
+        "--test-on",
+        type=Path,
+        metavar="DATASET",
+        help="recognition alone on the people of another dataset, as of another sensor, and false "
+        "objects of idle people and of actions that were left out of training",
+    )
+    parser.add_argument(
+        "--taught-by",
+        default="",
+        metavar="P,P",
+        help="with --test-on: people of that dataset who teach too, and are not tested",
+    )
     parser.add_argument(
         "--others",
         type=Path,
         metavar="DATASET",
-        help="with --false-objects: people whose actions were never trained",
+        help="with --false-objects or --test-on: people whose actions were never trained",
     )
     parser.add_argument(
         "--methods", default=",".join(CASCADES), metavar="a,b", help="(default: both cascades)"
@@ -90,6 +109,8 @@ def run(arguments: argparse.Namespace) -> int:
     dataset = load_dataset(arguments.dataset)
     if arguments.alone:
         result, grids = _alone(dataset, arguments.report)
+    elif arguments.test_on is not None:
+        result, grids = _on_others(dataset, arguments)
     elif arguments.false_objects:
         result, grids = _false_objects(dataset, arguments)
     else:
@@ -135,6 +156,19 @@ def _alone(dataset: Dataset, report: Path | None) -> tuple[dict[str, Any], list[
     grid = Grid("recognised right, people left out", ("of", "%"), rows)
     matrices = {title: matrix.tolist() for title, matrix in _confusions(alone).items()}
     return {**summary, "actions": alone.actions, "confusion": matrices}, [grid]
+
+
+def _on_others(
+    dataset: Dataset, arguments: argparse.Namespace
+) -> tuple[dict[str, Any], list[Grid]]:
+    others = load_dataset(arguments.test_on)
+    never_trained = None if arguments.others is None else load_dataset(arguments.others)
+    taught_by = [name for name in arguments.taught_by.split(",") if name]
+    with progress_bar("lessons", transfer_steps(dataset, others)) as advance:
+        counts = recognise_others(
+            dataset, others, taught_by, never_trained, usable_cores(), advance
+        )
+    return {"counts": [asdict(count) for count in counts]}, [known_frames_grid(counts)]
 
 
 def _confusions(alone: RecognitionAlone) -> dict[str, Any]:

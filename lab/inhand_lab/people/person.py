@@ -119,8 +119,8 @@ class SimulatedPerson:
     appearance: int
     """Seed of skin, hair and clothes."""
     variety: float = 1.0
-    """Share of the usual variety in what is not the body: manner, places, interruptions; 0 is the
-    world up to version 6."""
+    """Share of the usual variety in what is not the body: manner, places, interruptions, cameras; 0
+    is the world up to version 6."""
 
 
 def sample_person(seed: int, participant: int, variety: float = 1.0) -> SimulatedPerson:

@@ -1,7 +1,6 @@
 """Measures real and simulated people alike, each by skeletons, depth and returning poses.
 
-The real ones are those of UTD-MHAD; the simulated ones are seen with the Kinect preset, from before
-as they are.
+The real ones are those of UTD-MHAD; the simulated ones are seen with the Kinect preset.
 """
 
 from __future__ import annotations
@@ -22,10 +21,9 @@ from inhand_lab.realism.depth_properties import DepthMeasures, DepthPair, measur
 from inhand_lab.realism.parameters import DEFAULT_REALISM
 from inhand_lab.realism.repeatability import body_pose_sequence, return_distance_by_joint
 from inhand_lab.realism.skeleton_properties import FRAME_RATE, ObservedSkeletons
-from inhand_lab.sensing.cameras import KINECT
 from inhand_lab.sensing.render import ROOM
 from inhand_lab.world.interactions import INTERACTIONS
-from inhand_lab.world.simulation import USUAL_FRAMES, Casting, Simulation, simulate_cast
+from inhand_lab.world.simulation import Simulation, simulate
 
 
 @dataclass(frozen=True)
@@ -68,10 +66,7 @@ def _real_person(trials: Sequence[utd_mhad.UtdMhadTrial]) -> MeasuredPerson:
 
 
 def _simulated_person(seed: int, number: int) -> MeasuredPerson:
-    casts = [
-        Casting(interaction, number, seed, seen_from_before=True) for interaction in INTERACTIONS
-    ]
-    done = [simulate_cast(cast, USUAL_FRAMES, KINECT) for cast in casts]
+    done = [simulate(interaction, number, seed) for interaction in INTERACTIONS]
     step = DEFAULT_REALISM.simulated_depth_step
     return MeasuredPerson(
         [ObservedSkeletons.of(one.joints_in_camera) for one in done],

@@ -23,6 +23,9 @@ class RecognitionEvaluationParameters:
     """Number of them, of each kind, for each unseen participant, where there are images; each costs
     as long as a recording does."""
 
+    moved_m: float = 0.12
+    """Metres that an elbow or wrist moves against the hips where somebody is no longer still."""
+
     least_box_pixels: float = 8.0
     """Width and height in pixels to which a smaller first box is widened, because some adaptive
     trackers refuse one."""

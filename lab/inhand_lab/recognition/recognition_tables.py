@@ -1,8 +1,10 @@
 """Tables of recognition, beside the published one."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from inhand_lab.recognition.false_objects import FalseObjects
+from inhand_lab.recognition.movement_on_others import KnownFrames, together
 from inhand_lab.recognition.recognition_protocol import CASCADES
 from inhand_lab.report.grid import NOTHING, Grid
 
@@ -87,3 +89,19 @@ def _cell(row: dict[str, Any]) -> str:
 
 def _number(value: float | None) -> str:
     return NOTHING if value is None else f"{value:.1f}"
+
+
+def known_frames_grid(counts: Sequence[KnownFrames]) -> Grid:
+    """Lay out what is known of people of another dataset, and false objects."""
+    rows = []
+    for kind in dict.fromkeys(count.kind for count in counts):
+        some = [count for count in counts if count.kind == kind]
+        rows += [(kind, count.action, *_percents(count)) for count in some]
+        if len(some) > 1:
+            rows.append((kind, "all", *_percents(together(some))))
+    names = ("people's action is", "", "right", "wrong", "known before moving")
+    return Grid("known, % of frames, by movement alone", names, tuple(rows))
+
+
+def _percents(count: KnownFrames) -> tuple[str, ...]:
+    return tuple(f"{value:.1f}" for value in count.percent)

@@ -10,52 +10,24 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from inhand_tracker.geometry.arrays import Array, Flags, Indices
+from inhand_tracker.geometry.arrays import Array, Flags
 from inhand_tracker.recognition.class_filter import ClassFilter
 from inhand_tracker.recognition.movement_classes import MovementClasses
+from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
 from numpy.typing import NDArray
-from scipy.cluster.vq import kmeans2
-from scipy.linalg import eigh
 
+from inhand_lab.training.movement_gaussians import (
+    MovementFrames,
+    MovementSequence,
+    clustered,
+    fit_gaussians,
+    gathered,
+    owners_of,
+)
 from inhand_lab.training.parameters import DEFAULT_TRAINING, TrainingParameters
 
-SMALL = 1e-6
-"""Spread of a feature, and share of the strongest direction, that counts as none."""
-EMPTY_SIZE = 1e-3
-"""Number of frames that a Gaussian without any is taken to have."""
 LEAST_PROBABILITY = 1e-9
 """Probability of the true action at the least, so that one frame cannot decide on a temper."""
-
-
-@dataclass(frozen=True)
-class MovementSequence:
-    """Features (N, D) of frames of a recording at ``times_ns`` (N,).
-
-    Actions count from 0; the number after the last is that of people who use nothing.
-    """
-
-    action: int
-    participant: str
-    features: Array
-    times_ns: Indices
-
-
-@dataclass(frozen=True)
-class _Frames:
-    """All frames of all sequences: features (N, D), and of each its action, person, Gaussian."""
-
-    features: Array
-    actions: Indices
-    people: NDArray[np.str_]
-    gaussians: Indices
-
-    def of(self, chosen: Flags) -> _Frames:
-        return _Frames(
-            self.features[chosen],
-            self.actions[chosen],
-            self.people[chosen],
-            self.gaussians[chosen],
-        )
 
 
 @dataclass(frozen=True)
@@ -73,14 +45,14 @@ def train_movements(
 ) -> tuple[MovementClasses, float]:
     """Learn classes of movements, and the temper: the share of each frame's evidence that is new.
 
-    The sequences are of two participants at least, and of every action and of none.
+    The sequences are of two participants at least, and of every action and of none. People unlike
+    all others teach the arms' classes alone: nobody else shows how people like them vary.
     """
-    owners = _owners(actions, parameters)
-    frames = _clustered(_gathered(sequences), owners, parameters)
-    folds = [
-        _Fold(out, _fit(frames.of(~out), owners, parameters))
-        for out in _groups(frames.people, parameters.groups)
-    ]
+    arms = _fit_arms(sequences, actions, parameters)
+    frames, folds = _left_out(sequences, actions, parameters)
+    if strangers := _strangers(folds, frames, parameters.within_limits_share):
+        sequences = [one for one in sequences if one.participant not in strangers]
+        frames, folds = _left_out(sequences, actions, parameters)
     says = _says(folds, frames, parameters.prior_frames)
     limits = _limits(folds, frames, parameters.within_limits_share)
     reaches = _reaches(folds, frames, parameters.within_reach_share)
@@ -90,85 +62,60 @@ def train_movements(
 
     folds = [replace(fold, classes=judged(fold.classes)) for fold in folds]
     temper = _best_temper(folds, frames, sequences, parameters.tempers)
-    return judged(_fit(frames, owners, parameters)), temper
+    classes = judged(fit_gaussians(frames, folds[0].classes.owners, parameters.shrinkage))
+    return replace(classes, arms=arms), temper
 
 
-def _owners(actions: int, parameters: TrainingParameters) -> Indices:
-    """Return the class (G,) of each Gaussian."""
-    counts = [parameters.action_gaussians] * actions + [parameters.idle_gaussians]
-    return np.repeat(np.arange(actions + 1), counts)
+def _fit_arms(
+    sequences: Sequence[MovementSequence], actions: int, parameters: TrainingParameters
+) -> MovementClasses:
+    """Fit the classes of the arms' movements, which all people teach."""
+    owners = owners_of(actions, parameters.arm_gaussians, parameters.idle_gaussians)
+    shrinkage = parameters.arm_shrinkage
+    frames = clustered(gathered(sequences, arms=True), owners, shrinkage)
+    return fit_gaussians(frames, owners, shrinkage)
 
 
-def _gathered(sequences: Sequence[MovementSequence]) -> _Frames:
-    """Put all sequences together; no frame has a Gaussian yet."""
-    lengths = [len(one.features) for one in sequences]
-    return _Frames(
-        np.concatenate([one.features for one in sequences]),
-        np.repeat([one.action for one in sequences], lengths),
-        np.repeat([one.participant for one in sequences], lengths),
-        np.zeros(sum(lengths), np.int64),
-    )
+def _left_out(
+    sequences: Sequence[MovementSequence], actions: int, parameters: TrainingParameters
+) -> tuple[MovementFrames, list[_Fold]]:
+    """Return all frames, and what is learned where each group of participants is left out."""
+    owners = owners_of(actions, parameters.action_gaussians, parameters.idle_gaussians)
+    frames = clustered(gathered(sequences), owners, parameters.shrinkage)
+    return frames, [
+        _Fold(out, fit_gaussians(frames.of(~out), owners, parameters.shrinkage))
+        for out in _groups(frames.people, parameters.groups)
+    ]
 
 
-def _clustered(frames: _Frames, owners: Indices, parameters: TrainingParameters) -> _Frames:
-    """Give each frame a Gaussian of its class: k-means in the span of the classes' middles."""
-    first = np.searchsorted(owners, frames.actions)
-    classes = _fit(replace(frames, gaussians=first), owners, parameters)
-    inside, _ = classes.project(frames.features)
-    gaussians = first.copy()
-    for number in range(owners[-1] + 1):
-        ours = frames.actions == number
-        count = int((owners == number).sum())
-        random = np.random.default_rng(number)
-        _, nearest = kmeans2(inside[ours], count, minit="++", rng=random)
-        gaussians[ours] += nearest
-    return replace(frames, gaussians=gaussians)
+def _strangers(folds: Sequence[_Fold], frames: MovementFrames, share: float) -> set[str]:
+    """Name the participants whose bodies are unlike all others', as another sensor's are.
 
-
-def _fit(frames: _Frames, owners: Indices, parameters: TrainingParameters) -> MovementClasses:
-    """Fit Gaussians with one covariance; one without frames stands at its class's middle."""
-    actions = int(owners[-1])
-    means, spreads = frames.features.mean(axis=0), frames.features.std(axis=0) + SMALL
-    scaled = (frames.features - means) / spreads
-    centres, sizes = _centres(frames, scaled, owners)
-    # What people do who use nothing is too wide to show how actions vary.
-    of_actions = frames.actions < actions
-    residuals = scaled[of_actions] - centres[frames.gaussians[of_actions]]
-    whitening = _whitening(residuals, parameters.shrinkage)
-    white = centres @ whitening
-    _, strength, directions = np.linalg.svd(white - white.mean(axis=0), full_matrices=False)
-    directions = directions[strength > SMALL * strength[0]].T
-    return MovementClasses(
-        means=means,
-        whitening=whitening / spreads[:, None],
-        directions=directions,
-        centres=white @ directions,
-        log_shares=np.log(sizes / sizes.sum()),
-        says=np.full((len(owners), actions + 1), 1.0),
-        limits=np.full(2, np.inf),
-        reaches=np.full(actions, np.inf),
-        owners=owners,
-    )
-
-
-def _centres(frames: _Frames, scaled: Array, owners: Indices) -> tuple[Array, Array]:
-    """Return the middles (G, D) and the sizes (G,) of the Gaussians in scaled features (N, D)."""
-    centres = np.zeros((len(owners), scaled.shape[1]))
-    sizes = np.full(len(owners), EMPTY_SIZE)
-    for gaussian, owner in enumerate(owners):
-        ours = frames.gaussians == gaussian
-        centres[gaussian] = scaled[ours if ours.any() else frames.actions == owner].mean(axis=0)
-        sizes[gaussian] += ours.sum()
-    return centres, sizes
-
-
-def _whitening(residuals: Array, shrinkage: float) -> Array:
-    """Return the (D, D) that makes the shrunk covariance of residuals (N, D) the identity."""
-    covariance = residuals.T @ residuals / len(residuals)
-    width = len(covariance)
-    level = np.trace(covariance) / width
-    values, axes = eigh((1.0 - shrinkage) * covariance + shrinkage * level * np.eye(width))
-    return np.asarray(axes / np.sqrt(values))
+    Half of what they do is farther away than the limits of the middle participant, by as much as
+    makes the arms speak. Nobody is a stranger where fewer than two others would be left to teach
+    an action.
+    """
+    in_use = frames.actions < frames.actions.max()
+    distances = np.empty((len(frames.people), 2))
+    for fold in folds:
+        distances[fold.left_out] = fold.classes.gaussians(frames.features[fold.left_out])[1]
+    theirs = {
+        name: distances[in_use & (frames.people == name)] for name in np.unique(frames.people)
+    }
+    theirs = {name: some for name, some in theirs.items() if len(some)}
+    limits = np.median([np.quantile(some, share, axis=0) for some in theirs.values()], axis=0)
+    strangers = {
+        str(name)
+        for name, some in theirs.items()
+        if np.log(np.maximum(np.median(some, axis=0) / limits, 1.0)).sum()
+        > DEFAULT_RECOGNITION.home_ends
+    }
+    left = ~np.isin(frames.people, list(strangers))
+    teachers = [
+        len(np.unique(frames.people[left & (frames.actions == action)]))
+        for action in range(frames.actions.max())
+    ]
+    return strangers if min(teachers) >= 2 else set()
 
 
 def _groups(people: NDArray[np.str_], most: int) -> Iterator[Flags]:
@@ -179,7 +126,7 @@ def _groups(people: NDArray[np.str_], most: int) -> Iterator[Flags]:
         yield np.isin(people, names[first::count])
 
 
-def _says(folds: Sequence[_Fold], frames: _Frames, prior_frames: float) -> Array:
+def _says(folds: Sequence[_Fold], frames: MovementFrames, prior_frames: float) -> Array:
     """Estimate P(class | Gaussian) over P(class), (G, K + 1), on people left out."""
     gaussians, classes = folds[0].classes.says.shape
     says = np.full((gaussians, classes), prior_frames)
@@ -191,7 +138,7 @@ def _says(folds: Sequence[_Fold], frames: _Frames, prior_frames: float) -> Array
     return np.asarray(says / says.sum(axis=1, keepdims=True) / frequencies)
 
 
-def _limits(folds: Sequence[_Fold], frames: _Frames, share: float) -> Array:
+def _limits(folds: Sequence[_Fold], frames: MovementFrames, share: float) -> Array:
     """Return the two distances (2,) within which that share of the actions' frames is."""
     in_use = frames.actions < frames.actions.max()
     distances = [
@@ -200,7 +147,7 @@ def _limits(folds: Sequence[_Fold], frames: _Frames, share: float) -> Array:
     return np.quantile(np.concatenate(distances), share, axis=0)
 
 
-def _reaches(folds: Sequence[_Fold], frames: _Frames, share: float) -> Array:
+def _reaches(folds: Sequence[_Fold], frames: MovementFrames, share: float) -> Array:
     """Return the distances (K,) within which that share of each action's own frames is."""
     reaches = []
     for action in range(frames.actions.max()):
@@ -214,7 +161,7 @@ def _reaches(folds: Sequence[_Fold], frames: _Frames, share: float) -> Array:
 
 def _best_temper(
     folds: Sequence[_Fold],
-    frames: _Frames,
+    frames: MovementFrames,
     sequences: Sequence[MovementSequence],
     tempers: Sequence[float],
 ) -> float:

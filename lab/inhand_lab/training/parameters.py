@@ -90,6 +90,9 @@ class TrainingParameters:
     body_step: int = 4
     """Number of frames from one body that is learned from to the next: successive ones are much
     the same."""
+    least_bodies: int = 37
+    """Number of bodies that are learned from, at the least, of a recording that has as many: of a
+    short one successive ones too, as a mimed swing takes half a second."""
     kept_poses: int = 1000
     """Number of body poses, about, that a recogniser keeps to fill in what is not seen."""
     idle_kinds: tuple[Idleness, ...] = ("fidget", "stand", "walkOnSpot", "walkAbout")
@@ -112,6 +115,10 @@ class TrainingParameters:
     """Share of the frames of people left out that are within the reach of their own action."""
     shrinkage: float = 0.05
     """Share of the identity in the covariance of standardised features."""
+    arm_gaussians: int = 6
+    """Number of Gaussians of an action by the arms alone."""
+    arm_shrinkage: float = 0.3
+    """The ``shrinkage`` of the arms' features."""
     groups: int = 5
     """Number of groups of participants, at the most, each of which is left out once."""
     prior_frames: float = 1.0

@@ -13,9 +13,11 @@ from inhand_tracker.recognition.recogniser import Recogniser
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.people.joint_sequence import JointSequence
-from inhand_lab.training.movement_training import MovementSequence, train_movements
+from inhand_lab.training.movement_gaussians import MovementSequence
+from inhand_lab.training.movement_training import train_movements
 from inhand_lab.training.parameters import DEFAULT_TRAINING
 from inhand_lab.training.recorded_movements import (
+    RecordedMovement,
     UsualPoses,
     read_joints,
     read_movement,
@@ -105,15 +107,15 @@ def learn_movements(
     usual = usual_poses(people)
     poses, labels, sequences = [], [], list(_idle_movements(len(actions)))
     for one in people:
-        read = read_movement(one, usual, DEFAULT_TRAINING.body_step)
+        step = min(DEFAULT_TRAINING.body_step, len(one.joints) // DEFAULT_TRAINING.least_bodies)
+        read = read_movement(one, usual, max(step, 1))
         if not len(read.frames):
             continue
         number = len(actions) if one.action == NOTHING else actions.index(one.action)
         if number < len(actions):
             poses.append(read.body_poses)
             labels.append(np.full(len(read.frames), number))
-        times_ns = one.times_ns[read.frames]
-        sequences.append(MovementSequence(number, one.participant, read.features, times_ns))
+        sequences.append(_sequence(one, read, number, one.participant))
     missing = set(range(len(actions))) - {one.action for one in sequences}
     if missing:
         raise DatasetError(f"{origin}: no body is seen doing {actions[min(missing)]!r}")
@@ -147,8 +149,14 @@ def _idle_movements(action: int) -> list[MovementSequence]:
 
 def _idle_movement(one: JointSequence, usual: UsualPoses, action: int) -> MovementSequence:
     read = read_movement(one, usual, DEFAULT_TRAINING.idle_step)
-    name = f"idle {one.participant}"
-    return MovementSequence(action, name, read.features, one.times_ns[read.frames])
+    return _sequence(one, read, action, f"idle {one.participant}")
+
+
+def _sequence(
+    one: JointSequence, read: RecordedMovement, action: int, participant: str
+) -> MovementSequence:
+    times_ns = one.times_ns[read.frames]
+    return MovementSequence(action, participant, read.features, times_ns, read.arms)
 
 
 # Folds share recordings.

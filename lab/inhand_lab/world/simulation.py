@@ -44,8 +44,6 @@ from inhand_lab.world.random_streams import random_stream
 from inhand_lab.world.room import build_room
 from inhand_lab.world.viewpoint import place_camera
 
-USUAL_FRAMES = 360
-"""Frames of a performance at a Kinect's rate."""
 USUAL_SECONDS = 12.0
 """Time that a performance takes, unless more frames are asked for, seconds."""
 
@@ -193,17 +191,13 @@ class Simulation:
 
 @dataclass(frozen=True)
 class Casting:
-    """Who does what in which world, for which time; ``variety`` as in SimulatedPerson.
-
-    Where ``seen_from_before``, the camera is one of those that only ever stand before people.
-    """
+    """Who does what in which world, for which time; ``variety`` as in SimulatedPerson."""
 
     interaction: str
     participant: int
     seed: int
     performance: int = 0
     variety: float = 1.0
-    seen_from_before: bool = False
 
     def random(self, purpose: str, *more: int) -> np.random.Generator:
         """A stream of its own for a purpose."""
@@ -214,7 +208,7 @@ def simulate(
     interaction: str,
     participant: int,
     seed: int,
-    frames: int = USUAL_FRAMES,
+    frames: int = 360,
     camera: Camera = KINECT,
     performance: int = 0,
 ) -> Simulation:
@@ -236,11 +230,7 @@ def simulate_cast(cast: Casting, frames: int, camera: Camera) -> Simulation:
     motion = cast.random("motion", performance)
     enacted = _enact(interaction, person, motion, frames, camera.frame_rate)
     facing, camera_from_world = place_camera(
-        person,
-        camera.intrinsics,
-        cast.random("camera"),
-        enacted.furniture,
-        variety=0.0 if cast.seen_from_before else cast.variety,
+        person, camera.intrinsics, cast.random("camera"), enacted.furniture
     )
     body_in_camera = enacted.body.seen_from(camera_from_world)
     skeleton = cast.random("skeleton", performance)

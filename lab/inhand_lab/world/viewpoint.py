@@ -24,16 +24,13 @@ def place_camera(
     intrinsics: Intrinsics,
     random: np.random.Generator,
     furniture: Furniture = (),
-    *,
-    variety: float = 1.0,
 ) -> tuple[float, Transform]:
     """The direction to the camera as a turn to the person's left, and camera_from_world.
 
-    A share ``variety`` of cameras stand all around, the others before the person.
     ``furniture`` is what the person uses; it stands between camera and person only where it does so
     from everywhere that is tried.
     """
-    varied = random.random() < variety
+    varied = random.random() < person.variety
     placing = VARIED_CAMERA_PLACING if varied else ALIKE_CAMERA_PLACING
     for _ in range(placing.tries):
         facing, position = _position(person, intrinsics, random, placing)

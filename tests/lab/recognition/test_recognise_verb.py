@@ -106,6 +106,36 @@ def test_a_recogniser_s_file_gives_the_same_answers(
     )
 
 
+def test_a_recogniser_of_a_release_without_arms_loads_and_does_without_them(
+    learned: tuple[Recogniser, list[Model]], tmp_path: Path
+) -> None:
+    recogniser, _ = learned
+    save_recogniser(recogniser, tmp_path / "new")
+    assert load_recogniser(tmp_path / "new").movements.arms is not None
+    with np.load(tmp_path / "new") as archive:
+        older = {name: archive[name] for name in archive if not name.startswith("arms.")}
+    with (tmp_path / "older").open("wb") as file:
+        np.savez(file, **older)
+    again = load_recogniser(tmp_path / "older")
+    assert again.movements.arms is None
+    np.testing.assert_array_equal(again.movements.limits, recogniser.movements.limits)
+
+
+def test_recognition_is_measured_on_the_people_of_another_dataset(
+    people: Dataset, tmp_path: Path
+) -> None:
+    report = tmp_path / "on.json"
+    folder = str(people.folder)
+    arguments = ["--test-on", folder, "--taught-by", "p00,p01", "--json", str(report)]
+    assert main(["recognise", folder, *arguments]) == 0
+    counts = json.loads(report.read_text())["counts"]
+    taught = [count for count in counts if count["kind"] == "taught"]
+    assert {count["action"] for count in taught} == set(ACTIONS)
+    assert all(count["right"] > 0.5 * count["frames"] for count in taught)
+    assert sum(count["known_still"] for count in taught) == 0
+    assert main(["recognise", folder, "--test-on", folder, "--taught-by", "nobody"]) != 0
+
+
 @pytest.mark.parametrize("damage", ["missing", "foreign", "cut"])
 def test_a_file_that_is_no_recogniser_is_refused_in_one_line(
     learned: tuple[Recogniser, list[Model]], tmp_path: Path, damage: str

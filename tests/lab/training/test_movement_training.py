@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from inhand_lab.training.movement_training import MovementSequence, train_movements
+from inhand_lab.training.movement_gaussians import MovementSequence
+from inhand_lab.training.movement_training import train_movements
 from inhand_lab.training.parameters import DEFAULT_TRAINING
 from inhand_tracker.recognition.movement_classes import MovementClasses
 
@@ -17,12 +18,17 @@ def features(action: int, random: np.random.Generator) -> np.ndarray:
     return np.column_stack((known, random.normal(size=FRAMES)))
 
 
+def sequence(action: int, participant: str, of_body: np.ndarray) -> MovementSequence:
+    """A recording whose arms show the first two numbers of the body."""
+    times_ns = np.arange(FRAMES) * 33_000_000
+    return MovementSequence(action, participant, of_body, times_ns, of_body[:, :2])
+
+
 @pytest.fixture(scope="module")
 def learned() -> tuple[MovementClasses, float]:
     random = np.random.default_rng(5)
-    times_ns = np.arange(FRAMES) * 33_000_000
     sequences = [
-        MovementSequence(action, participant, features(action, random), times_ns)
+        sequence(action, participant, features(action, random))
         for participant in "abc"
         for action in range(ACTIONS + 1)
     ]
@@ -61,11 +67,35 @@ def test_actions_have_few_gaussians_and_idle_people_many(
 
 def test_the_same_sequences_teach_the_same() -> None:
     random = np.random.default_rng(8)
-    times_ns = np.arange(FRAMES) * 33_000_000
     sequences = [
-        MovementSequence(action, participant, features(action, random), times_ns)
+        sequence(action, participant, features(action, random))
         for participant in "ab"
         for action in range(ACTIONS + 1)
     ]
     one, other = (train_movements(sequences, ACTIONS)[0] for _ in range(2))
     np.testing.assert_array_equal(one.says, other.says)
+
+
+def test_who_is_unlike_all_others_teaches_the_arms_alone(
+    learned: tuple[MovementClasses, float],
+) -> None:
+    random = np.random.default_rng(5)
+    people = [
+        sequence(action, participant, features(action, random))
+        for participant in "abc"
+        for action in range(ACTIONS + 1)
+    ]
+    elsewhere = np.array([0.0, 0.0, 60.0])
+    stranger = [
+        sequence(action, "s", features(action, random) + elsewhere) for action in range(ACTIONS)
+    ]
+    classes, _ = train_movements([*people, *stranger], ACTIONS)
+    np.testing.assert_array_equal(classes.limits, learned[0].limits)
+    np.testing.assert_array_equal(classes.centres, learned[0].centres)
+    unlike = features(0, np.random.default_rng(9)) + elsewhere
+    assert classes.at_home(features(0, np.random.default_rng(9))).mean() > 0.95
+    assert classes.at_home(unlike).max() == 0.0
+    arms, alone = classes.arms, learned[0].arms
+    assert arms is not None
+    assert alone is not None
+    assert not np.array_equal(arms.means, alone.means)

@@ -27,11 +27,10 @@ def test_the_direction_to_a_camera_is_found_from_its_place() -> None:
 
 
 def directions(variety: float) -> list[float]:
-    person = sample_person(1, 0)
-    randoms = (np.random.default_rng(number) for number in range(200))
+    person = sample_person(1, 0, variety)
     return [
-        abs(place_camera(person, KINECT.intrinsics, random, variety=variety)[0])
-        for random in randoms
+        abs(place_camera(person, KINECT.intrinsics, np.random.default_rng(number))[0])
+        for number in range(200)
     ]
 
 

@@ -1,13 +1,17 @@
 """Movement and looks at images together, on two actions that one number tells apart."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from inhand_tracker.body.reader import Body
 from inhand_tracker.body.skeleton import Bases
+from inhand_tracker.recognition.arm_movement import arm_window
 from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.movement_window import MovementWindow
 from inhand_tracker.recognition.parameters import RecognitionParameters
 from inhand_tracker.recognition.recogniser import MovementRecogniser
+from inhand_tracker.recognition.recognition import recognised_action
 from people import FRAME_NS
 
 FIRST, SECOND = (np.full(60, level) for level in (0.0, 1.0))
@@ -78,3 +82,29 @@ def test_who_comes_next_starts_without_a_history() -> None:
         recogniser.step(frame * FRAME_NS, body(SECOND))
     recogniser.restart()
     np.testing.assert_array_equal(recogniser.step(0, body(FIRST)), first)
+
+
+def test_where_a_body_is_unlike_all_that_were_learned_the_arms_decide() -> None:
+    arms = arm_window()
+    arms.add(0, FIRST)
+    of_first = arms.features()
+    described = MovementClasses(
+        means=of_first,
+        whitening=np.eye(len(of_first)),
+        directions=np.eye(len(of_first))[:, :1],
+        centres=np.array([[0.0], [9.0], [9.0]]),
+        log_shares=np.log(np.full(3, 1.0 / 3.0)),
+        says=np.ones((3, 3)),
+        limits=np.full(2, np.inf),
+        reaches=np.full(2, np.inf),
+        owners=np.array([0, 1, 2]),
+    )
+    strange = replace(CLASSES, limits=np.full(2, 1e-3))
+    far = 0.3 * SECOND
+    known = []
+    for classes in (strange, replace(strange, arms=described), replace(CLASSES, arms=described)):
+        recogniser = MovementRecogniser(classes, 0.4)
+        for frame in range(30):
+            probabilities = recogniser.step(frame * FRAME_NS, body(far))
+        known.append(recognised_action(probabilities[:-1]))
+    assert known == [None, 0, None]

@@ -7,7 +7,12 @@ of people who use nothing. A movement that is farther from every class than peop
 speaks for none of the actions, too. Each action is also doubted by itself: a movement has to be as
 near to it as the nearer movements of people who do it, above all where no image shows whether there
 is an object.
+
+All this holds for bodies like those that were learned. Of others all classes are far, and another
+description decides (``arm_movement``).
 """
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 
@@ -26,7 +31,8 @@ class MovementClasses:
     logarithms of their weights, ``owners`` (G,) their classes, and ``says`` (G, K + 1) is
     P(class | Gaussian) / P(class). Distances that people keep: ``limits`` (2,) to the nearest
     centre, within the span and outside of it; ``reaches`` (K,) to an action's own nearest centre,
-    of a part of its people.
+    of a part of its people. ``arms`` are the same classes by the arms alone; None in recognisers of
+    older releases.
     """
 
     means: Array
@@ -38,6 +44,7 @@ class MovementClasses:
     limits: Array
     reaches: Array
     owners: Indices
+    arms: MovementClasses | None = None
 
     @property
     def actions(self) -> int:
@@ -53,7 +60,7 @@ class MovementClasses:
         """
         shares, distances = self.gaussians(features)
         evidence = np.log(shares @ self.says)
-        beyond = np.log(np.maximum(distances / self.limits, 1.0)).sum(axis=1)
+        beyond = self._beyond(distances)
         evidence[:, :-1] -= parameters.strangeness * beyond[:, None]
         evidence[:, -1] += parameters.caution
         return np.asarray(evidence)
@@ -76,6 +83,29 @@ class MovementClasses:
         doubts[:, :-1] = -doubt * beyond
         doubts[:, -1] = 0.0 if seeing else parameters.caution_without_image
         return doubts
+
+    def at_home(
+        self, features: Array, parameters: RecognitionParameters = DEFAULT_RECOGNITION
+    ) -> Array:
+        """How far features (N, D) are those of bodies like the learned ones, (N,), 1 to 0."""
+        beyond = self._beyond(self.gaussians(features)[1])
+        first, last = parameters.home_ends, parameters.far_from_home
+        return np.asarray(np.clip((last - beyond) / (last - first), 0.0, 1.0))
+
+    def _beyond(self, distances: Array) -> Array:
+        """How many times (log) distances (N, 2) exceed their limits, together, (N,)."""
+        return np.asarray(np.log(np.maximum(distances / self.limits, 1.0)).sum(axis=1))
+
+    def log_likelihoods(self, features: Array) -> Array:
+        """Log-likelihood (N, K + 1) of features (N, D) in each class, but for one summand."""
+        inside, _ = self.project(features)
+        logs = self.log_shares - 0.5 * np.square(inside[:, None] - self.centres).sum(axis=2)
+        by_class = []
+        for number in range(self.actions + 1):
+            ours = self.owners == number
+            whole = np.logaddexp.reduce(self.log_shares[ours])
+            by_class.append(np.logaddexp.reduce(logs[:, ours], axis=1) - whole)
+        return np.column_stack(by_class)
 
     def apart(self, features: Array) -> Array:
         """Distances (N, K) of features (N, D) from the nearest of each action's own centres."""

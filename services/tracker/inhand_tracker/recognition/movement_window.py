@@ -1,6 +1,7 @@
 """Describes a person's movement for recognition: the body now, and over the last three seconds."""
 
 from collections import deque
+from collections.abc import Callable
 
 import numpy as np
 from inhand_schemas.joints import JOINT_NAMES
@@ -31,15 +32,28 @@ _FROM = np.array([JOINT_NAMES.index(first) for first, _ in _PAIRS])
 _TO = np.array([JOINT_NAMES.index(second) for _, second in _PAIRS])
 
 
+def body_description(pose: Array) -> Array:
+    """The joints of a body pose (60,), and the distances of pairs of them."""
+    joints = pose.reshape(20, 3)
+    distances = np.linalg.norm(joints[_FROM] - joints[_TO], axis=1)
+    return np.concatenate((joints[_JOINTS].ravel(), distances))
+
+
 class MovementWindow:
     """Keeps the last poses of one person; before the first one the person is taken to have stood
     in it.
 
     Frames may come at any rate: the past is read at 30 Hz, each moment by the last pose before it.
+    ``describe`` makes D numbers of a body pose (60,).
     """
 
-    def __init__(self, parameters: RecognitionParameters = DEFAULT_RECOGNITION) -> None:
+    def __init__(
+        self,
+        parameters: RecognitionParameters = DEFAULT_RECOGNITION,
+        describe: Callable[[Array], Array] = body_description,
+    ) -> None:
         self._parameters = parameters
+        self._describe = describe
         longest = max(parameters.windows) + parameters.speed_lag
         self._ages_ns = np.rint(np.arange(longest) / parameters.rate_hz * 1e9).astype(np.int64)
         self._kept_ns = round((longest + 1) / parameters.rate_hz * 1e9)
@@ -54,7 +68,7 @@ class MovementWindow:
             self._times.clear()
             self._descriptions.clear()
         self._times.append(time_ns)
-        self._descriptions.append(_description(pose))
+        self._descriptions.append(self._describe(pose))
         oldest = time_ns - self._kept_ns
         while len(self._times) > 1 and self._times[1] <= oldest:
             self._times.popleft()
@@ -81,10 +95,3 @@ class MovementWindow:
         times = np.fromiter(self._times, np.int64) - self._tolerance_ns
         rows = np.maximum(np.searchsorted(times, moments, side="right") - 1, 0)
         return np.stack(list(self._descriptions))[rows]
-
-
-def _description(pose: Array) -> Array:
-    """The joints of a body pose (60,), and the distances of pairs of them."""
-    joints = pose.reshape(20, 3)
-    distances = np.linalg.norm(joints[_FROM] - joints[_TO], axis=1)
-    return np.concatenate((joints[_JOINTS].ravel(), distances))

@@ -25,6 +25,10 @@ class RecognitionParameters:
     """Numbers of frames back to the poses that the present one is compared with."""
     speed_lag: int = 2
     """Number of frames between the poses that give a speed."""
+    arm_windows: tuple[int, ...] = (20, 60)
+    """The ``windows`` of what is read of the arms alone."""
+    arm_lags: tuple[int, ...] = (6, 12)
+    """The ``lags`` of what is read of the arms alone."""
 
     # What a movement is evidence of (movement_classes). `--false-objects` on a dataset without
     # images shows the doubts; they were chosen there, on two people left out of six.
@@ -40,6 +44,25 @@ class RecognitionParameters:
     doubt_without_image: float = 20.0
     """Log evidence against an action of a movement at e times its reach, without an image, which
     would show whether there is an object."""
+
+    # What the arms are evidence of where a body is unlike the learned ones (movement_classes,
+    # arm_movement). Chosen on simulated people and three of UTD-MHAD's eight
+    # (`inhand recognise --alone --test-on`).
+    home_ends: float = 0.6
+    """Logarithm of how far, in people's limits, a movement is from all classes, from which on the
+    arms speak as well; of other simulated people's taught movements 98 % are nearer."""
+    far_from_home: float = 1.0
+    """The logarithm from which on the arms speak alone; of another sensor's people nine in ten are
+    farther, even where their joints are moved to the canonical body's."""
+    most_said: float = 60.0
+    """Bound on the log-likelihood ratio of the arms' movement."""
+    arm_reach: float = 5.0
+    """Distance from an action's nearest centre up to which there is no doubt, in deviations."""
+    arm_doubt: float = 1.0
+    """Log evidence against an action for each deviation beyond that."""
+    arm_caution: float = 14.0
+    """Log evidence that the arms' movement has to have for an action before it counts: what is far
+    from all that was learned resembles something now and then."""
 
     # How evidence adds up over time (class_filter).
     stays: float = 0.997

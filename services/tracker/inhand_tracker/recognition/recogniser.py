@@ -2,8 +2,11 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from inhand_tracker.body.reader import Body
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.recognition.arm_movement import arm_evidence, arm_window
 from inhand_tracker.recognition.class_filter import ClassFilter, reweighted
 from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.movement_window import MovementWindow
@@ -55,6 +58,7 @@ class MovementRecogniser:
     def restart(self) -> None:
         """Start anew: somebody else comes into view."""
         self._window = MovementWindow(self._parameters)
+        self._arms = arm_window(self._parameters)
         self._filter.restart()
 
     def step(self, time_ns: int, body: Body, seen: Array | None = None) -> Array:
@@ -72,9 +76,17 @@ class MovementRecogniser:
     def remember(self, time_ns: int, body: Body) -> None:
         """Take a frame in which nothing is to be recognised; the movement counts later."""
         self._window.add(time_ns, body.pose)
+        self._arms.add(time_ns, body.pose)
 
     def _movement_evidence(self, time_ns: int, body: Body, *, seeing: bool) -> Array:
-        self._window.add(time_ns, body.pose)
+        """Log evidence (K + 1,): by the arms as far as the body is unlike the learned ones."""
+        self.remember(time_ns, body)
         features = self._window.features()[None]
         doubts = self._classes.doubts(features, seeing=seeing, parameters=self._parameters)
-        return (self._classes.evidence(features, self._parameters) + doubts)[0]
+        evidence = (self._classes.evidence(features, self._parameters) + doubts)[0]
+        arms = self._classes.arms
+        home = self._classes.at_home(features, self._parameters)[0]
+        if arms is None or home == 1.0:
+            return evidence
+        of_arms = arm_evidence(arms, self._arms.features()[None], self._parameters)[0]
+        return np.asarray(home * evidence + (1.0 - home) * of_arms)

@@ -1,5 +1,6 @@
 """A learned recogniser in one file, as a model is (``archive``)."""
 
+from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,7 @@ RECOGNISER_FILE = ArchiveKind(
 )
 _ARRAYS = {
     "svm": tuple(field.name for field in fields(PairwiseSvm) if field.name != "gamma"),
-    "movements": tuple(field.name for field in fields(MovementClasses)),
+    "movements": tuple(f.name for f in fields(MovementClasses) if f.name != "arms"),
     "presence": tuple(field.name for field in fields(Presence)),
 }
 
@@ -34,7 +35,9 @@ def save_recogniser(recogniser: Recogniser, path: Path | str) -> None:
     }
     arrays: Arrays = {"body_poses": recogniser.body_poses}
     for part, names in _ARRAYS.items():
-        arrays |= {f"{part}.{name}": getattr(getattr(recogniser, part), name) for name in names}
+        arrays |= _named(part, getattr(recogniser, part), names)
+    if recogniser.movements.arms is not None:
+        arrays |= _named("arms", recogniser.movements.arms, _ARRAYS["movements"])
     write_archive(RECOGNISER_FILE, path, description, arrays)
 
 
@@ -43,15 +46,25 @@ def load_recogniser(path: Path | str) -> Recogniser:
     return read_archive(RECOGNISER_FILE, path, _assemble)
 
 
+def _named(part: str, holder: object, names: Sequence[str]) -> Arrays:
+    return {f"{part}.{name}": getattr(holder, name) for name in names}
+
+
+def _part(part: str, names: Sequence[str], arrays: Arrays) -> Arrays:
+    return {name: arrays[f"{part}.{name}"] for name in names}
+
+
 def _assemble(description: dict[str, Any], arrays: Arrays) -> Recogniser:
-    parts = {
-        part: {name: arrays[f"{part}.{name}"] for name in names} for part, names in _ARRAYS.items()
-    }
+    parts = {part: _part(part, names, arrays) for part, names in _ARRAYS.items()}
+    arms = None
+    # Files of older releases have none.
+    if "arms.means" in arrays:
+        arms = MovementClasses(**_part("arms", _ARRAYS["movements"], arrays))
     return Recogniser(
         actions=tuple(description["actions"]),
         body_poses=arrays["body_poses"],
         svm=PairwiseSvm(gamma=float(description["gamma"]), **parts["svm"]),
-        movements=MovementClasses(**parts["movements"]),
+        movements=MovementClasses(**parts["movements"], arms=arms),
         temper=float(description["temper"]),
         presence=Presence(**parts["presence"]),
     )
