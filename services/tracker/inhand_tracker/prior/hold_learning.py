@@ -171,11 +171,11 @@ def _trials(samples: Samples, holder: int, parameters: PriorLearningParameters) 
         usual[rows] = np.median(places[~rows], axis=0)
         mean[rows] = places[~rows].mean(axis=0)
     if np.median(np.linalg.norm(places - usual, axis=1)) < parameters.other_grip_m:
-        # Of the likelihood of a rotation and of the other hand's place, both normal.
-        turned = float(np.square(alone.errors()[:, 3:]).mean())
-        yield _Trial(
-            samples, holder, 2.0 * turned / (np.square(places - mean).mean() + LEAST_VARIANCE)
-        )
+        # Of the likelihood of a rotation and of the other hand's place, both normal: many people's.
+        many = ~samples.own if not samples.own.all() else samples.own
+        turned = float(np.square(alone.errors()[many, 3:]).mean())
+        variance = float(np.square((places - mean)[many]).mean()) + LEAST_VARIANCE
+        yield _Trial(samples, holder, 2.0 * turned / variance)
 
 
 def _errors_in_object(centres: Array, turns: Array, samples: Samples) -> Array:
