@@ -66,6 +66,8 @@ class Stance:
 
 
 STANCE_HALF_WIDTH = 0.09
+LEAST_ASIDE = 0.12
+"""Least slope of a hanging arm outwards, so that its hand is beside a hip that is shifted to it."""
 EASY_KNEES = 0.985
 """Straightness of the legs in easy standing, as a share of their length."""
 
@@ -157,6 +159,7 @@ def _hang(
     body = person.proportions
     reach = 0.965 * (body.upper_arm + body.forearm) + body.palm
     ahead, aside = random.normal(0.10, 0.03), random.normal(0.12, 0.02)
+    aside = max(aside, LEAST_ASIDE) * max(person.girth, 1.0)
     downwards = normalised([aside, ahead, -1.0])
     hand = rotation_from_axes([-0.05, 0.15 + ahead, -1.0], [-0.35, 1.0, 0.0])
     upright = rotation_about("z", heading)
