@@ -31,6 +31,8 @@ from inhand_lab.world.idle_people import watch_idle
 IDLE, LEFT_OUT, OTHERS, MIMED = "idle", "left out of training", "never trained", "taught"
 UNKNOWN = -1
 """The number that stands for no action."""
+FEWEST_ACTIONS = 3
+"""Number of actions from which on one can be left out: recognition compares two at the least."""
 _ARMS = (Joint.ELBOW_LEFT, Joint.WRIST_LEFT, Joint.ELBOW_RIGHT, Joint.WRIST_RIGHT)
 
 
@@ -113,7 +115,8 @@ def recognise_others(
 
 def transfer_steps(dataset: Dataset, others: Dataset) -> int:
     """Number of times that something is learned."""
-    return 1 + len(set(dataset.interactions()) & set(others.interactions()))
+    taught = set(dataset.interactions())
+    return 1 if len(taught) < FEWEST_ACTIONS else 1 + len(taught & set(others.interactions()))
 
 
 def _tasks(
@@ -132,6 +135,8 @@ def _tasks(
             TransferTask(OTHERS, people, untaught),
         )
     ]
+    if len(actions) < FEWEST_ACTIONS:
+        return tasks
     for action in dict.fromkeys(one.action for one in tested):
         theirs = tuple(one for one in [*tested, *strangers] if one.action == action)
         tasks.append((TransferTask(LEFT_OUT, people, theirs, without=action),))
