@@ -10,14 +10,15 @@ wide wall says little more than a cup (compare grey world: Buchsbaum 1980), and 
 import cv2
 import numpy as np
 
-from inhand_tracker.geometry.arrays import Array, Bytes, Flags, Singles
+from inhand_tracker.geometry.arrays import Array, Bytes
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.sight.kernels.count_tints import count_tints
 from inhand_tracker.sight.parameters import SightParameters
 
 WIDTH = 160
 """Width in pixels, about, of the smaller picture that is looked at: without the sensor's noise."""
-DARKEST, BRIGHTEST = 8.0, 250.0
-"""Levels between which each of a pixel's red, green and blue is measured well."""
+DARKEST, BRIGHTEST = 8, 249
+"""Levels from which to which each of a pixel's red, green and blue is measured well."""
 CELLS = 40
 """Number of cells, each way, of colours in the plane of log(red / green) and log(blue / green)."""
 WIDEST = 1.0
@@ -26,6 +27,9 @@ COMMON_SHARE = 1e-4
 """Share of the picture from which on a colour counts by the logarithm of its share."""
 FEWEST_PIXELS = 100
 """Number of well measured pixels, or steps, below which they say nothing."""
+_LEVELS = np.arange(256)
+_MEASURED = ((_LEVELS >= DARKEST) & (_LEVELS <= BRIGHTEST)).astype(np.uint8)
+_LOGS = np.log(_LEVELS + 0.5)
 
 
 def light_tint(image: Image) -> Array:
@@ -35,9 +39,16 @@ def light_tint(image: Image) -> Array:
     """
     if image.colour is None:
         return np.zeros(2)
+    counts, squares = np.zeros((CELLS, CELLS)), np.zeros(3)
     small = _smaller(image.colour)
-    usable = _well_measured(small)
-    return np.asarray(0.5 * (_middle_colour(small[usable]) + _edge_colour(small, usable)))
+    pixels, steps = count_tints(small, _MEASURED, _LOGS, WIDEST, counts, squares)
+    tint = np.zeros(2)
+    if pixels >= FEWEST_PIXELS:
+        tint += 0.5 * _middle_colour(counts, pixels)
+    if steps >= FEWEST_PIXELS and squares.min() > 0.0:
+        logs = 0.5 * np.log(squares)
+        tint += 0.5 * (logs[::2] - logs[1])
+    return tint
 
 
 def light_gains(image: Image, parameters: SightParameters) -> Array:
@@ -60,44 +71,16 @@ def under_white_light(colour: Bytes, gains: Array) -> Bytes:
     return np.asarray(cv2.LUT(np.ascontiguousarray(colour), table[None]), np.uint8)
 
 
-def _smaller(colour: Bytes) -> Singles:
+def _smaller(colour: Bytes) -> Bytes:
     step = max(1, round(colour.shape[1] / WIDTH))
     size = (max(1, colour.shape[1] // step), max(1, colour.shape[0] // step))
-    small = cv2.resize(colour, size, interpolation=cv2.INTER_AREA)
-    return np.asarray(small, np.float32) + np.float32(0.5)
+    return np.asarray(cv2.resize(colour, size, interpolation=cv2.INTER_AREA), np.uint8)
 
 
-def _well_measured(small: Singles) -> Flags:
-    red, green, blue = np.moveaxis(small, 2, 0)
-    least, most = np.minimum(np.minimum(red, green), blue), np.maximum(np.maximum(red, green), blue)
-    return np.asarray((least > DARKEST) & (most < BRIGHTEST))
-
-
-def _middle_colour(pixels: Singles) -> Array:
-    """The middle (2,) of the colours of pixels (N, 3), each by the logarithm of its share."""
-    if len(pixels) < FEWEST_PIXELS:
-        return np.zeros(2)
-    logs = np.log(pixels)
-    ratios = np.clip(logs[:, ::2] - logs[:, 1:2], -WIDEST, WIDEST)
-    cells = np.minimum((ratios + WIDEST) * (0.5 * CELLS / WIDEST), CELLS - 1).astype(np.int64)
-    counts = np.bincount(cells[:, 0] * CELLS + cells[:, 1], minlength=CELLS * CELLS)
-    weights = np.log1p(counts / (COMMON_SHARE * len(pixels))).reshape(CELLS, CELLS)
+def _middle_colour(counts: Array, pixels: int) -> Array:
+    """The middle (2,) of the colours of pixels in cells (C, C), each by the logarithm of its
+    share."""
+    weights = np.log1p(counts / (COMMON_SHARE * pixels))
     middles = (np.arange(CELLS) + 0.5) * (2.0 * WIDEST / CELLS) - WIDEST
     red, blue = weights.sum(axis=1) @ middles, weights.sum(axis=0) @ middles
     return np.array([red, blue]) / weights.sum()
-
-
-def _edge_colour(small: Singles, usable: Flags) -> Array:
-    """The colour (2,) of the steps from pixel to pixel of an image (H, W, 3), by their squares."""
-    across, down = usable[:, 1:] & usable[:, :-1], usable[1:] & usable[:-1]
-    squares = _squares(small[:, 1:] - small[:, :-1], across)
-    squares += _squares(small[1:] - small[:-1], down)
-    if across.sum() + down.sum() < FEWEST_PIXELS or squares.min() == 0.0:
-        return np.zeros(2)
-    logs = 0.5 * np.log(squares)
-    return np.array([logs[0] - logs[1], logs[2] - logs[1]])
-
-
-def _squares(steps: Singles, counted: Flags) -> Array:
-    """Sum (3,) of the squares of those steps (H, W, 3) that are counted (H, W)."""
-    return np.asarray(np.einsum("hwc,hwc,hw->c", steps, steps, counted), np.float64)
