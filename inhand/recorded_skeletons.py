@@ -20,16 +20,9 @@ from inhand_runtime.recording.copying import (
 )
 from inhand_schemas.conventions import SIMULATED
 from inhand_schemas.errors import MessageError
+from inhand_schemas.fields import JointState, Vector3
 from inhand_schemas.keys import parse_key
-from inhand_schemas.messages import (
-    CameraInfo,
-    JointState,
-    ObjectPose,
-    Person,
-    RgbdFrame,
-    Skeletons,
-    Vector3,
-)
+from inhand_schemas.messages import CameraInfo, ObjectPose, Person, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS
 from msgspec import structs
 

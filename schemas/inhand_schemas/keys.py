@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from inhand_schemas.errors import KeyFormatError, UnknownVersionError
-from inhand_schemas.messages import NAME_PATTERN
+from inhand_schemas.fields import NAME_PATTERN
 
 VERSION = 1
 _NAME = re.compile(NAME_PATTERN)

@@ -6,52 +6,35 @@ fields, so that old recordings open for ever.
 """
 
 import math
-from collections.abc import Iterable
-from typing import Annotated, Literal
+from typing import Annotated
 
 import msgspec
 from msgspec import Meta, Struct
 
-# Ends by a lookahead, since in some languages "$" also matches before a last newline.
-NAME_PATTERN = r"^[a-z0-9_]+(?![\s\S])"
-
-MOST_PEOPLE = 64
-"""Number of people that a message holds at the most."""
-
-Name = Annotated[str, Meta(pattern=NAME_PATTERN, max_length=64)]
-Count = Annotated[int, Meta(ge=0, le=2**63 - 1)]
-Nanoseconds = Annotated[int, Meta(ge=0, le=2**63 - 1)]
-Pixels = Annotated[int, Meta(ge=1, le=16384)]
-Positive = Annotated[float, Meta(gt=0)]
-NonNegative = Annotated[float, Meta(ge=0)]
-Fraction = Annotated[float, Meta(ge=0, le=1)]
-Vector3 = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
-Text = Annotated[str, Meta(max_length=4096)]
-
-ColourCodec = Literal["jpeg", "rgb8"]
-DepthCodec = Literal["z16", "z16-zstd", "png16"]
-JointState = Literal["missing", "inferred", "tracked"]
-PoseState = Literal["tracked", "predicted", "lost"]
-Contact = Literal["resting", "right_hand", "left_hand", "both_hands", "worn"]
-ServiceState = Literal["starting", "running", "degraded", "stopping"]
-
-UNIT_TOLERANCE = 1e-3
-MOST_PIXELS = 1 << 24
-"""Pixels of the largest picture: sensors have 12 million, and decoding takes memory by this."""
-WIDEST_LENS, LONGEST_LENS = 0.05, 100.0
-"""Bounds of the focal length, in image widths: beyond them no lens is, and every loop over what
-it projects has no end."""
-
-
-def _require_finite(what: str, numbers: Iterable[float]) -> None:
-    if not all(map(math.isfinite, numbers)):
-        raise ValueError(f"{what} holds a number that is not finite")
-
-
-def _require_pixels(width: int, height: int) -> None:
-    if width * height > MOST_PIXELS:
-        raise ValueError(f"an image of {width} × {height} pixels is larger than any camera's")
+from inhand_schemas.fields import (
+    LONGEST_LENS,
+    MOST_PEOPLE,
+    UNIT_TOLERANCE,
+    WIDEST_LENS,
+    ColourCodec,
+    Contact,
+    Count,
+    DepthCodec,
+    Fraction,
+    JointState,
+    Name,
+    Nanoseconds,
+    NonNegative,
+    Pixels,
+    PoseState,
+    Positive,
+    Quaternion,
+    ServiceState,
+    Text,
+    Vector3,
+    require_finite,
+    require_pixels,
+)
 
 
 class Message(Struct, frozen=True, kw_only=True):
@@ -68,7 +51,7 @@ class Pose(Struct, frozen=True):
     rotation: Quaternion
 
     def __post_init__(self) -> None:
-        _require_finite("pose", (*self.translation, *self.rotation))
+        require_finite("pose", (*self.translation, *self.rotation))
         if abs(math.hypot(*self.rotation) - 1.0) > UNIT_TOLERANCE:
             raise ValueError("rotation is no unit quaternion")
 
@@ -95,8 +78,8 @@ class CameraInfo(Message, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         numbers = (self.fx, self.fy, self.cx, self.cy, self.depth_scale, self.frame_rate)
-        _require_finite("camera info", (*numbers, *self.distortion))
-        _require_pixels(self.width, self.height)
+        require_finite("camera info", (*numbers, *self.distortion))
+        require_pixels(self.width, self.height)
         size = max(self.width, self.height)
         if not all(
             WIDEST_LENS * size <= focal <= LONGEST_LENS * size for focal in (self.fx, self.fy)
@@ -119,7 +102,7 @@ class ColourImage(Struct, frozen=True):
     data: bytes
 
     def __post_init__(self) -> None:
-        _require_pixels(self.width, self.height)
+        require_pixels(self.width, self.height)
         if self.codec == "rgb8" and len(self.data) != 3 * self.width * self.height:
             raise ValueError("colour bytes do not fill the image")
 
@@ -134,7 +117,7 @@ class DepthImage(Struct, frozen=True):
     data: bytes
 
     def __post_init__(self) -> None:
-        _require_pixels(self.width, self.height)
+        require_pixels(self.width, self.height)
         if self.codec == "z16" and len(self.data) != 2 * self.width * self.height:
             raise ValueError("depth bytes do not fill the image")
 
@@ -172,7 +155,7 @@ class Person(Struct, frozen=True, kw_only=True):
         places = [any(joint) and all(map(math.isfinite, joint)) for joint in self.joints]
         if not all(places):
             self._leave_out(places)
-        _require_finite("confidence", self.confidences)
+        require_finite("confidence", self.confidences)
 
     def _leave_out(self, places: list[bool]) -> None:
         """Take joints as missing where they are no places."""
@@ -204,7 +187,7 @@ class Box(Struct, frozen=True):
     height: NonNegative
 
     def __post_init__(self) -> None:
-        _require_finite("box", (self.left, self.top, self.width, self.height))
+        require_finite("box", (self.left, self.top, self.width, self.height))
 
 
 class ObjectPose(Message, frozen=True, kw_only=True):
@@ -235,13 +218,13 @@ class ObjectPose(Message, frozen=True, kw_only=True):
     def __post_init__(self) -> None:
         if self.camera_from_object is None and self.state != "lost":
             raise ValueError(f"a {self.state} object needs a pose")
-        _require_finite("confidence", (self.confidence, *self.class_probabilities.values()))
+        require_finite("confidence", (self.confidence, *self.class_probabilities.values()))
         if self.covariance is not None:
-            _require_finite("covariance", self.covariance)
+            require_finite("covariance", self.covariance)
         if self.visible_fraction is not None:
-            _require_finite("visible fraction", (self.visible_fraction,))
+            require_finite("visible fraction", (self.visible_fraction,))
         for joint in self.person_joints or ():
-            _require_finite("joint", joint)
+            require_finite("joint", joint)
 
 
 class Event(Message, frozen=True, kw_only=True):
@@ -255,7 +238,7 @@ class Event(Message, frozen=True, kw_only=True):
     description: Text = ""
 
     def __post_init__(self) -> None:
-        _require_finite("evidence", self.evidence.values())
+        require_finite("evidence", self.evidence.values())
 
 
 class TopicHealth(Struct, frozen=True, kw_only=True):
@@ -276,7 +259,7 @@ class TopicHealth(Struct, frozen=True, kw_only=True):
     refused: Count = 0
 
     def __post_init__(self) -> None:
-        _require_finite("rate", (self.rate_hz, self.late_ms or 0.0))
+        require_finite("rate", (self.rate_hz, self.late_ms or 0.0))
 
 
 class Latency(Struct, frozen=True, kw_only=True):
@@ -286,7 +269,7 @@ class Latency(Struct, frozen=True, kw_only=True):
     p99: float
 
     def __post_init__(self) -> None:
-        _require_finite("latency", (self.p50, self.p99))
+        require_finite("latency", (self.p50, self.p99))
 
 
 class Health(Message, frozen=True, kw_only=True):
@@ -313,5 +296,5 @@ class Health(Message, frozen=True, kw_only=True):
     shutter_closed: bool | None = None
 
     def __post_init__(self) -> None:
-        _require_finite("time", (self.uptime_s, self.loop_age_s))
-        _require_finite("effort", (self.effort or 0.0,))
+        require_finite("time", (self.uptime_s, self.loop_age_s))
+        require_finite("effort", (self.effort or 0.0,))

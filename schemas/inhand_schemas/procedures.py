@@ -10,8 +10,8 @@ import msgspec
 from msgspec import Meta, Struct
 
 from inhand_schemas.errors import MessageError
+from inhand_schemas.fields import Name, Text
 from inhand_schemas.keys import Site
-from inhand_schemas.messages import Name, Text
 
 Q = TypeVar("Q", bound=Struct)
 R = TypeVar("R", bound=Struct)

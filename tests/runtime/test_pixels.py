@@ -13,7 +13,8 @@ from inhand_runtime.pixels import (
     encode_depth,
 )
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import ColourImage, DepthCodec, DepthImage
+from inhand_schemas.fields import DepthCodec
+from inhand_schemas.messages import ColourImage, DepthImage
 from inhand_tracker.geometry.arrays import Bytes
 from numpy.typing import NDArray
 

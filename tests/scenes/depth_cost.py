@@ -5,7 +5,7 @@ from typing import get_args
 
 from inhand_lab.world.simulation import simulate
 from inhand_runtime.pixels import decode_depth, encode_depth
-from inhand_schemas.messages import DepthCodec
+from inhand_schemas.fields import DepthCodec
 from jpeg_cost import milliseconds
 
 

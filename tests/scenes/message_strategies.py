@@ -3,9 +3,8 @@
 import math
 
 from hypothesis import strategies as st
+from inhand_schemas.fields import LONGEST_LENS, WIDEST_LENS
 from inhand_schemas.messages import (
-    LONGEST_LENS,
-    WIDEST_LENS,
     Box,
     CameraInfo,
     ColourImage,

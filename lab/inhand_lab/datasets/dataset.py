@@ -12,7 +12,7 @@ from typing import Literal
 
 import msgspec
 from inhand_runtime.errors import InhandError
-from inhand_schemas.messages import Name
+from inhand_schemas.fields import Name
 from inhand_tracker.shape.shape import ObjectShape, load_shape
 
 FORMAT = "inhand-dataset"

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 from inhand_runtime.wording import counted
+from inhand_schemas.fields import MOST_PEOPLE
 from inhand_schemas.joints import Joint
-from inhand_schemas.messages import MOST_PEOPLE, Message, Person, Skeletons
+from inhand_schemas.messages import Message, Person, Skeletons
 from inhand_tracker.geometry.arrays import Array, Indices
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError

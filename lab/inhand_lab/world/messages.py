@@ -2,15 +2,8 @@
 
 import numpy as np
 from inhand_runtime.pixels import encode_colour, encode_depth
-from inhand_schemas.messages import (
-    CameraInfo,
-    Contact,
-    JointState,
-    ObjectPose,
-    Person,
-    RgbdFrame,
-    Vector3,
-)
+from inhand_schemas.fields import Contact, JointState, Vector3
+from inhand_schemas.messages import CameraInfo, ObjectPose, Person, RgbdFrame
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.shape.shape import ObjectShape

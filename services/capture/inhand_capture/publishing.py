@@ -7,10 +7,10 @@ import numpy as np
 from inhand_runtime.pixels import decode_depth, encode_colour, encode_depth
 from inhand_runtime.source import Captured, Pixels
 from inhand_schemas.errors import MessageError
+from inhand_schemas.fields import DepthCodec
 from inhand_schemas.messages import (
     CameraInfo,
     ColourImage,
-    DepthCodec,
     DepthImage,
     Message,
     ObjectPose,

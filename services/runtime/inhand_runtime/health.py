@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 import psutil
-from inhand_schemas.messages import Health, Latency, ServiceState, TopicHealth
+from inhand_schemas.fields import ServiceState
+from inhand_schemas.messages import Health, Latency, TopicHealth
 
 log = logging.getLogger(__name__)
 

@@ -4,7 +4,8 @@ import numpy as np
 import simplejpeg
 import zstandard
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import ColourImage, DepthCodec, DepthImage
+from inhand_schemas.fields import DepthCodec
+from inhand_schemas.messages import ColourImage, DepthImage
 from numpy.typing import NDArray
 
 from inhand_runtime.png_depth import decode_png, encode_png

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from inhand_runtime.settings import FilePath, Section
-from inhand_schemas.messages import Name
+from inhand_schemas.fields import Name
 from pydantic import Field, PositiveInt
 
 from inhand_tracker.methods.registry import DEFAULT_METHOD, AnyTerm, MethodName

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from inhand_runtime.errors import InhandError
 from inhand_runtime.pinhole import Pinhole
+from inhand_schemas.fields import MOST_PEOPLE, JointState
 from inhand_schemas.joints import PARENTS
-from inhand_schemas.messages import MOST_PEOPLE, CameraInfo, JointState, Person
+from inhand_schemas.messages import CameraInfo, Person
 from numpy.typing import NDArray
 
 from inhand_capture.estimation.body_lengths import BodyLengths

@@ -9,15 +9,8 @@ from typing import TypeVar
 
 import numpy as np
 from inhand_runtime.source import SourceError
-from inhand_schemas.messages import (
-    Box,
-    CameraInfo,
-    ObjectPose,
-    Person,
-    Pose,
-    Quaternion,
-    Vector3,
-)
+from inhand_schemas.fields import Quaternion, Vector3
+from inhand_schemas.messages import Box, CameraInfo, ObjectPose, Person, Pose
 from msgspec.structs import replace
 from numpy.typing import NDArray
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from inhand_runtime.pixels import raw_colour, raw_depth
 from inhand_runtime.source import Captured, Pixels, Source, SourceError, control_source
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import CameraInfo, ColourImage, JointState, Person, Vector3
+from inhand_schemas.fields import JointState, Vector3
+from inhand_schemas.messages import CameraInfo, ColourImage, Person
 from msgspec.structs import replace as replace_struct
 from numpy import uint8, uint16
 from numpy.typing import NDArray
