@@ -36,14 +36,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--no-images", action="store_true", help="skeletons and labels only: small and quick"
     )
     parser.add_argument(
-        "--variety",
-        type=float,
-        default=1.0,
-        metavar="SHARE",
-        help="of what people differ by beside their bodies, from 0, as before world version 7 "
-        "(default: 1)",
-    )
-    parser.add_argument(
         "--camera", choices=CAMERAS, default=KINECT.name, help=f"(default: {KINECT.name})"
     )
     parser.add_argument(
@@ -83,10 +75,6 @@ def run(arguments: argparse.Namespace) -> int:
         raise SettingsError(f"no interaction {unknown[0]!r}; there are: {', '.join(INTERACTIONS)}")
     if arguments.participants < 1 or arguments.frames < 1 or arguments.seed < 0:
         raise SettingsError("participants and frames are 1 or more, and the seed is 0 or more")
-    if not 0.0 <= arguments.variety <= 1.0:
-        raise SettingsError("--variety is a share, from 0 to 1")
-    if arguments.variety != 1.0 and (arguments.bodies or arguments.out is None):
-        raise SettingsError("--variety is for a dataset of simulated people: leave it out")
     if arguments.out is None and arguments.sheet is None:
         raise SettingsError("name the new dataset's folder, or a picture with --sheet")
     if arguments.sheet is not None:
@@ -116,7 +104,6 @@ def _generate(arguments: argparse.Namespace) -> Dataset:
                 arguments.frames,
                 images=not arguments.no_images,
                 camera=CAMERAS[arguments.camera],
-                variety=arguments.variety,
             ),
             advance,
         )

@@ -18,7 +18,7 @@ from inhand_lab.world.messages import (
     shape_of,
 )
 from inhand_lab.world.random_streams import GENERATOR_VERSION
-from inhand_lab.world.simulation import Casting, Simulation, simulate_cast
+from inhand_lab.world.simulation import Simulation, simulate
 
 GENERATED_RATE = 30
 """Frames a second of generated datasets."""
@@ -28,8 +28,7 @@ GENERATED_RATE = 30
 class GenerationSettings:
     """Settings of a dataset in which every participant does every interaction.
 
-    ``images`` leaves nothing out but pictures if it is false. ``variety`` is the share, 0 to 1, of
-    what people differ by beside their bodies; 0 is the world up to version 6.
+    ``images`` leaves nothing out but pictures if it is false.
     """
 
     interactions: Sequence[str]
@@ -38,7 +37,6 @@ class GenerationSettings:
     frames: int
     images: bool = True
     camera: Camera = KINECT
-    variety: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -64,11 +62,7 @@ def generate(
         Take(
             f"{interaction}_p{participant:02}",
             f"p{participant:02}",
-            simulate_cast(
-                Casting(interaction, participant, settings.seed, variety=settings.variety),
-                settings.frames,
-                camera,
-            ),
+            simulate(interaction, participant, settings.seed, settings.frames, camera),
         )
         for interaction in settings.interactions
         for participant in range(settings.participants)
@@ -82,7 +76,6 @@ def generate(
             "frames": settings.frames,
             "camera": settings.camera.name,
             "images": settings.images,
-            "variety": settings.variety,
         },
         images=settings.images,
         on_progress=on_progress,

@@ -91,7 +91,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_rest, left_rest = hanging_hands(person, trunk, random)
     right_hand = _right_hand(script, changes, right_rest, right_held)
     left_keys = [Key(0.0, left_rest), *_pass(changes, left_rest, left_held, side=-1)]
-    left_hand = move_through(script.times, left_keys)
+    left_hand = move_through(times, left_keys)
     contact = carried_by(script, *_contacts(changes))
     return Performance(posture, right_hand, left_hand, carried, contact, furniture)
 

@@ -13,12 +13,7 @@ from inhand_lab.motions.arms import within_both_reaches
 from inhand_lab.motions.furniture import WOOD, Cuboid, Furniture
 from inhand_lab.motions.golf_swing import Swing, plan_swings
 from inhand_lab.motions.grips import hold_bar
-from inhand_lab.motions.performance import (
-    STANCE_HALF_WIDTH,
-    ContactKind,
-    Performance,
-    hanging_hands,
-)
+from inhand_lab.motions.performance import TOES_OUT, ContactKind, Performance, hanging_hands
 from inhand_lab.motions.reaching import carried_by, reaching_hand
 from inhand_lab.motions.script import Script, To, write_script
 from inhand_lab.motions.timeline import Move, Pause, Plan
@@ -31,7 +26,7 @@ PLAN = Plan(
     use=(
         Move("waggle", 0.65),
         Pause("settle", 0.35),
-        Move("swing", 1.65, swift=True),
+        Move("swing", 1.65),
         Pause("finish", 0.5),
         Move("recover", 0.80),
     ),
@@ -59,7 +54,7 @@ JOINED = 0.9
 AROUND_CLUB = (-0.05, 0.12, 0.0)
 """How the left hand's way to the club and back swings out, metres."""
 
-RACK_PLACE = np.array([0.36, 0.46])
+RACK_PLACE = np.array([0.35, 0.46])
 """Where the sole of the club is, metres."""
 LEAN, ROLL = np.radians((30.0, -45.0))
 """Of the club on the rack."""
@@ -72,9 +67,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     swing = plan_swings(script)
     posture = _posture(script, swing)
     trunk = place_trunk(person, posture)
-    rack, leaning = _lean_on_rack(person, random)
+    rack, leaning = _lean_on_rack(random)
     grips = _grips(script)
-    waggle = int(np.argmax(script.times >= script.stage("waggle").start))
+    waggle = int(np.searchsorted(times, script.stage("waggle").start))
     swung = _swing_club(person, trunk, swing, address=waggle)
     swung = _above_floor(within_both_reaches(person, trunk, swung, grips))
     rest = script.still(leaning)
@@ -128,18 +123,14 @@ def _angles(world_from_one: Array, world_from_other: Array) -> Array:
 def _pivot(person: SimulatedPerson, sole: Array, heel: Array) -> Transform:
     """The right foot, world_from_foot (T), its heel lifted by an angle (T,) over the ball."""
     ball = np.array([0.0, person.proportions.foot, BALL_HEIGHT])
-    toes_out = person.manner.toes_out
-    flat = rotation_about("z", -toes_out)
-    turned = rotation_about("xz", -heel, FOOT_TURN * heel - toes_out)
+    flat = rotation_about("z", -TOES_OUT)
+    turned = rotation_about("xz", -heel, FOOT_TURN * heel - TOES_OUT)
     return Transform(sole + flat @ ball - turned @ ball, turned)
 
 
-def _lean_on_rack(
-    person: SimulatedPerson, random: np.random.Generator
-) -> tuple[Furniture, Transform]:
-    """A low rack, clear of the right foot, and the club leaning on its edge, world_from_object."""
+def _lean_on_rack(random: np.random.Generator) -> tuple[Furniture, Transform]:
+    """A low rack at the right, and the club leaning on its front edge, world_from_object."""
     x, head = RACK_PLACE + random.normal(0.0, 0.015, 2)
-    x += max(person.manner.stance_width - 1.0, 0.0) * STANCE_HALF_WIDTH
     rotation = rotation_about("x", LEAN) @ rotation_about("z", ROLL)
     lowest = (golf_club().vertices @ rotation.T)[:, 2].min()
     place = np.array([x, head, 0.0]) - rotation @ [0.0, 0.0, SOLE]

@@ -123,7 +123,7 @@ def _stool(script: Script) -> Stool:
 def _grip(script: Script) -> Transform:
     """The right fist around the bar from below, object_from_hand (T)."""
     person, manner = script.person, script.person.manner
-    wide = max(person.proportions.shoulder_half_width + 0.035, 0.129 * person.height * person.girth)
+    wide = max(person.proportions.shoulder_half_width + 0.035, 0.125 * person.height * person.girth)
     point = np.array([wide + 0.02 * manner.grip_slide, 0.0, 0.0])
     return hold_bar(script, point, rotation_about("x", 0.6 * manner.grip_turn) @ UNDERHAND)
 
@@ -165,7 +165,7 @@ def _stance(script: Script, stool: Stool, curled: Array) -> Stance:
 
 def _knees_bent(person: SimulatedPerson, stool: Stool) -> float:
     """How far the hips go down, metres, until the arms reach the bar from a stooping trunk."""
-    right_foot, left_foot = feet_apart(person, 1, FEET_HALF_APART)
+    right_foot, left_foot = feet_apart(1, FEET_HALF_APART)
     back, stooped = np.array([[0.0, -HIPS_BACK, 0.0]]), np.array([[LEAN, 0.0, 0.0]])
     stance = Stance(right_foot, left_foot, np.zeros(1), back, stooped, np.zeros((1, 3)))
     trunk = place_trunk(person, stand(person, np.zeros(1), np.random.default_rng(0), stance))

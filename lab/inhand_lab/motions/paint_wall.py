@@ -117,7 +117,7 @@ def _stance(script: Script, path: Array) -> Stance:
     head += np.outer(looked, [-0.15, 0.0, 0.15])
     shift = np.outer(painting, [0.03 * script.size, 0.0, 0.0])
     turned = rotation_about("z", HEADING)
-    right_foot, left_foot = (foot @ turned.T for foot in feet_apart(script.person, count, 0.12))
+    right_foot, left_foot = (foot @ turned.T for foot in feet_apart(count, 0.12))
     return Stance(right_foot, left_foot, np.full(count, HEADING), shift, trunk, head)
 
 

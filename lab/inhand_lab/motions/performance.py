@@ -66,23 +66,15 @@ class Stance:
 
 
 STANCE_HALF_WIDTH = 0.09
-LEAST_ASIDE = 0.12
-"""Least slope of a hanging arm outwards, so that its hand is beside a hip that is shifted to it."""
+TOES_OUT = 0.15
 EASY_KNEES = 0.985
 """Straightness of the legs in easy standing, as a share of their length."""
 
 
-def feet_apart(
-    person: SimulatedPerson, count: int, half_width: float = STANCE_HALF_WIDTH
-) -> tuple[Array, Array]:
-    """Right and left soles (T, 3) on the floor, as far apart as the task and the person have it.
-
-    ``half_width`` is the task's, in metres; people differ as much in wide stances as in others.
-    """
-    own = half_width + (person.manner.stance_width - 1.0) * STANCE_HALF_WIDTH
-    ahead = 0.5 * person.manner.foot_ahead * person.height
-    right = np.tile([own, ahead, 0.0], (count, 1))
-    return right, -right
+def feet_apart(count: int, half_width: float = STANCE_HALF_WIDTH) -> tuple[Array, Array]:
+    """Right and left soles (T, 3) side by side on the floor."""
+    right = np.tile([half_width, 0.0, 0.0], (count, 1))
+    return right, right * MIRROR
 
 
 def step(times: Array, start: float, end: float, way: Array) -> Array:
@@ -110,13 +102,11 @@ def stand(
     sway = np.stack([drift(times, random, manner.sway, 4.0) for _ in range(2)], axis=1)
     wander = np.stack([drift(times, random, 0.02, 5.0) for _ in range(3)], axis=1)
     glances = np.stack([drift(times, random, 0.05, 3.0) for _ in range(3)], axis=1)
-    trunk = stance.trunk_angles + wander + [manner.stoop, manner.lean_aside, manner.twist]
-    level = [manner.head_pitch, manner.head_aside - manner.lean_aside, -manner.twist]
-    head = stance.head_angles + glances + level
+    trunk = stance.trunk_angles + wander + np.array([manner.stoop, 0.0, 0.0])
+    head = stance.head_angles + glances + np.array([manner.head_pitch, 0.0, 0.0])
     heading = rotation_about("z", stance.heading)
     hips = 0.5 * (stance.right_foot + stance.left_foot) + stance.shift
     hips[:, :2] += sway
-    hips += heading[:, :, 0] * (manner.weight_aside * person.height)
     hips -= heading[:, :, 1] * (0.30 * body.chest * np.sin(0.5 * trunk[:, :1]))
     hips[:, 2] = stance.shift[:, 2] + _hip_reach(person, hips, heading, stance) + body.hip_drop
     pelvis = heading @ rotation_about("xz", -0.5 * trunk[:, 0], 0.3 * trunk[:, 2])
@@ -126,8 +116,8 @@ def stand(
         Transform(hips, pelvis),
         trunk,
         head,
-        Transform(stance.right_foot, rotation_about("z", feet[:, 0] - manner.toes_out)),
-        Transform(stance.left_foot, rotation_about("z", feet[:, -1] + manner.toes_out)),
+        Transform(stance.right_foot, rotation_about("z", feet[:, 0] - TOES_OUT)),
+        Transform(stance.left_foot, rotation_about("z", feet[:, -1] + TOES_OUT)),
     )
 
 
@@ -159,7 +149,6 @@ def _hang(
     body = person.proportions
     reach = 0.965 * (body.upper_arm + body.forearm) + body.palm
     ahead, aside = random.normal(0.10, 0.03), random.normal(0.12, 0.02)
-    aside = max(aside, LEAST_ASIDE) * max(person.girth, 1.0)
     downwards = normalised([aside, ahead, -1.0])
     hand = rotation_from_axes([-0.05, 0.15 + ahead, -1.0], [-0.35, 1.0, 0.0])
     upright = rotation_about("z", heading)

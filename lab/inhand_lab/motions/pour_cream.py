@@ -38,7 +38,7 @@ HELD_TILT, FIRST_TILT, MORE_TILT, DEEPEST_TILT = 0.06, 0.80, 0.12, 1.05
 """Tilt of the jug, radians: between pourings, at the first one, what each next one adds as it
 empties, and the limit."""
 
-POURING_HEIGHT, HOLDING_HEIGHT, SHORT_OF_CUP = 0.047, 0.090, 0.035
+POURING_HEIGHT, HOLDING_HEIGHT, SHORT_OF_CUP = 0.045, 0.090, 0.035
 """The spout above the cup's rim while pouring and between, and short of its middle between."""
 
 CUP_WIDTH, CUP_HEIGHT = 0.084, 0.066

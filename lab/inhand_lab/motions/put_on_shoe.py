@@ -12,7 +12,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import WOOD, Cuboid
 from inhand_lab.motions.grips import pinch
-from inhand_lab.motions.performance import STANCE_HALF_WIDTH, ContactKind, Performance
+from inhand_lab.motions.performance import STANCE_HALF_WIDTH, TOES_OUT, ContactKind, Performance
 from inhand_lab.motions.reaching import carried_by
 from inhand_lab.motions.script import Script, To, write_script
 from inhand_lab.motions.timeline import Move, Pause, Plan
@@ -87,7 +87,6 @@ def _changes(script: Script) -> list[tuple[float, ContactKind]]:
 def _right_foot(script: Script) -> Transform:
     """The right foot, world_from_foot (T): raised to the hands; on its heel, the toes tapping."""
     person, times, random = script.person, script.times, script.random
-    toes_out = person.manner.toes_out
     raised = [(0.0, (0.0,))]
     tapped = np.zeros(len(times))
     for stage in script.stages:
@@ -102,8 +101,8 @@ def _right_foot(script: Script) -> Transform:
     up = script.flow(raised)[:, 0]
     on_floor = np.array([STANCE_HALF_WIDTH, _feet_ahead(person), 0.0])
     heel = np.array([0.0, -HEEL_BEHIND, 0.0])
-    flat = rotation_about("z", -toes_out)
-    rotation = rotation_about("xz", TOES_UP * up + tapped, -toes_out)
+    flat = rotation_about("z", -TOES_OUT)
+    rotation = rotation_about("xz", TOES_UP * up + tapped, -TOES_OUT)
     place = on_floor + flat @ heel - rotation @ heel + up[:, None] * RAISED * person.height
     return Transform(place, rotation)
 
@@ -115,19 +114,18 @@ def _feet_ahead(person: SimulatedPerson) -> float:
 def _sit(script: Script, right_foot: Transform) -> Posture:
     """A posture on the stool, bent to the floor and to the foot, the left foot on the floor."""
     person, manner = script.person, script.person.manner
-    trunk = _lean(script) + script.drifts(0.02, 5.0)
-    trunk += [manner.stoop, manner.lean_aside, manner.twist]
+    trunk = _lean(script) + script.drifts(0.02, 5.0) + [manner.stoop, 0.0, 0.0]
     pelvis = rotation_about("x", -0.35 * trunk[:, 0])
     hips = np.array([0.0, -BEHIND, SEAT]) * person.height
     head = script.drifts(0.05, 3.0) + trunk[:, :1] / BENT_TO_FOOT * [0.25, 0.0, -0.05]
-    head += [manner.head_pitch, manner.head_aside - manner.lean_aside, -manner.twist]
+    head[:, 0] += manner.head_pitch
     left_foot = np.array([-STANCE_HALF_WIDTH, _feet_ahead(person), 0.0])
     return Posture(
         Transform(hips + pelvis[:, :, 2] * person.proportions.hip_drop, pelvis),
         trunk * (0.65, 1.0, 1.0),
         head,
         right_foot,
-        script.still(Transform(left_foot, rotation_about("z", manner.toes_out))),
+        script.still(Transform(left_foot, rotation_about("z", TOES_OUT))),
     )
 
 

@@ -35,10 +35,8 @@ STEEP_AT_TABLE, STEEP_AT_FACE = np.radians(-22.0), np.radians(50.0)
 """Where the fingers point above the camera's axis: the hands shift their hold while lifting."""
 
 BEFORE_FACE = np.array([0.0, 0.30, 0.030])
-LEAST_ABOVE_FACE = 0.015
 BEFORE_CHEST = np.array([0.03, 0.32, -0.19])
-"""The camera from the middle of the head, how far above that at the least, and from the shoulder
-centre, metres."""
+"""The camera from the middle of the head and from the shoulder centre, metres."""
 USUAL_PAN = 0.50
 """To either side, radians."""
 AROUND_TABLE = (-0.08, 0.12, 0.0)
@@ -137,7 +135,6 @@ def _film(script: Script, trunk: Trunk, tilt: Array) -> Transform:
     """The camera before the face, world_from_object (T), in hands that are not quite still."""
     ahead = BEFORE_FACE * (1.0, script.person.manner.amplitude, 1.0)
     ahead += script.random.normal(0.0, 0.02, 3)
-    ahead[2] = max(ahead[2], LEAST_ABOVE_FACE)
     shake = script.drifts(0.003, 1.5)
     unsteady = script.drifts(0.02, 1.5, count=2)
     aimed = rotation_about("xz", tilt + unsteady[:, 0], unsteady[:, 1])

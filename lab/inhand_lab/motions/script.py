@@ -10,24 +10,8 @@ from inhand_tracker.geometry.arrays import Array
 from numpy.typing import ArrayLike
 
 from inhand_lab.geometry.transforms import Transform
-from inhand_lab.motions.interruptions import (
-    draw_interruptions,
-    interrupted_times,
-    place_interruptions,
-)
-from inhand_lab.motions.parameters import DEFAULT_PERFORMANCE
 from inhand_lab.motions.performance import STANCE_HALF_WIDTH, Stance, feet_apart, stand
-from inhand_lab.motions.timeline import (
-    Key,
-    Plan,
-    Stage,
-    drift,
-    flow,
-    move_through,
-    schedule,
-    spare_time,
-    track,
-)
+from inhand_lab.motions.timeline import Key, Plan, Stage, drift, flow, move_through, schedule, track
 from inhand_lab.people.kinematics import Posture, Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
@@ -64,7 +48,6 @@ class To:
 class Script:
     """What every part of a performance is made from; times (T,) are seconds from the start.
 
-    They stand still or go back where somebody stops; ``clock`` (T,) does not: sway goes on.
     The parts draw what is by chance from random, so their order belongs to the performance.
     """
 
@@ -72,7 +55,6 @@ class Script:
     times: Array
     random: np.random.Generator
     stages: list[Stage]
-    clock: Array
 
     @property
     def size(self) -> float:
@@ -130,7 +112,7 @@ class Script:
 
     def drift(self, deviation: float, period: float) -> Array:
         """A slow wander (T,) about zero; the period is in seconds."""
-        return drift(self.clock, self.random, deviation, period)
+        return drift(self.times, self.random, deviation, period)
 
     def drifts(self, deviation: float, period: float, count: int = 3) -> Array:
         """Slow wanders (T, count), independent of each other."""
@@ -143,13 +125,11 @@ class Script:
     def place(self, across: float, ahead: float, spread: float = 0.015) -> Array:
         """A place (2,) to the right and ahead, metres of the usual stature; it varies by spread."""
         usual = np.array([across, ahead]) * self.size
-        factor = DEFAULT_PERFORMANCE.places(self.person.variety)
-        return np.asarray(usual + factor * self.random.normal(0.0, spread, 2))
+        return np.asarray(usual + self.random.normal(0.0, spread, 2))
 
     def table_top(self, share: float, spread: float = 0.015) -> float:
         """Height of a table, metres, by a share of the stature; it varies by spread."""
-        factor = DEFAULT_PERFORMANCE.heights(self.person.variety)
-        return share * self.person.height + factor * float(self.random.normal(0.0, spread))
+        return share * self.person.height + float(self.random.normal(0.0, spread))
 
     def upright_stance(
         self,
@@ -161,26 +141,17 @@ class Script:
         """Feet side by side that stay where they are, and what the rest of the body does."""
         count = len(self.times)
         still = np.zeros((count, 3)) if shift is None else shift
-        feet = feet_apart(self.person, count, half_width)
+        feet = feet_apart(count, half_width)
         return Stance(*feet, np.zeros(count), still, trunk_angles, head_angles)
 
     def stand(self, stance: Stance) -> tuple[Posture, Trunk]:
         """The body on its feet, and the frames that hands are placed by."""
-        posture = stand(self.person, self.clock, self.random, stance)
+        posture = stand(self.person, self.times, self.random, stance)
         return posture, place_trunk(self.person, posture)
 
 
 def write_script(
     person: SimulatedPerson, times: Array, random: np.random.Generator, plan: Plan
 ) -> Script:
-    """The plan's stages at these times, as the person's tempo and chance have them.
-
-    Somebody may stop in between or break off a movement, if that leaves time for all of the plan.
-    """
-    duration = float(times[-1])
-    spare = spare_time(person, duration, plan)
-    interruptions = draw_interruptions(random, person.variety, spare)
-    cost = sum(interruption.cost() for interruption in interruptions)
-    stages = schedule(person, random, duration - cost, plan)
-    placed = place_interruptions(random, interruptions, stages)
-    return Script(person, interrupted_times(times, placed), random, stages, times)
+    """The plan's stages at these times, as the person's tempo and chance have them."""
+    return Script(person, times, random, schedule(person, random, float(times[-1]), plan))

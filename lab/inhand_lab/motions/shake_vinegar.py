@@ -17,12 +17,7 @@ from inhand_lab.people.person import SimulatedPerson
 
 PLAN = Plan(
     opening=(*TAKE, Move("lift", 0.85)),
-    use=(
-        Move("tip", 0.55),
-        Move("shake", 1.05, swift=True),
-        Move("right", 0.45),
-        Pause("look", 0.5),
-    ),
+    use=(Move("tip", 0.55), Move("shake", 1.05), Move("right", 0.45), Pause("look", 0.5)),
     closing=PUT_BACK,
 )
 

@@ -15,20 +15,21 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from inhand_lab.geometry.transforms import Transform, interpolate
-from inhand_lab.motions.parameters import DEFAULT_PERFORMANCE
 from inhand_lab.people.person import SimulatedPerson
+
+JITTER = 0.10
+"""Standard deviation of the duration of one movement between repetitions."""
+
+SHORTEST_PAUSE = 0.4
+"""A pause is at least this share of its usual duration."""
 
 
 @dataclass(frozen=True)
 class Move:
-    """A stage in which something moves; its duration is for a person of average tempo.
-
-    Nobody stops in the middle of a ``swift`` one.
-    """
+    """A stage in which something moves; its duration is for a person of average tempo."""
 
     name: str
     seconds: float
-    swift: bool = False
 
 
 @dataclass(frozen=True)
@@ -53,16 +54,12 @@ class Plan:
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage with its place in time, in seconds; repetition counts the rounds of use from 0.
-
-    A ``breakable`` one may be interrupted or broken off.
-    """
+    """A stage with its place in time, in seconds; repetition counts the rounds of use from 0."""
 
     name: str
     repetition: int
     start: float
     end: float
-    breakable: bool = False
 
     @property
     def seconds(self) -> float:
@@ -98,34 +95,17 @@ def schedule(
     ]
     bounds = np.cumsum([0.0, *_fill([step for _, step in steps], duration)])
     return [
-        Stage(step.name, repetition, float(start), float(end), _breakable(step))
+        Stage(step.name, repetition, float(start), float(end))
         for (repetition, step), (start, end) in zip(steps, pairwise(bounds), strict=True)
     ]
-
-
-def spare_time(person: SimulatedPerson, duration: float, plan: Plan) -> float:
-    """Seconds of the duration that a plan with two rounds of use leaves, at the person's tempo."""
-    steps = [*plan.opening, *plan.use, *plan.use, *plan.closing]
-    pace = _pace(person)
-    usual = [replace(step, seconds=step.seconds * pace[type(step)]) for step in steps]
-    return max(duration - _least(usual), 0.0)
-
-
-def _pace(person: SimulatedPerson) -> dict[type[Step], float]:
-    """Factors on the durations of pauses and moves."""
-    return {Pause: person.manner.restlessness, Move: 1 / person.manner.tempo}
-
-
-def _breakable(step: Step) -> bool:
-    return isinstance(step, Move) and not step.swift
 
 
 def _timed(
     person: SimulatedPerson, random: np.random.Generator, steps: Sequence[Step]
 ) -> list[Step]:
     """The steps with the durations they have this time for this person."""
-    pace = _pace(person)
-    variation = np.exp(DEFAULT_PERFORMANCE.jitter * random.normal(size=len(steps)))
+    pace = {Pause: person.manner.restlessness, Move: 1 / person.manner.tempo}
+    variation = np.exp(JITTER * random.normal(size=len(steps)))
     return [
         replace(step, seconds=step.seconds * float(factor) * pace[type(step)])
         for step, factor in zip(steps, variation, strict=True)
@@ -134,17 +114,14 @@ def _timed(
 
 def _least(steps: Sequence[Step]) -> float:
     """Seconds that the steps take with the shortest pauses."""
-    return sum(
-        s.seconds * (DEFAULT_PERFORMANCE.shortest_pause if isinstance(s, Pause) else 1.0)
-        for s in steps
-    )
+    return sum(s.seconds * (SHORTEST_PAUSE if isinstance(s, Pause) else 1.0) for s in steps)
 
 
 def _fill(steps: Sequence[Step], duration: float) -> list[float]:
     """Pauses stretched to fill the duration; where moves alone exceed it, all is hurried."""
     pauses = sum(step.seconds for step in steps if isinstance(step, Pause))
     moves = sum(step.seconds for step in steps) - pauses
-    stretch = max((duration - moves) / pauses, DEFAULT_PERFORMANCE.shortest_pause)
+    stretch = max((duration - moves) / pauses, SHORTEST_PAUSE)
     hurry = duration / (moves + stretch * pauses)
     return [s.seconds * hurry * (stretch if isinstance(s, Pause) else 1.0) for s in steps]
 

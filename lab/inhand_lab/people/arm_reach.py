@@ -15,15 +15,12 @@ from inhand_lab.geometry.transforms import (
     normalised,
     rotation_about,
     rotation_from_vector,
-    turn_points,
 )
 from inhand_lab.people.parameters import DEFAULT_COMFORT, DEFAULT_LIMITS, ArmComfort
 from inhand_lab.people.person import Proportions, SimulatedPerson
 from inhand_lab.people.solids import belly, rib_cage
-from inhand_lab.people.two_bones import JointCircle, bend_towards, span
+from inhand_lab.people.two_bones import JointCircle, bend_towards
 
-LEAST_SINE = 0.2
-"""Sine of the angle between collar bone and arm below which turning the bone hardly helps."""
 UPPER_ARM = ((0.35, 0.0275), (0.6, 0.0265), (0.9, 0.0254))
 """Places along the upper arm that press into the trunk, and its radii there in statures."""
 
@@ -50,7 +47,6 @@ def reach_with_arm(
     body = person.proportions
     wanted = hand.translation - hand.rotation[:, :, 1] * body.palm
     shoulder = _protract(body, from_chest, shoulder, wanted)
-    shoulder = _give_way(body, from_chest, shoulder, wanted)
     bones = body.upper_arm, body.forearm
     circle, wrist = bend_towards(shoulder, wanted, bones, DEFAULT_LIMITS.elbow_extension)
     elbow = choose_elbow(ArmReach(person, from_chest, shoulder, wrist, circle, hand))
@@ -68,21 +64,6 @@ def _protract(body: Proportions, from_chest: Transform, shoulder: Array, wrist: 
     across = share**2 * (3.0 - 2.0 * share)
     turned = rotation_about("z", DEFAULT_LIMITS.protraction * across)
     return from_chest.apply(np.einsum("tij,tj->ti", turned, local))
-
-
-def _give_way(body: Proportions, from_chest: Transform, shoulder: Array, wrist: Array) -> Array:
-    """A shoulder (T, 3) that goes with a wrist beyond the arm's reach, or back from one too near,
-    as far as a collar bone turns."""
-    angles = DEFAULT_LIMITS.flexion, DEFAULT_LIMITS.elbow_extension
-    nearest, furthest = (span(body.upper_arm, body.forearm, angle) for angle in angles)
-    bone, way = shoulder - from_chest.translation, wrist - shoulder
-    length, distance = (np.linalg.norm(one, axis=1, keepdims=True) for one in (bone, way))
-    axis = np.cross(bone, way) / (length * distance)
-    sine = np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), LEAST_SINE)
-    lacking = distance - np.clip(distance, nearest, furthest)
-    most = DEFAULT_LIMITS.follow
-    turn = np.clip(lacking / (length * sine), -most, most)
-    return from_chest.translation + turn_points(bone, axis / sine * turn)
 
 
 def choose_elbow(reach: ArmReach, comfort: ArmComfort = DEFAULT_COMFORT) -> Array:

@@ -67,12 +67,9 @@ def place_trunk(person: SimulatedPerson, posture: Posture) -> Trunk:
     up, tilt, turn = posture.head_angles.T
     chest_from_head = rotation_about("yxz", tilt, up, turn)
     head_rotation = chest_rotation @ chest_from_head
-    neck = normalised(chest_rotation[:, :, 2] + head_rotation[:, :, 2])
-    leaning = normalised(neck + np.tan(person.manner.head_forward) * chest_rotation[:, :, 1])
-    head = Transform(chest.translation + leaning * body.neck, head_rotation)
+    neck_direction = normalised(chest_rotation[:, :, 2] + head_rotation[:, :, 2])
+    head = Transform(chest.translation + neck_direction * body.neck, head_rotation)
     shoulder = np.array([body.shoulder_half_width, 0.0, -body.shoulder_drop])
-    carried = [0.0, person.manner.shoulders_forward, person.manner.shoulders_up]
-    shoulder += person.height * np.array(carried)
     return Trunk(pelvis, chest, head, chest.apply(shoulder), chest.apply(shoulder * MIRROR), spine)
 
 

@@ -22,9 +22,6 @@ class JointLimits:
     protraction: float = float(np.radians(25.0))
     """Turn of a collar bone forward for an arm that reaches straight across the chest; it can by 15
     to 30 degrees (Neumann, *Kinesiology of the Musculoskeletal System*)."""
-    follow: float = float(np.radians(30.0))
-    """Turn of a collar bone after a hand that is out of reach or too near, at the most; it can be
-    raised by 35 to 45 degrees and protracted by 15 to 30 (the same source)."""
 
 
 @dataclass(frozen=True)
@@ -68,48 +65,23 @@ Spread = tuple[float, float]
 class MannerSpread:
     """How people differ in manner: the spreads of Manner's fields, in its units.
 
-    Where no source is named, how a spread was chosen is not recorded; `inhand simulate --realism`
-    compares the movement that comes of them with recorded people's.
+    How they were chosen is not recorded; `inhand simulate --realism` compares the movement that
+    comes of them with recorded people's.
     """
 
-    tempo: Spread = (0.0, 0.14)
+    tempo: Spread = (0.0, 0.13)
     """Spread of the tempo's logarithm."""
     amplitude: Spread = (0.0, 0.12)
     """Spread of the amplitude's logarithm."""
-    stoop: Spread = (0.04, 0.06)
-    """Spread of the lean of the trunk, radians; assumed, as are the lean aside and the twist."""
-    lean_aside: Spread = (0.0, 0.03)
-    """Spread of the lean of the trunk to the right, radians."""
-    twist: Spread = (0.0, 0.06)
-    """Spread of the twist of the trunk to the left, radians."""
-    head_pitch: Spread = (-0.05, 0.08)
+    stoop: Spread = (0.04, 0.03)
+    """Spread of the lean of the trunk, radians."""
+    head_pitch: Spread = (-0.05, 0.06)
     """Spread of the pitch of the head, radians."""
-    head_aside: Spread = (0.0, 0.04)
-    """Spread of the tilt of the head to the right, radians."""
-    head_forward: Spread = (0.0, 0.07)
-    """Spread of how far the neck leans forward beyond the usual, radians; the angle from the neck's
-    root to the ear differs by about five degrees between adults (Raine and Twomey, *Head and
-    shoulder posture variations*, 1997)."""
-    shoulders_up: Spread = (0.0, 0.007)
-    """Spread of the shoulders' height, in statures: a slope of shoulders that differs by four
-    degrees, as in ANSUR II's, lifts them by so much."""
-    shoulders_forward: Spread = (0.0, 0.006)
-    """Spread of how far round the shoulders are carried forward, in statures (assumed)."""
-    stance_width: Spread = (0.0, 0.24)
-    """Spread of the logarithm of the feet's distance, over that of the task; heels are 0.17 m apart
-    with a deviation of 0.04 m in quiet stance (McIlroy and Maki, *Preferred placement of the feet
-    during quiet stance*, 1997)."""
-    toes_out: Spread = (0.15, 0.08)
-    """Spread of the turn of each foot outwards, radians (the same source)."""
-    foot_ahead: Spread = (0.0, 0.02)
-    """Spread of how far the right foot is ahead of the left, in statures (assumed)."""
-    weight_aside: Spread = (0.0, 0.012)
-    """Spread of how far the weight is on the right foot, in statures (assumed)."""
-    elbow_flare: Spread = (0.45, 0.25)
+    elbow_flare: Spread = (0.45, 0.15)
     """Spread of the elbow's preferred swivel, radians."""
     sway: Spread = (0.010, 0.003)
     """Spread of the deviation of postural sway, metres."""
-    restlessness: Spread = (0.0, 0.35)
+    restlessness: Spread = (0.0, 0.25)
     """Spread of the restlessness's logarithm."""
     grip_slide: Spread = (0.0, 0.45)
     """Spread of where along a handle the hand takes hold."""
@@ -121,25 +93,6 @@ class MannerSpread:
 
 DEFAULT_MANNERS = MannerSpread()
 """How participants differ."""
-ALIKE_MANNERS = MannerSpread(
-    tempo=(0.0, 0.13),
-    amplitude=(0.0, 0.12),
-    stoop=(0.04, 0.03),
-    lean_aside=(0.0, 0.0),
-    twist=(0.0, 0.0),
-    head_pitch=(-0.05, 0.06),
-    head_aside=(0.0, 0.0),
-    head_forward=(0.0, 0.0),
-    shoulders_up=(0.0, 0.0),
-    shoulders_forward=(0.0, 0.0),
-    stance_width=(0.0, 0.0),
-    toes_out=(0.15, 0.0),
-    foot_ahead=(0.0, 0.0),
-    weight_aside=(0.0, 0.0),
-    elbow_flare=(0.45, 0.15),
-    restlessness=(0.0, 0.25),
-)
-"""How they differed up to world version 6: what is left where variety is taken out."""
 DEFAULT_LIMITS = JointLimits()
 """Limits of every simulated person."""
 DEFAULT_COMFORT = ArmComfort()

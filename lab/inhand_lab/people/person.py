@@ -15,7 +15,7 @@ from typing import Literal
 
 import numpy as np
 
-from inhand_lab.people.parameters import ALIKE_MANNERS, DEFAULT_MANNERS
+from inhand_lab.people.parameters import DEFAULT_MANNERS, MannerSpread, Spread
 
 HEIGHT_MEAN_AND_DEVIATION = {"female": (1.628, 0.064), "male": (1.756, 0.069)}
 """Mean and deviation of statures, metres."""
@@ -70,28 +70,8 @@ class Manner:
     """Size of free gestures; 1 is average."""
     stoop: float
     """Habitual forward lean of the trunk, radians."""
-    lean_aside: float
-    """Habitual lean of the trunk to the right, radians."""
-    twist: float
-    """Habitual twist of the trunk to the left, radians; the head turns back by as much."""
     head_pitch: float
     """Habitual pitch of the head, radians, positive up."""
-    head_aside: float
-    """Habitual tilt of the head to the right, radians."""
-    head_forward: float
-    """Habitual lean of the neck forward, beyond the usual, radians."""
-    shoulders_up: float
-    """Height at which shoulders are carried above the usual, in statures."""
-    shoulders_forward: float
-    """Distance by which shoulders are carried forward, in statures."""
-    stance_width: float
-    """Distance of the feet over what is usual for the task."""
-    toes_out: float
-    """Turn of each foot outwards, radians."""
-    foot_ahead: float
-    """Distance by which the right foot is ahead of the left, in statures."""
-    weight_aside: float
-    """Distance by which the hips are nearer to the right foot, in statures."""
     elbow_flare: float
     """Preferred swivel of the elbow away from hanging straight down, radians."""
     sway: float
@@ -118,16 +98,10 @@ class SimulatedPerson:
     manner: Manner
     appearance: int
     """Seed of skin, hair and clothes."""
-    variety: float = 1.0
-    """Share of the usual variety in what is not the body: manner, places, interruptions, cameras; 0
-    is the world up to version 6."""
 
 
-def sample_person(seed: int, participant: int, variety: float = 1.0) -> SimulatedPerson:
-    """The participant of that number in the world of that seed: always the same person.
-
-    The body is the same at any ``variety``, a share from 0 to 1.
-    """
+def sample_person(seed: int, participant: int) -> SimulatedPerson:
+    """The participant of that number in the world of that seed: always the same person."""
     random = np.random.default_rng([seed, participant, 0x9E12])
     sex: Literal["female", "male"] = "female" if random.random() < 0.5 else "male"
     mean, deviation = HEIGHT_MEAN_AND_DEVIATION[sex]
@@ -138,9 +112,8 @@ def sample_person(seed: int, participant: int, variety: float = 1.0) -> Simulate
         handedness="left" if random.random() < LEFT_HANDED_SHARE else "right",
         proportions=_sample_proportions(height, random),
         girth=float(np.clip(random.normal(1.0, 0.1), 0.8, 1.25)),
-        manner=_sample_manner(random, np.random.default_rng([seed, participant, 0x4AB17]), variety),
+        manner=_sample_manner(random),
         appearance=int(random.integers(2**31)),
-        variety=variety,
     )
 
 
@@ -157,38 +130,23 @@ def _sample_proportions(height: float, random: np.random.Generator) -> Proportio
     return Proportions(**{name: fraction * scale for name, fraction in varied.items()})
 
 
-EARLIER_HABITS = (
-    "tempo",
-    "amplitude",
-    "stoop",
-    "head_pitch",
-    "elbow_flare",
-    "sway",
-    "restlessness",
-    "grip_slide",
-    "grip_turn",
-    "grip_tilt",
-)
-"""Habits in the order in which they have been drawn since people had any: it keeps a participant's
-body as it was when more were added."""
-LOGARITHMS = ("tempo", "amplitude", "restlessness", "stance_width")
-"""Habits whose spread is that of their logarithm."""
+def _sample_manner(random: np.random.Generator, spread: MannerSpread = DEFAULT_MANNERS) -> Manner:
+    def around(mean_and_deviation: Spread) -> float:
+        mean, deviation = mean_and_deviation
+        return mean + deviation * float(np.clip(random.normal(), -2.0, 2.0))
 
-
-def _sample_manner(
-    random: np.random.Generator, more: np.random.Generator, variety: float
-) -> Manner:
-    """A manner whose spread is between that of people who are alike and of people who differ."""
-    names = [*EARLIER_HABITS, *(n for n in vars(DEFAULT_MANNERS) if n not in EARLIER_HABITS)]
-    habits = {}
-    for name in names:
-        mean, differing = getattr(DEFAULT_MANNERS, name)
-        _, alike = getattr(ALIKE_MANNERS, name)
-        source = random if name in EARLIER_HABITS else more
-        deviation = alike + variety * (differing - alike)
-        value = mean + deviation * float(np.clip(source.normal(), -2.0, 2.0))
-        habits[name] = math.exp(value) if name in LOGARITHMS else value
-    return Manner(**habits)
+    return Manner(
+        tempo=math.exp(around(spread.tempo)),
+        amplitude=math.exp(around(spread.amplitude)),
+        stoop=around(spread.stoop),
+        head_pitch=around(spread.head_pitch),
+        elbow_flare=around(spread.elbow_flare),
+        sway=abs(around(spread.sway)),
+        restlessness=math.exp(around(spread.restlessness)),
+        grip_slide=around(spread.grip_slide),
+        grip_turn=around(spread.grip_turn),
+        grip_tilt=around(spread.grip_tilt),
+    )
 
 
 def stature_of(proportions: Proportions) -> float:

@@ -23,10 +23,6 @@ class CameraPlacing:
     """Distance from the person, metres; more where the person would not fit."""
     aside: float = float(np.radians(30.0))
     """Angle by which it is aside of what the person faces, at the most, radians."""
-    around: float = 0.0
-    """Share of cameras that stand anywhere round the person."""
-    tries: int = 20
-    """Number of places of which the first is taken that no furniture hides the person from."""
     headroom: float = 0.60
     """Height that is in the image beside the person's, metres."""
     aim: float = 0.43
@@ -76,13 +72,8 @@ class IdleHandParameters:
     """Number of places that a fidgeting hand goes to before it hangs again, at most."""
 
 
-ALIKE_CAMERA_PLACING = CameraPlacing()
-"""Cameras before people who use an object, up to world version 6."""
-VARIED_CAMERA_PLACING = CameraPlacing(
-    height=(0.7, 2.0), distance=(2.2, 3.8), aside=float(np.radians(60.0)), around=0.3
-)
-"""Cameras about people who use an object, from a low shelf to the top of one, as far as a Kinect
-measures well (0.8 to 4 m): most are meant to see what is done, some only happen to be there."""
+DEFAULT_CAMERA_PLACING = CameraPlacing()
+"""Cameras before people who use an object."""
 IDLE_CAMERA_PLACING = CameraPlacing(distance=(2.9, 3.6), aside=0.5)
 """Cameras before people who use nothing; they look at the world's middle."""
 DEFAULT_WALK = WalkParameters()

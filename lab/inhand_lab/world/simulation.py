@@ -189,21 +189,6 @@ class Simulation:
         )
 
 
-@dataclass(frozen=True)
-class Casting:
-    """Who does what in which world, for which time; ``variety`` as in SimulatedPerson."""
-
-    interaction: str
-    participant: int
-    seed: int
-    performance: int = 0
-    variety: float = 1.0
-
-    def random(self, purpose: str, *more: int) -> np.random.Generator:
-        """A stream of its own for a purpose."""
-        return random_stream(self.seed, self.participant, self.interaction, purpose, *more)
-
-
 def simulate(
     interaction: str,
     participant: int,
@@ -218,31 +203,27 @@ def simulate(
     before the same camera in every performance of an interaction. A performance lasts 12 s or as
     long as the frames, whichever is longer; fewer frames are the beginning of more.
     """
-    return simulate_cast(Casting(interaction, participant, seed, performance), frames, camera)
-
-
-def simulate_cast(cast: Casting, frames: int, camera: Camera) -> Simulation:
-    """Simulate as ``simulate`` does; raises ValueError for an unknown interaction."""
-    interaction, performance = cast.interaction, cast.performance
     if interaction not in INTERACTIONS:
         raise ValueError(f"no interaction {interaction!r}; there are {', '.join(INTERACTIONS)}")
-    person = sample_person(cast.seed, cast.participant, cast.variety)
-    motion = cast.random("motion", performance)
-    enacted = _enact(interaction, person, motion, frames, camera.frame_rate)
-    facing, camera_from_world = place_camera(
-        person, camera.intrinsics, cast.random("camera"), enacted.furniture
-    )
+
+    def stream(purpose: str, *more: int) -> np.random.Generator:
+        return random_stream(seed, participant, interaction, purpose, *more)
+
+    person = sample_person(seed, participant)
+    enacted = _enact(interaction, person, stream("motion", performance), frames, camera.frame_rate)
+    facing, camera_from_world = place_camera(person, camera.intrinsics, stream("camera"))
     body_in_camera = enacted.body.seen_from(camera_from_world)
-    skeleton = cast.random("skeleton", performance)
     return Simulation(
         interaction=interaction,
-        participant=cast.participant,
-        seed=cast.seed,
+        participant=participant,
+        seed=seed,
         performance=performance,
         person=person,
         object_model=INTERACTIONS[interaction].object_model(),
         camera=camera,
-        reading=read_skeleton(person, body_in_camera.joints, camera.frame_rate, skeleton),
+        reading=read_skeleton(
+            person, body_in_camera.joints, camera.frame_rate, stream("skeleton", performance)
+        ),
         body_in_camera=body_in_camera,
         camera_from_object=camera_from_world @ enacted.world_from_object,
         contact=enacted.contact,

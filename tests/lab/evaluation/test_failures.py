@@ -203,7 +203,7 @@ def test_a_body_that_is_wholly_wrong_misleads_while_it_lasts(failure: Failure) -
 
 
 @pytest.mark.parametrize("failure", [with_flipped_wrist, collapsed, scattered])
-def test_fusion_is_less_sure_of_a_wrong_body_and_errs_hardly_more_than_the_paper_s_best(
+def test_fusion_is_less_sure_of_a_wrong_body_and_errs_less_than_the_paper_s_best(
     failure: Failure,
 ) -> None:
     run = failing(FUSION, failure)
@@ -212,7 +212,7 @@ def test_fusion_is_less_sure_of_a_wrong_body_and_errs_hardly_more_than_the_paper
         for one in (run, usual(FUSION))
     )
     assert sure < 0.9 * usually_sure
-    assert during(run) < 1.2 * during(failing(BEST, failure))
+    assert during(run) < during(failing(BEST, failure))
 
 
 @pytest.mark.parametrize("away", [12, 45])
@@ -286,7 +286,7 @@ def test_in_a_toast_fusion_takes_the_mug_along_with_the_hand_and_says_how_unsure
             turned = rotations.multiply(one.rotation, rotations.conjugate(turn))
             off = np.concatenate((one.translation - place, rotations.to_vector(turned)))
             within.append(off @ np.linalg.solve(one.covariance, off) < CHI_SQUARE_90)
-    assert np.mean(within) > 0.4
+    assert np.mean(within) > 0.6
 
 
 def test_usual_use_by_a_stranger_hardly_ever_falls_back() -> None:

@@ -15,7 +15,7 @@ STAGES = [
     Stage("return", 1, 4.0, 6.0),
 ]
 TIMES = np.linspace(0.0, 7.0, 141)
-SCRIPT = Script(sample_person(0, 0), TIMES, np.random.default_rng(0), STAGES, TIMES)
+SCRIPT = Script(sample_person(0, 0), TIMES, np.random.default_rng(0), STAGES)
 
 
 def at_height(height: float) -> Transform:

@@ -147,7 +147,7 @@ def test_tennis_strokes_go_from_low_behind_to_high_ahead(participant: int) -> No
         around = slice(hit[0] - int(0.4 * RATE), hit[-1] + int(0.4 * RATE))
         height, ahead = tip[around, 2] - hips[around, 2], tip[around, 1] - hips[around, 1]
         assert height.min() < 0.05
-        assert ahead.min() < -0.07
+        assert ahead.min() < -0.1
         assert ahead.max() > 0.5
         assert height.argmin() < ahead.argmax()
         assert height[-1] > 0.5
@@ -162,4 +162,4 @@ def test_wrists_are_laid_back_differently_between_people_and_strokes() -> None:
         behind = racket.translation[:, 1] < body.joints[:, Joint.HIP_CENTER, 1]
         along = np.sum(forearm * racket.rotation[:, :, 2], axis=1)[behind]
         furthest.append(np.degrees(np.arccos(along.min())))
-    assert np.ptp(furthest) > 10.0
+    assert np.ptp(furthest) > 15.0

@@ -14,7 +14,7 @@ COUNT = 4
 
 
 def standing(person: SimulatedPerson) -> Posture:
-    right_foot, left_foot = feet_apart(person, COUNT)
+    right_foot, left_foot = feet_apart(COUNT)
     still = np.zeros((COUNT, 3))
     stance = Stance(right_foot, left_foot, np.zeros(COUNT), still, still, still)
     return stand(person, np.arange(COUNT) / 30.0, np.random.default_rng(0), stance)

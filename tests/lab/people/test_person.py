@@ -37,17 +37,3 @@ def test_heads_differ_less_than_statures() -> None:
     heights = np.array([person.height for person in crowd])
     slope = np.polyfit(np.log(heights), np.log(heads), 1)[0]
     assert 0.0 < slope < 0.7
-
-
-def test_variety_leaves_the_body_as_it_is_and_none_of_it_stands_everybody_alike() -> None:
-    varied = [sample_person(6, number) for number in range(12)]
-    alike = [sample_person(6, number, variety=0.0) for number in range(12)]
-    assert [person.proportions for person in varied] == [person.proportions for person in alike]
-    assert {person.manner.head_forward for person in alike} == {0.0}
-    assert {person.manner.stance_width for person in alike} == {1.0}
-    for habit in ("stoop", "head_forward", "shoulders_up", "elbow_flare"):
-        differing, usual = (
-            np.ptp([getattr(person.manner, habit) for person in people])
-            for people in (varied, alike)
-        )
-        assert differing > 1.2 * usual

@@ -27,7 +27,7 @@ FRAMES = 60
 def made(tmp_path_factory: pytest.TempPathFactory) -> Dataset:
     folder = tmp_path_factory.mktemp("made") / "people"
     return generate(
-        folder, GenerationSettings(["drinkFromMug"], 3, 6, FRAMES, images=False), lambda: None
+        folder, GenerationSettings(["drinkFromMug"], 3, 5, FRAMES, images=False), lambda: None
     )
 
 

@@ -104,17 +104,6 @@ def test_a_person_facing_the_camera_has_the_left_hand_at_the_right_of_the_image(
     assert joints[Joint.FOOT_LEFT, 1] > joints[Joint.HEAD, 1] + 1.2
 
 
-def test_without_variety_people_are_alike_and_seen_from_before() -> None:
-    for participant in range(4):
-        cast = world.Casting("drinkFromMug", participant, 7, variety=0.0)
-        alike = world.simulate_cast(cast, 30, CAMERAS["kinect"])
-        varied = simulate("drinkFromMug", participant, 7, 30)
-        assert alike.person.manner.head_forward == 0.0
-        assert abs(alike.facing) <= np.radians(30.0)
-        assert alike.person.proportions == varied.person.proportions
-        assert alike.person.manner != varied.person.manner
-
-
 @pytest.mark.parametrize("interaction", INTERACTIONS)
 def test_a_left_handed_person_is_the_mirror_image(
     interaction: str, monkeypatch: pytest.MonkeyPatch
@@ -122,10 +111,8 @@ def test_a_left_handed_person_is_the_mirror_image(
     simulations = []
     for handedness in ("right", "left"):
 
-        def everybody(
-            seed: int, participant: int, variety: float, handedness: str = handedness
-        ) -> SimulatedPerson:
-            fields = vars(sample_person(seed, participant, variety)) | {"handedness": handedness}
+        def everybody(seed: int, participant: int, handedness: str = handedness) -> SimulatedPerson:
+            fields = vars(sample_person(seed, participant)) | {"handedness": handedness}
             return SimulatedPerson(**fields)
 
         monkeypatch.setattr(world, "sample_person", everybody)
@@ -166,7 +153,7 @@ def test_the_tracker_errs_by_centimetres_and_has_an_inkling_of_it(interaction: s
     error, state, confidence = (np.stack(each) for each in (errors, states, confidences))
     assert {TRACKED} <= set(np.unique(state)) <= {MISSING, INFERRED, TRACKED}
     assert 0.005 < np.median(error) < 0.05
-    assert -0.9 < np.corrcoef(error.ravel(), confidence.ravel())[0, 1] < -0.15
+    assert -0.9 < np.corrcoef(error.ravel(), confidence.ravel())[0, 1] < -0.2
 
 
 def test_the_trackers_error_is_slow() -> None:

@@ -19,10 +19,8 @@ from inhand_tracker.model.model import Model, ModelError
 from inhand_tracker.model.model_file import load_model, save_model
 from inhand_tracker.model.taught import TaughtRecordings
 from inhand_tracker.shape.contours import find_contours
-from inhand_tracker.shape.viewpoints import Viewpoints, find_viewpoints
+from inhand_tracker.shape.viewpoints import Viewpoints
 from inhand_tracker.sight.appearance import Appearance
-from inhand_tracker.sight.parameters import DEFAULT_SIGHT
-from inhand_tracker.sight.sight import Sight
 from people import sequence, wedge
 
 
@@ -95,22 +93,6 @@ def test_what_is_seen_of_an_object_and_how_it_looks_come_back_too(tmp_path: Path
     assert equal(loaded, full)
     assert loaded.viewpoints.contours is not None
     assert loaded.viewpoints.contours.points.dtype == np.float32
-
-
-def test_colours_of_an_older_release_are_looked_for_in_the_light_as_it_is(tmp_path: Path) -> None:
-    colours = np.full((2, 4096), 1.0 / 4096.0, np.float32)
-    new = replace(small_model(), appearance=Appearance(*colours, 0.8, 0.1, white_light=True))
-    save_model(new, tmp_path / "new.model")
-    with np.load(tmp_path / "new.model") as archive:
-        older = {name: archive[name] for name in archive if name != "appearance.white_light"}
-    with (tmp_path / "older.model").open("wb") as file:
-        np.savez(file, **older)
-    trusts = []
-    for name in ("new", "older"):
-        model = load_model(tmp_path / f"{name}.model")
-        sight = Sight(model.shape, find_viewpoints(model.shape), model.appearance)
-        trusts.append((sight.parameters.daylight_trust, sight.parameters.tint_trust))
-    assert trusts == [(DEFAULT_SIGHT.daylight_trust, DEFAULT_SIGHT.tint_trust), (0.0, 0.0)]
 
 
 def test_a_model_of_a_release_without_surfaces_still_loads(tmp_path: Path) -> None:

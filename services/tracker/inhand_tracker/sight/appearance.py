@@ -30,14 +30,12 @@ class Appearance:
     """``of_object`` and ``around`` (4096,): histograms of the colours within an object's outline
     (without the fingers that lie over it) and around it. ``returned`` is the share of its
     surface of which a depth sensor measures the depth, and ``behind`` the share of which it
-    measures something farther away; nothing is measured of the rest. ``white_light`` is whether the
-    colours are those under white light; in models of older releases they are as they were seen."""
+    measures something farther away; nothing is measured of the rest."""
 
     of_object: Singles
     around: Singles
     returned: float
     behind: float
-    white_light: bool = False
 
 
 @dataclass
@@ -109,7 +107,6 @@ def learn_appearance(
         smoothed((around / around.sum()).astype(np.float32), parameters),
         counts.returned / looked_at if looked_at else parameters.returned,
         counts.behind / looked_at if looked_at else parameters.behind,
-        white_light=True,
     )
 
 

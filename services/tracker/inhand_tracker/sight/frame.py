@@ -11,7 +11,6 @@ from inhand_tracker.geometry.arrays import Bytes, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.sight.colours import Bins, colour_bins, without_noise
-from inhand_tracker.sight.light import light_gains, under_white_light
 from inhand_tracker.sight.oriented_edges import edge_distances, edge_scores
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
@@ -64,8 +63,7 @@ def prepare(
 ) -> SightFrame:
     """Cut the part within a region out of an image, or take all of it.
 
-    Colours are those under white light, as far as the whole image tells the light's. Depth of
-    another size is brought to that of the colours. Of a part of more than ``most_pixels``
+    Depth of another size is brought to that of the colours. Of a part of more than ``most_pixels``
     several pixels become one. Edges and bins are found when they are first asked for.
     """
     camera, colour, depth = image.camera, image.colour, image.depth
@@ -79,8 +77,6 @@ def prepare(
         camera, pixels = cut(camera, region)
         colour = None if colour is None else colour[pixels]
         depth = None if depth is None else depth[pixels]
-    if colour is not None:
-        colour = under_white_light(colour, light_gains(image, parameters))
     step = math.ceil(math.sqrt(camera.width * camera.height / most_pixels))
     if step > 1:
         camera, colour, depth = _smaller(camera, colour, depth, step)

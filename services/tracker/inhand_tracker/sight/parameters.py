@@ -62,13 +62,6 @@ class SightParameters:
     """Share of the surface that returns depth below which depth says nothing: what is measured is
     then the hand around the object."""
 
-    # How the light's colour is taken away (light).
-    daylight_trust: float = 0.85
-    """Share of a picture's tint between red and blue that is the light's rather than the room's:
-    of simulated rooms it varies by 3 %, of daylight and lamps by 15 %."""
-    tint_trust: float = 0.5
-    """Share of a picture's tint between these and green that is the light's: both vary by 5 %."""
-
     # How colours speak (colours, view).
     smoothing_levels: float = 0.8
     """Standard deviation, in levels of colour, by which a histogram is smoothed."""

@@ -50,8 +50,6 @@ class Sight:
     ) -> None:
         self._shape = shape
         self._appearance = appearance
-        if appearance is not None and not appearance.white_light:
-            parameters = replace(parameters, daylight_trust=0.0, tint_trust=0.0)
         self._parameters = parameters
         returned, behind = parameters.returned, parameters.behind
         if appearance is not None:
@@ -82,11 +80,6 @@ class Sight:
         view = self.view(frame, colours, np.tile(ahead, (20, 1)))
         self.log_likelihood(ahead[None], upright[None], view)
         self.refine(ahead[None], upright[None], view)
-
-    @property
-    def parameters(self) -> SightParameters:
-        """How frames have to be read for this object: as those that its colours were learned in."""
-        return self._parameters
 
     def start(self) -> Colours:
         """The colours of the object and its surroundings as training left them."""

@@ -55,14 +55,13 @@ class FusionTracker(FollowingTracker):
         )
         radius = np.linalg.norm(model.shape.vertices - model.prior.centre, axis=1).max()
         sphere = BoundingSphere(expectation.centre, float(radius))
+        self._object = _FusedObject(expectation, sphere, parameters)
         self._sight: Sight | None = None
         if terms:
             self._sight = Sight(
                 model.shape, model.viewpoints, model.appearance, terms, parameters=parameters.sight
             )
             self._sight.compile()
-            parameters = replace(parameters, sight=self._sight.parameters)
-        self._object = _FusedObject(expectation, sphere, parameters)
         self._seed = seed
         self._compile()
         self.restart()
