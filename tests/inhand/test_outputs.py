@@ -49,6 +49,7 @@ def test_no_argument_that_names_a_place_to_write_goes_unchecked(verb: str) -> No
     read = {
         *("config", "dataset", "test_on", "bodies", "data", "models", "recording", "files"),
         *("info", "sources", "source", "contrib", "others", "against", "mesh", "keyframes"),
+        *("start", "plain"),
     }
     module = importlib.import_module(f"inhand.{verb}_" if iskeyword(verb) else f"inhand.{verb}")
     parser = argparse.ArgumentParser()

@@ -12,7 +12,8 @@ from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.camera import intrinsics_of
 from inhand_tracker.geometry.estimate import Estimate
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.mapping.learning import LabelledSequence, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import learn
 from inhand_tracker.methods.fusion.tracker import FusionTracker
 from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior

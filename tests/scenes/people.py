@@ -5,7 +5,8 @@ from functools import lru_cache
 import numpy as np
 import trimesh
 from inhand_schemas.messages import Person
-from inhand_tracker.mapping.learning import LabelledSequence, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import learn
 from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.shape import ObjectShape, Symmetry

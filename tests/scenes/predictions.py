@@ -4,7 +4,7 @@ import numpy as np
 from inhand_tracker.body import skeleton as body
 from inhand_tracker.body.anchors import find_anchors
 from inhand_tracker.body.window import BodyWindow
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from inhand_tracker.prior.prior import Prediction, Prior, predict
 from people import FRAME_NS, held, scipy_rotation, waving, wedge
 from scipy.spatial.transform import Rotation

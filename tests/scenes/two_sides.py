@@ -6,7 +6,8 @@ from functools import lru_cache
 import cv2
 import numpy as np
 from inhand_tracker.geometry.camera import Intrinsics
-from inhand_tracker.mapping.learning import LabelledSequence, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import learn
 from inhand_tracker.model.model import Model
 from people import STANDING, quaternion_of, scipy_rotation, wave_model
 from scipy.spatial.transform import Rotation

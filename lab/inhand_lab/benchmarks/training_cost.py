@@ -25,7 +25,8 @@ from inhand_tracker.body.skeleton import (
 )
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.mapping.body_pose_index import BodyPoseIndex
-from inhand_tracker.mapping.learning import LabelledSequence, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import learn
 from inhand_tracker.model.model import Model
 from inhand_tracker.model.model_file import load_model, save_model
 from inhand_tracker.shape.viewpoints import find_viewpoints

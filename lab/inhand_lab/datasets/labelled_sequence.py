@@ -6,7 +6,7 @@ import numpy as np
 from inhand_runtime.wording import counted
 from inhand_tracker.body.convention_map import canonical_joints
 from inhand_tracker.body.convention_table import CANONICAL, TABLE
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from inhand_tracker.wire.conversion import joints_of
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry

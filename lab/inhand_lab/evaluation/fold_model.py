@@ -3,7 +3,8 @@
 from functools import lru_cache
 
 import numpy as np
-from inhand_tracker.mapping.learning import LabelledSequence, UnusableSequenceError, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import UnusableSequenceError, learn
 from inhand_tracker.model.model import Model
 from inhand_tracker.prior.learning import learn_prior
 from inhand_tracker.shape.shape import ObjectShape

@@ -19,7 +19,8 @@ from inhand_tracker.body.skeleton import PARTS, RIGHT_HAND, mirror_pose
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.mapping.body_pose_index import BodyPoseIndex
-from inhand_tracker.mapping.learning import LabelledSequence, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import learn
 from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.methods.darby2014.particles import mixing_fractions
 from rich.console import Console

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from inhand_tracker.body.stand_ins import REPLACEABLE
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
 from inhand_lab.datasets.joint_names import named_joints

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from inhand_tracker.methods.registry import DEFAULT_METHOD, new_tracker
 from inhand_tracker.model.model import Model
 from inhand_tracker.model.taught import TaughtRecordings

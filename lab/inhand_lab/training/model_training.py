@@ -4,7 +4,8 @@ from collections.abc import Callable, Collection, Sequence
 from functools import lru_cache
 
 from inhand_schemas.errors import MessageError
-from inhand_tracker.mapping.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import STAGES, UnusableSequenceError, learn
 from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.methods.registry import DEFAULT_METHOD, new_tracker
 from inhand_tracker.model.model import Model

@@ -8,7 +8,7 @@ from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_tracker.body.skeleton import PELVIS_JOINTS
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Flags
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
 from inhand_lab.datasets.facing import foot_directions, is_mirror_image, pointing_forwards

@@ -12,7 +12,7 @@ from inhand_schemas.joints import Joint
 from inhand_tracker.body.skeleton import RIGHT_HAND, part_bases, pelvis_basis
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Flags
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 
 from inhand_lab.datasets.dataset import DatasetEntry, DatasetError
 from inhand_lab.training.parameters import DEFAULT_TRAINING

@@ -18,7 +18,8 @@ from inhand_schemas.joints import JOINT_NAMES
 from inhand_tracker.body.skeleton import pelvis_basis
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.estimate import Estimate
-from inhand_tracker.mapping.learning import LabelledSequence, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import learn
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from inhand_tracker.methods.registry import FUSION, new_tracker
 from inhand_tracker.model.model import Model

@@ -20,7 +20,7 @@ ACTIONS = ("drinkFromMug", "hammerNail")
 @pytest.mark.long
 def test_recordings_without_an_object_teach_what_no_action_is(tmp_path: Path) -> None:
     """It alone trains a recogniser on labelled and unlabelled recordings."""
-    settings = GenerationSettings((*ACTIONS, "sweepFloor"), 3, 5, 120, images=False)
+    settings = GenerationSettings((*ACTIONS, "sweepFloor"), 6, 5, 240, images=False)
     made = generate(tmp_path / "people", settings, lambda: None)
     entries = tuple(
         replace(one, object=None) if one.interaction == "sweepFloor" else one

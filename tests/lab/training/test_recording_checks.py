@@ -17,7 +17,7 @@ from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import simulate
 from inhand_schemas.joints import JOINT_NAMES, MIRRORED_JOINTS, Joint
 from inhand_tracker.body.skeleton import mirror_joints
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from real_data import DATA, needs_real_data
 from scipy.spatial.transform import Rotation
 from waving import waving

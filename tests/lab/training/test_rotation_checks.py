@@ -12,7 +12,7 @@ from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_schemas.joints import Joint
 from inhand_tracker.geometry import rotations
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from scipy.spatial.transform import Rotation
 from waving import entry_of, waving
 

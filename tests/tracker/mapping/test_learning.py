@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from inhand_tracker.mapping.learning import STAGES, LabelledSequence, UnusableSequenceError, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import STAGES, UnusableSequenceError, learn
 from inhand_tracker.mapping.mapping import Mapping
 from inhand_tracker.mapping.parameters import DEFAULT_MAPPING
 from people import KINECT_TREE as TREE

@@ -8,7 +8,7 @@ import pytest
 from inhand_schemas.joints import Joint
 from inhand_tracker.body.anchors import find_anchors
 from inhand_tracker.body.holders import HOLDERS, Holder, find_holder
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from inhand_tracker.prior.calibration import CHI_SQUARE_90
 from inhand_tracker.prior.combination import rotation_error
 from inhand_tracker.prior.hold import rotation_near

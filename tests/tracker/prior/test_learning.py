@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inhand_tracker.body import skeleton as body
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from inhand_tracker.prior.calibration import CHI_SQUARE_90, calibration_of
 from inhand_tracker.prior.learning import learn_prior, persistence_of
 from inhand_tracker.prior.samples import units_of

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from inhand_tracker.body.anchors import ANCHORS, find_anchors
 from inhand_tracker.body.window import VIEWS, BodyWindow
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from inhand_tracker.prior.calibration import CHI_SQUARE_90
 from inhand_tracker.prior.combination import fuse
 from inhand_tracker.prior.learning import learn_prior

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Flags, Indices, Singles
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 
 
 @dataclass(frozen=True)

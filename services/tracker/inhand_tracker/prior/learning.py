@@ -6,7 +6,7 @@ import numpy as np
 
 from inhand_tracker.body.window import VIEWS
 from inhand_tracker.geometry.arrays import Array, Indices, Singles
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from inhand_tracker.prior import combination
 from inhand_tracker.prior.calibration import calibration_of, widening_of
 from inhand_tracker.prior.hold_learning import learn_hold

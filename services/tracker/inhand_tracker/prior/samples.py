@@ -16,7 +16,7 @@ from inhand_tracker.body.window import (
 )
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Flags, Indices, Singles
-from inhand_tracker.mapping.learning import LabelledSequence
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from inhand_tracker.shape.shape import ObjectShape
 
 

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from followed import assert_proper, follow
 from inhand_tracker.geometry.estimate import Estimate
-from inhand_tracker.mapping.learning import LabelledSequence, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import learn
 from inhand_tracker.methods.darby2014.parameters import DEFAULT_DARBY2014
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS

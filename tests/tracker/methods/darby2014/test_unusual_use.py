@@ -5,7 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 from inhand_schemas.joints import JOINT_NAMES, Joint
-from inhand_tracker.mapping.learning import LabelledSequence, learn
+from inhand_tracker.mapping.labelled_sequence import LabelledSequence
+from inhand_tracker.mapping.learning import learn
 from inhand_tracker.methods.darby2014.tracker import ParticleTracker
 from inhand_tracker.methods.darby2014.variants import VARIANTS
 from inhand_tracker.model.model import Model
