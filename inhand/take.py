@@ -186,10 +186,13 @@ def _write_until_stopped(
     """Write what comes; returns for how many seconds each kind of thing was missing."""
     missing: defaultdict[str, float] = defaultdict(float)
     before = next_sync = time.monotonic()
-    file.repeat(entry_of(view.info))
+    info_written = False
     with contextlib.suppress(KeyboardInterrupt):  # the usual end
         for sample in look.samples(seconds):
             if sample is not None and sample.key != view.info.key and view.note(sample):
+                if not info_written:  # the first sample may have waited since before this file
+                    file.repeat(entry_of(view.info), sample.received_ns)
+                    info_written = True
                 file.put(entry_of(sample))
             view.tell()
             now = time.monotonic()
@@ -221,12 +224,11 @@ def _whole_or_gone(folder: Path, view: _View) -> Iterator[RecordingFile]:
 
 def _open(folder: Path, camera: str) -> RecordingFile:
     """Begin a file of a name that no other process has."""
-    now_ns = time.time_ns()
-    moment = datetime.fromtimestamp(now_ns / 1e9, UTC).strftime("%Y%m%dT%H%M%SZ")
+    moment = datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
     name, number = f"{camera}_{moment}", 1
     while True:
         try:
-            return RecordingFile(folder / f"{name}.mcap", now_ns, time.monotonic())
+            return RecordingFile(folder / f"{name}.mcap", time.monotonic())
         except RecordingError:
             if not any(folder.glob(f"{name}.mcap*")):
                 raise

@@ -1,8 +1,10 @@
 """Training recordings of a rig that runs."""
 
 import json
+import os
 import resource
 import signal
+import time
 from pathlib import Path
 
 import pytest
@@ -30,10 +32,15 @@ def test_takes_are_whole_and_in_the_dataset_or_nothing_of_them_is(
     rig.configure(CAMERA)
     rig.inhand("capture", "--config", rig.config).said("is up")
 
-    # Two at once, one of a left-handed person who ends it by Ctrl-C.
+    # Two at once: one that has no time while samples come, just before it begins, and one of a
+    # left-handed person who ends it by Ctrl-C.
     told = tmp_path / "told.json"
     timed = _record(rig, folder, "--seconds", "2", "--json", told)
     stopped = _record(rig, folder, "--left-handed", "--participant", "Bob")
+    timed.said("1 …")
+    os.kill(timed.pid, signal.SIGSTOP)
+    time.sleep(1.2)
+    os.kill(timed.pid, signal.SIGCONT)
     stopped.said("until you stop it")
     assert timed.wait() == 0, timed.stderr
     assert stopped.stop(signal.SIGINT) == 0, stopped.stderr

@@ -97,13 +97,13 @@ class Journal:
                 f"cannot create {self._folder}: {error.strerror}: bring its disk or folder back"
             ) from error
         try:
-            file = RecordingFile(self._free_path(now_ns), now_ns, self._clock())
+            file = RecordingFile(self._free_path(now_ns), self._clock())
         except RecordingError as error:
             raise self._left_no_file(error) from error.__cause__
         with self._giving_up_on_failure(file):
             for entry in self._kept.values():
                 if entry not in self._waiting:
-                    file.repeat(entry)
+                    file.repeat(entry, now_ns)
         return file
 
     def _finish(self, file: RecordingFile) -> None:

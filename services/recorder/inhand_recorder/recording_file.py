@@ -44,9 +44,8 @@ class RecordingFile:
     It is ``worth_keeping`` as soon as the disk holds an entry that memory does not.
     """
 
-    def __init__(self, path: Path, opened_ns: int, opened_s: float) -> None:
+    def __init__(self, path: Path, opened_s: float) -> None:
         self._part = path.with_name(path.name + PART_SUFFIX)
-        self._opened_ns = opened_ns
         self._opened_s = opened_s
         self._clock_steps: dict[int, int] = {}
         self._losses = LossCounter()
@@ -70,9 +69,9 @@ class RecordingFile:
         self._clock_steps[at_ns] = step_ns
         self._writer.add_metadata(CLOCK_RECORD, format_clock_steps(self._clock_steps))
 
-    def repeat(self, entry: Entry) -> None:
-        """Add an entry of an earlier file, as if it were received when this one was opened."""
-        self._write(replace(entry, received_ns=self._opened_ns))
+    def repeat(self, entry: Entry, received_ns: int) -> None:
+        """Add an entry of before this file, as if it were received with the file's first one."""
+        self._write(replace(entry, received_ns=received_ns))
 
     def put(self, entry: Entry) -> None:
         """Add an entry; it stands in memory until its chunk is full, or until ``sync``."""
