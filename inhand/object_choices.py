@@ -3,14 +3,13 @@
 import argparse
 
 import numpy as np
-from inhand_lab.new_objects.proposal import Choices
+from inhand_lab.new_objects.proposal import FEWEST_MARKS, Choices
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.wording import counted
 from inhand_tracker.shape.shape import Symmetry
 
 NONE = "none"
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-FEWEST_MARKS = 3
 M_PER_CM = 0.01
 
 

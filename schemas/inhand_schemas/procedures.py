@@ -10,8 +10,12 @@ import msgspec
 from msgspec import Meta, Struct
 
 from inhand_schemas.errors import MessageError
-from inhand_schemas.fields import Name, Text
+from inhand_schemas.fields import Count, Fraction, Name, Nanoseconds, Text
 from inhand_schemas.keys import Site
+from inhand_schemas.messages import Pose
+
+MOST_HYPOTHESES = 1000
+"""Number of hypotheses of an object that a reply holds at the most: the likeliest."""
 
 Q = TypeVar("Q", bound=Struct)
 R = TypeVar("R", bound=Struct)
@@ -63,6 +67,40 @@ class ReloadReply(Struct, frozen=True, kw_only=True):
     problem: Text | None = None
 
 
+class HypothesesRequest(Struct, frozen=True, kw_only=True):
+    """Tell what the next frame's poses are chosen from, of one tracker or of all."""
+
+    tracker: Name | None = None
+
+
+class ObjectHypotheses(Struct, frozen=True, kw_only=True):
+    """Poses of an object that were considered in one frame, each camera_from_object.
+
+    ``weights`` are those of ``poses``, which are empty where no image was looked at;
+    ``predictions`` are what parts of the body say, each by itself.
+    """
+
+    object: Name
+    person: Count | None = None
+    poses: Annotated[tuple[Pose, ...], Meta(max_length=MOST_HYPOTHESES)]
+    weights: Annotated[tuple[Fraction, ...], Meta(max_length=MOST_HYPOTHESES)]
+    predictions: Annotated[dict[Text, Pose], Meta(max_length=64)]
+
+    def __post_init__(self) -> None:
+        if len(self.poses) != len(self.weights):
+            raise ValueError("there are not as many weights as poses")
+
+
+class HypothesesReply(Struct, frozen=True, kw_only=True):
+    """What a tracker considered in the frame of ``camera`` that was captured at ``time_ns``."""
+
+    tracker: Name
+    camera: Name
+    sequence: Count
+    time_ns: Nanoseconds
+    objects: Annotated[tuple[ObjectHypotheses, ...], Meta(max_length=1024)]
+
+
 @dataclass(frozen=True)
 class Procedure(Generic[Q, R]):
     """One verb of a service, ``{realm}/@v1/{rig}/@rpc/{service}/{verb}``."""
@@ -101,4 +139,5 @@ def _decoded(data: bytes, kind: type[S]) -> S:
 
 SHUTTER = Procedure("capture", "shutter", ShutterRequest, ShutterReply)
 CONTROL = Procedure("capture", "control", ControlRequest, ControlReply)
+HYPOTHESES = Procedure("tracker", "hypotheses", HypothesesRequest, HypothesesReply)
 RELOAD = Procedure("tracker", "reload", ReloadRequest, ReloadReply)

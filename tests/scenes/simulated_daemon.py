@@ -32,7 +32,7 @@ class SimulatedDaemon:
     seconds; whoever works moves it on."""
 
     def __init__(self, *messages: Due) -> None:
-        self.site = SITE
+        self.site, self.instance = SITE, "test"
         self.stop = threading.Event()
         self.health = HealthBoard("tracker", "test")
         self.now = 0.0

@@ -20,6 +20,9 @@ from inhand_lab.new_objects.symmetry import (
     reflection,
 )
 
+FEWEST_MARKS = 3
+"""Number of marks that are chosen by hand at the least: fewer do not show every turn."""
+
 
 @dataclass(frozen=True)
 class Choices:

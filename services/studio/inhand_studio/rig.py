@@ -13,6 +13,7 @@ from inhand_runtime.inbox import Received
 from inhand_runtime.roll import SILENT_AFTER_S, Roll
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.messages import CameraInfo, ObjectPose, Preview, RgbdFrame, Skeletons
+from inhand_schemas.procedures import HYPOTHESES, HypothesesReply, HypothesesRequest
 from inhand_schemas.topics import (
     HEALTH,
     INFO,
@@ -30,6 +31,8 @@ from inhand_studio.picture import Picture
 Pictures = Literal["frames", "previews"]
 """What of a camera's pictures is looked at: all of each frame, or small ones at a low rate."""
 
+ANSWER_S = 2.0
+"""Seconds in which a tracker answers."""
 PICTURES_KEPT = 8
 """Number of newest pictures of a camera that wait for the poses that are estimated from them."""
 SKELETONS_KEPT = 64
@@ -124,6 +127,11 @@ class Rig:
                 kept.skeletons_at,
                 kept.poses_at,
             )
+
+    def hypotheses(self) -> list[HypothesesReply]:
+        """Ask the trackers what they consider; what those who track a frame within a second or so
+        reply. Raises InhandError or MessageError; from any thread."""
+        return self._daemon.ask(HYPOTHESES, HypothesesRequest(), ANSWER_S)
 
     def wait(self, news: int, timeout_s: float) -> int:
         """Wait until more has come than at ``news``, or for a time; returns the next ``news``."""

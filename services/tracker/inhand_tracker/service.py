@@ -12,11 +12,12 @@ from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo, ObjectPose, RgbdFrame, Skeletons
-from inhand_schemas.procedures import RELOAD, ReloadReply, ReloadRequest
+from inhand_schemas.procedures import HYPOTHESES, RELOAD, ReloadReply, ReloadRequest
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
 
 from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.hypotheses import HypothesesDesk
 from inhand_tracker.live.effort import Effort, after_step
 from inhand_tracker.live.moments import Moments
 from inhand_tracker.live.shortfalls import Shortfall
@@ -63,6 +64,7 @@ class TrackerService:
         self._needs = method.needs(terms)
         self._most_people = settings.people
         self._fresh: PeopleWatched | None = None
+        self.desk = HypothesesDesk(daemon.instance)
         self._publishers: dict[str, Publisher[ObjectPose]] = {}
         self._watch(PeopleWatched(new_watcher, settings.people))
         self._infos = InfoWatch(daemon.health)
@@ -199,6 +201,7 @@ class TrackerService:
         source = self._source(skeletons)
         for person, thing in worth_publishing(objects):
             self._publish(person, thing, source, frame.camera)
+        self.desk.answer(self._people, source)
         self._note_bodies()
         self._daemon.health.latency(skeletons.time_ns)
 
@@ -266,6 +269,7 @@ def run(settings: Settings[TrackerSettings]) -> None:
     with running_daemon("tracker", settings) as daemon:
         log.info("tracking %s with %s", ", ".join(first.names), chosen.method)
         service = TrackerService(daemon, chosen, _watchers(settings, first))
+        daemon.answer(HYPOTHESES, service.desk.ask)
         daemon.answer(RELOAD, lambda request: _reload(request, settings, service))
         service.run()
 

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from inhand_lab.labelling.keyframes import LabellingError
-from inhand_studio.labelling_page.clicks import Picking, pixel_along, point_on
+from inhand_studio.clicked_point import point_on
+from inhand_studio.labelling_page.clicks import Picking, pixel_along
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.camera import Intrinsics
 from waving import box

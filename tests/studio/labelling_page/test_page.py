@@ -9,9 +9,9 @@ import pytest
 from browser import WINDOW, chromium, tab
 from inhand_lab.datasets.dataset import load_dataset
 from inhand_lab.labelling.keyframes import load_keyframes
+from inhand_studio.clicked_point import point_on
 from inhand_studio.eye import whole_eye
 from inhand_studio.labelling_page.autosave import keyframes_path
-from inhand_studio.labelling_page.clicks import point_on
 from inhand_studio.labelling_page.opened import OpenedRecording
 from inhand_studio.scene_parts import UPRIGHT
 from inhand_tracker.geometry import rotations

@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from urllib.parse import urlparse
 
 import cv2
@@ -15,12 +16,16 @@ from examples import PERSON
 from inhand_runtime.pixels import encode_colour
 from inhand_schemas.messages import CameraInfo, ObjectPose, Pose, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
+from inhand_studio.live_page.hypotheses import stick_colours, sticks
+from inhand_tracker.model.model_file import save_model
+from people import wave_model
 from playwright.sync_api import Page
 from running_rig import Process, RunningRig, eventually
 from wire import Wire
 
 PERIOD_S = 0.1
 PAINTED = (220, 30, 200)
+STICK = (60, 70, 134)
 PLACE = Pose((0.3, 0.1, 2.0), (1.0, 0.0, 0.0, 0.0))
 INFO_OF_FRONT = CameraInfo(
     sequence=0, time_ns=1, width=64, height=48, fx=60.0, fy=60.0, cx=31.5, cy=23.5
@@ -128,6 +133,54 @@ def test_a_tab_shows_the_rig_says_what_is_missing_and_asks_no_other_machine(
         assert {urlparse(one).hostname for one in asked if not _within(one)} == {"127.0.0.1"}
         frames = published.frames
         eventually("nobody who looks", lambda: not frames.wanted())
+
+
+@pytest.mark.long
+def test_a_tab_shows_hypotheses_of_trackers_while_it_is_ticked(
+    rig: RunningRig, wire: Wire, tmp_path: Path
+) -> None:
+    file = tmp_path / "wedge.model"
+    save_model(wave_model(), file)
+    rig.configure(
+        '[capture.front]\nsource = "simulator"\n'
+        f'[tracker.thing]\ncamera = "front"\nmodel = "{file}"\n'
+        f'[studio.page]\ndataset = "{rig.folder}/dataset"\nport = 0\n'
+    )
+    processes = [rig.inhand(one, "--config", rig.config) for one in ("tracker", "capture")]
+    studio = rig.inhand("studio", "--config", rig.config)
+    studio.said("the studio is at ")
+    url = studio.stderr.split("the studio is at ")[1].split()[0]
+    with chromium() as browser, tab(browser, url) as page:
+        page.get_by_text("wedge of person").wait_for()
+        _choose(page, "Pictures", "none")
+        eventually("no picture", lambda: not _sticks_seen(page))
+        page.get_by_role("checkbox", name="Hypotheses").check()
+        page.get_by_text("hypotheses, 10 predictions").wait_for()
+        eventually("sticks", lambda: _sticks_seen(page))
+        page.get_by_role("checkbox", name="Hypotheses").uncheck()
+        page.get_by_text("hypotheses, 10 predictions").wait_for(state="detached")
+        eventually("no stick", lambda: not _sticks_seen(page))
+    assert studio.stop() == 0
+    assert [one.stop() for one in processes] == [0, 0]
+    assert "Traceback" not in studio.stderr
+
+
+def test_sticks_lie_along_the_longest_side_and_the_likeliest_is_the_brightest() -> None:
+    turned = Pose((1.0, 0.0, 2.0), (0.5**0.5, 0.5**0.5, 0.0, 0.0))  # z becomes -y
+    shape = wave_model().shape
+    ends = sticks([PLACE, turned], shape)
+    low, high = shape.vertices[:, 2].min(), shape.vertices[:, 2].max()
+    np.testing.assert_allclose(ends[0, :, 2], [2.0 + low, 2.0 + high], atol=1e-6)
+    np.testing.assert_allclose(ends[1, :, 1], [-low, -high], atol=1e-6)
+    colours = stick_colours(np.array([0.1, 0.9, 0.0]))
+    assert colours.shape == (3, 2, 3)
+    assert np.argmax(colours[:, 0].sum(axis=1)) == 1
+
+
+def _sticks_seen(page: Page) -> bool:
+    """Whether the colour is seen in which a browser shows most hypotheses."""
+    seen = cv2.imdecode(np.frombuffer(page.screenshot(), np.uint8), cv2.IMREAD_COLOR)
+    return bool((np.abs(seen[:, :800].astype(int) - STICK[::-1]).max(axis=2) < 16).any())
 
 
 def _choose(page: Page, menu: str, option: str) -> None:

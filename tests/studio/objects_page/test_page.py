@@ -49,6 +49,16 @@ def _drawn(page: Page) -> bool:
     return int((blue > red + 40).sum()) > 2000
 
 
+def _face(page: Page) -> list[tuple[float, float]]:
+    """Three places within the object, far apart."""
+    seen = cv2.imdecode(np.frombuffer(page.screenshot(), np.uint8), cv2.IMREAD_COLOR)
+    blue = seen[..., 0].astype(int) > seen[..., 2].astype(int) + 40
+    blue[:, :350] = blue[:, 800:] = False  # notifications and the panel
+    rows, columns = np.nonzero(blue)
+    x, y, wide, high = columns.mean(), rows.mean(), np.ptp(columns), np.ptp(rows)
+    return [(x + 0.2 * wide, y), (x - 0.2 * wide, y), (x, y + 0.2 * high)]
+
+
 @pytest.mark.long
 def test_objects_of_measures_and_of_a_mesh_file_are_made_seen_and_saved(
     rig: RunningRig, tmp_path: Path
@@ -75,6 +85,25 @@ def test_objects_of_measures_and_of_a_mesh_file_are_made_seen_and_saved(
         eventually("the mug", lambda: _drawn(page))
         page.screenshot(path=str(tmp_path / "mug.png"))
 
+        choose(page, "Kind", "box")
+        fill(page, "Name", "tea")
+        for measure in ("Height", "Width", "Depth"):
+            fill(page, f"{measure}, cm", "10")
+        make.click()
+        page.get_by_role("button", name="Choose other marks").click()
+        page.get_by_text("0 so far").wait_for()
+        use = page.get_by_role("button", name="Use these marks")
+        use.click()
+        page.get_by_text("click on 3 points").wait_for()
+        for number, place in enumerate(_face(page), 1):
+            page.mouse.click(*place)
+            page.get_by_text(f"{number} so far").wait_for()
+        page.screenshot(path=str(tmp_path / "marks.png"))
+        use.click()
+        page.get_by_text("3 marked vertices").wait_for()
+        save.click()
+        page.get_by_text("objects/tea").wait_for()
+
         choose(page, "Make it of", "a mesh file")
         fill(page, "Name", "can")
         with page.expect_file_chooser() as chooser:
@@ -94,6 +123,10 @@ def test_objects_of_measures_and_of_a_mesh_file_are_made_seen_and_saved(
         page.get_by_text("my_mug: 8.0 × 10.5 × 9.5 cm").wait_for()
     assert np.ptp(load_shape(dataset / "objects/can").vertices, axis=0)[2] == pytest.approx(0.12)
     assert load_shape(dataset / "objects/my_mug").name == "my_mug"
+    marks = load_shape(dataset / "objects/tea").marked_vertices
+    assert len(marks) == 3
+    np.testing.assert_allclose(np.abs(marks).max(axis=1), 0.05, atol=1e-4)  # on the box's faces
+    assert np.ptp(marks, axis=0).max() > 0.02
     assert studio.stop() == 0
     assert "Traceback" not in studio.stderr
     eventually("nothing else", lambda: [one.name for one in dataset.iterdir()] == ["objects"])

@@ -3,15 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from inhand_lab.labelling.equal_poses import Pose
 from inhand_lab.labelling.keyframes import LabellingError
 from inhand_lab.labelling.pose_start import FEWEST, PickedPoint
-from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
-from inhand_tracker.shape.shape import ObjectShape
-
-from inhand_studio.labelling_page.placing import inverse
 
 
 @dataclass(frozen=True)
@@ -44,31 +39,6 @@ class Picking:
         if self.point is None:
             raise LabellingError("click on a point of the object first")
         return Picking((*self.pairs, PickedPoint(pixel, self.point)))
-
-
-def point_on(shape: ObjectShape, pose: Pose, origin: Array, direction: Array) -> Array:
-    """Return the point (3,) of an object's surface, in its frame, that a ray meets first.
-
-    The ray, (3,) and (3,), and the pose are in the camera frame. Raises LabellingError where it
-    misses the object.
-    """
-    back = inverse(pose)
-    start = back[0] + rotations.rotate(back[1], origin)
-    along = rotations.rotate(back[1], direction)
-    corners = shape.vertices[shape.faces]
-    edges = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    across = np.cross(along, edges[1])
-    determinants = (edges[0] * across).sum(axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        offset = start - corners[:, 0]
-        first = (offset * across).sum(axis=1) / determinants
-        turned = np.cross(offset, edges[0])
-        second = turned @ along / determinants
-        distances = (edges[1] * turned).sum(axis=1) / determinants
-        met = (first >= 0.0) & (second >= 0.0) & (first + second <= 1.0) & (distances > 0.0)
-    if not met.any():
-        raise LabellingError("that is beside the object: click on it where it is drawn")
-    return np.asarray(start + distances[met].min() * along)
 
 
 def pixel_along(camera: Intrinsics, origin: Array, direction: Array) -> Array:

@@ -11,6 +11,7 @@ from inhand_lab.labelling.pose_start import pose_at_click, pose_from_clicks
 from inhand_lab.labelling.scene import load_scene
 from inhand_tracker.geometry.arrays import Array
 
+from inhand_studio.clicked_point import point_on
 from inhand_studio.dataset_files import find_models
 from inhand_studio.labelling_page.assistant import (
     Assistance,
@@ -19,7 +20,7 @@ from inhand_studio.labelling_page.assistant import (
     samples_of,
 )
 from inhand_studio.labelling_page.background import Advance
-from inhand_studio.labelling_page.clicks import Picking, pixel_along, point_on
+from inhand_studio.labelling_page.clicks import Picking, pixel_along
 from inhand_studio.labelling_page.desk import Desk
 from inhand_studio.labelling_page.estimates import (
     has_estimates,

@@ -13,6 +13,7 @@ from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 from inhand_studio.camera_view import CameraView
 from inhand_studio.drawn_scene import DrawnScene, PlacedObject
 from inhand_studio.live_page.conditions import conditions_of, no_camera, without_poses
+from inhand_studio.live_page.hypotheses import LiveHypotheses
 from inhand_studio.live_page.moment import Moment, moment_of, newest_poses
 from inhand_studio.live_page.parameters import DEFAULT_LIVE, LiveParameters
 from inhand_studio.live_page.points import LivePoints
@@ -57,6 +58,7 @@ class LivePage:
         self._view: CameraView | None = None
         self._scene = DrawnScene(visit.client.scene)
         self._points = LivePoints(visit.client.scene, parameters)
+        self._hypotheses = LiveHypotheses(visit.client.scene, rig, visit.studio.shapes, parameters)
         self._pace = Pace(visit.client)
         self._news = CameraNews()
         self._unknown: list[str] = []
@@ -78,6 +80,7 @@ class LivePage:
     def close(self) -> None:
         """Look at nothing any longer; called with the visit's lock held."""
         self._stop.set()
+        self._hypotheses.want(False)
         self._looking.close()
 
     def _add_controls(self, gui: viser.GuiApi) -> None:
@@ -86,6 +89,12 @@ class LivePage:
         self._pictures = gui.add_dropdown("Pictures", tuple(PICTURES))
         self._with_points = gui.add_checkbox(
             "Point cloud", False, hint="What depth measures, five times a second; turn the scene"
+        )
+        self._with_hypotheses = gui.add_checkbox(
+            "Hypotheses",
+            False,
+            hint="Poses that trackers consider, the likelier the brighter, and what each part of "
+            "the body says by itself; five times a second",
         )
         look = gui.add_button("Look through the camera", hint="C; drag the scene to turn it")
         look.on_click(self._visit.action(lambda _: self._look_through()))
@@ -144,6 +153,8 @@ class LivePage:
 
     def _show_camera(self, camera: str, info: CameraInfo, now: float) -> None:
         pictures = PICTURES[self._pictures.value]
+        self._hypotheses.want(bool(self._with_hypotheses.value))
+        considered = self._hypotheses.draw(camera)
         news = self._rig.heard(camera, pictures)
         if news != self._news and self._pace.ready():
             self._news = news
@@ -159,7 +170,8 @@ class LivePage:
             lines += without_poses(camera, pictures, self._rig, self._parameters)
         lines += [] if self._damage is None else [self._damage]
         write(self._wrong, lines_html(lines, "wrong"))
-        write(self._objects, objects_html(newest_poses(news.poses), self._parameters))
+        objects = objects_html(newest_poses(news.poses), self._parameters)
+        write(self._objects, objects + lines_html(considered, "note"))
         came_hz = rate_of([picture.arrived for picture in news.pictures], now)
         write(self._rates, shown_html(self._shown_rate.at(now), came_hz))
 

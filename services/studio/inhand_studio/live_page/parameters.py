@@ -17,6 +17,8 @@ class LiveParameters:
     """Seconds between two point clouds: each takes a megabyte."""
     points_step: int = 2
     """Pixels of depth from one point to the next, in rows and in columns."""
+    hypotheses_period_s: float = 0.2
+    """Seconds from one answer of the trackers on their hypotheses to the next question."""
     poses_missed_s: float = 0.5
     """Seconds without a pose after which pictures no longer wait for theirs."""
     late_poses: int = 16

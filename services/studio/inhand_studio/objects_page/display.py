@@ -17,6 +17,8 @@ SEEN_FROM = rotations.rotate(UPRIGHT, np.array([0.75, 1.0, 0.55]))
 """Direction from which an object is seen at first: from ahead and above."""
 DISTANCE = 2.2
 """Distance from which it is seen at first, in sizes of what is shown."""
+STANDING = np.zeros(3), UPRIGHT
+"""The pose in which an object is shown."""
 GAP_M = 0.03
 CLAY, SKIN, MARK, TURN = (120, 150, 196), (222, 178, 150), (240, 170, 0), (200, 40, 160)
 MARK_SHARE, AXIS_SHARE = 0.02, 1.3
@@ -35,13 +37,21 @@ def show_object(visit: Visit, shape: ObjectShape) -> None:
         flat_shading=True,
         side="double",
     )
-    for number, mark in enumerate(shape.marked_vertices):
-        scene.add_icosphere(
-            f"/shown/marks/{number}", MARK_SHARE * size, MARK, position=_turned(mark)
-        )
+    show_marks(visit, shape, shape.marked_vertices)
     _draw_axes(scene, shape, size)
     _draw_hand(scene, shape)
     _look(visit.client, max(size, HAND_LENGTH))
+
+
+def show_marks(visit: Visit, shape: ObjectShape, marks: Array) -> None:
+    """Draw marks (M, 3) on an object that is shown, in place of those that were."""
+    scene = visit.client.scene
+    size = float(np.ptp(shape.vertices, axis=0).max())
+    scene.remove_by_name("/shown/marks")
+    for number, mark in enumerate(marks):
+        scene.add_icosphere(
+            f"/shown/marks/{number}", MARK_SHARE * size, MARK, position=_turned(mark)
+        )
 
 
 def described(shape: ObjectShape) -> Iterator[str]:

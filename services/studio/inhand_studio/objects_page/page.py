@@ -1,18 +1,22 @@
 """A tab that makes objects of the dataset, and shows each beside a hand."""
 
+from dataclasses import replace
 from typing import Any
 
 from inhand_runtime.errors import InhandError
+from inhand_tracker.geometry.arrays import Array
 
 from inhand_studio.dataset_files import find_objects
 from inhand_studio.objects_page.display import described, show_object
 from inhand_studio.objects_page.making import Making
+from inhand_studio.objects_page.marking import Marking
 from inhand_studio.objects_page.panel import Panel
 from inhand_studio.texts import lines_html, write
 from inhand_studio.visit import Page, Visit
 
 PERIOD_S = 0.3
 NEW = "(a new one)"
+CM_PER_M = 100.0
 
 
 def open_page(visit: Visit) -> Page:
@@ -45,6 +49,7 @@ class ObjectsPage:
         with self._folder:
             self._panel = Panel(self._visit, self._making)
             self._gui.add_button("Make and show").on_click(act(lambda _: self._make()))
+            self._marking = Marking(self._visit, self._make)
             self._save = self._gui.add_button("Save to the dataset", visible=False)
             self._save.on_click(act(lambda _: self._keep()))
         self._said = self._gui.add_html("")
@@ -52,6 +57,7 @@ class ObjectsPage:
 
     def _look_at(self) -> None:
         name = self._there.value
+        self._marking.offer(None)
         self._folder.visible = name == NEW
         if name == NEW:
             return
@@ -62,9 +68,15 @@ class ObjectsPage:
         show_object(self._visit, shape)
         write(self._about, lines_html(described(shape), "note"))
 
-    def _make(self) -> None:
+    def _make(self, marks: Array | None = None) -> None:
+        """Make what the panel says, with marks (M, 3) of the object that is shown, if any."""
         self._save.visible = False
-        self._making.begin(self._panel.wishes())
+        self._marking.offer(None)
+        wishes = self._panel.wishes()
+        if marks is not None:
+            chosen = tuple((x, y, z) for x, y, z in (CM_PER_M * marks).tolist())
+            wishes = replace(wishes, marks_cm=chosen)
+        self._making.begin(wishes)
         self._visit.clear()
         write(self._about, "")
         self._waiting = True
@@ -72,6 +84,7 @@ class ObjectsPage:
     def _keep(self) -> None:
         folder = self._making.save()
         self._save.visible = False
+        self._marking.offer(None)
         self._there.options = (NEW, *find_objects(self._visit.studio.dataset))
         write(self._said, lines_html([f"saved {folder}"], "note"))
 
@@ -90,3 +103,4 @@ class ObjectsPage:
             show_object(self._visit, shape)
             write(self._about, lines_html(described(shape), "note"))
             self._save.visible = True
+            self._marking.offer(shape)

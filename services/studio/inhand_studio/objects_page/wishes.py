@@ -61,12 +61,14 @@ class ByCamera:
 
 @dataclass(frozen=True)
 class Wishes:
-    """A new object's name, of what it is made, and which symmetry and mirror plane it gets."""
+    """A new object's name, of what it is made, and which symmetry, mirror plane and marked vertices
+    it gets, these in centimetres in its axes; without any, those that are proposed."""
 
     name: str
     way: ByMeasures | ByMesh | ByCamera
     symmetry: str = AS_FOUND
     mirror: str = AS_FOUND
+    marks_cm: tuple[tuple[float, float, float], ...] = ()
 
 
 def object_arguments(wishes: Wishes, dataset: Path) -> list[str]:
@@ -76,4 +78,6 @@ def object_arguments(wishes: Wishes, dataset: Path) -> list[str]:
     arguments = ["object", "new", f"--dataset={dataset}", *wishes.way.arguments()]
     arguments += [] if wishes.symmetry == AS_FOUND else [f"--symmetry={wishes.symmetry}"]
     arguments += [] if wishes.mirror == AS_FOUND else [f"--mirror={wishes.mirror}"]
+    for mark in wishes.marks_cm:
+        arguments += ["--mark", *(f"{one:.3f}" for one in mark)]
     return [*arguments, "--", wishes.name.strip()]

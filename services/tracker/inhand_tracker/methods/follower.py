@@ -9,6 +9,7 @@ from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.geometry.ageing import aged
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.model.model import Model
@@ -20,7 +21,7 @@ class Follower(ABC):
     """Follows one object of one person, from when they came into view.
 
     ``effort`` is the share of its usual work that the next estimate may take; ``convention`` names
-    whose joints it gets.
+    whose joints it gets. ``estimated`` says whether a body was seen in the last step.
     """
 
     def __init__(self, reader: BodyReader) -> None:
@@ -28,6 +29,7 @@ class Follower(ABC):
         self._estimate = LOST
         self._time_ns = 0
         self._looked = False
+        self.estimated = False
         self.effort = 1.0
         self.convention: str | None = None
 
@@ -39,6 +41,11 @@ class Follower(ABC):
     @property
     def support(self) -> Support | None:
         """Support of the last step's image for the object; None where it shows nothing of it."""
+        return None
+
+    def considered(self) -> Considered | None:
+        """What the last estimate was chosen from; None before the first, and of a method that
+        chooses from nothing."""
         return None
 
     @abstractmethod
@@ -55,6 +62,7 @@ class Follower(ABC):
 
     def step_body(self, body: Body | None, time_ns: int, image: Image | None) -> Estimate:
         self._looked = False
+        self.estimated = body is not None
         if body is None:
             return self._coast(time_ns)
         self._estimate = self.estimate(body, time_ns, image)
@@ -124,6 +132,10 @@ class FollowingTracker(ABC):
     def support(self) -> Support | None:
         """Support of the last image for the object; None where it shows nothing of it."""
         return self._follower.support
+
+    def considered(self) -> Considered | None:
+        """What the last frame's estimate was chosen from; None where no body was seen in it."""
+        return self._follower.considered() if self._follower.estimated else None
 
     def remember(self, body: Body, time_ns: int) -> None:
         """Take a frame in which the object is not looked for; what the body did counts later."""

@@ -5,6 +5,7 @@ from typing import Protocol
 from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.sight.support import Support
@@ -32,6 +33,9 @@ class ObjectTracker(Protocol):
     @property
     def support(self) -> Support | None:
         """Support of the last image for the object; None where it shows nothing of it."""
+
+    def considered(self) -> Considered | None:
+        """What the last frame's estimate was chosen from; None where no body was seen in it."""
 
     def restart(self) -> None:
         """Forget the person and the object: somebody else comes into view."""

@@ -7,6 +7,7 @@ from inhand_schemas.joints import JOINT_NAMES, Joint
 from inhand_schemas.messages import Person
 
 from inhand_tracker.body.skeleton import PELVIS_JOINTS
+from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.people.identities import Identities
 from inhand_tracker.people.parameters import DEFAULT_PEOPLE, PeopleParameters
 from inhand_tracker.people.watching import CameraFrame, OnFailure, WatchedObject, Watcher
@@ -93,6 +94,13 @@ class PeopleWatched:
             )
             for number, person in chosen.items()
         }
+
+    def considered(self) -> Iterator[tuple[int | None, str, Considered]]:
+        """What the poses in the last frame were chosen from: the person's number, the object, and
+        what was considered."""
+        for number, watcher in self._watchers.items():
+            for name, considered in watcher.considered().items():
+                yield number, name, considered
 
     @property
     def trouble(self) -> str | None:

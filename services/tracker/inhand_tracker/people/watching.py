@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.object_tracker import ObjectTracker
@@ -71,6 +72,10 @@ class Watcher(ABC):
         """
 
     @abstractmethod
+    def considered(self) -> dict[str, Considered]:
+        """What the poses in the last frame were chosen from, by object."""
+
+    @abstractmethod
     def remember(self, joints: Array, time_ns: int, on_failure: OnFailure) -> None:
         """Take a frame that is skipped: what the person's joints (20, 3) did counts later."""
 
@@ -103,6 +108,10 @@ class GivenObjects(Watcher):
                 tracker.restart()
                 objects.append(WatchedObject(name))
         return objects
+
+    def considered(self) -> dict[str, Considered]:
+        every = {name: tracker.considered() for name, tracker in self._trackers.items()}
+        return {name: one for name, one in every.items() if one is not None}
 
     def remember(self, joints: Array, time_ns: int, on_failure: OnFailure) -> None:
         for name, tracker in self._trackers.items():
@@ -154,6 +163,10 @@ class RecognisedObjects(Watcher):
             self._cascade.restart()
             return [WatchedObject(name) for name in self.names]
         return self._objects_of(recognition, outline)
+
+    def considered(self) -> dict[str, Considered]:
+        considered = self._cascade.considered()
+        return {} if considered is None else {self._objects[considered[0]]: considered[1]}
 
     def remember(self, joints: Array, time_ns: int, on_failure: OnFailure) -> None:
         try:

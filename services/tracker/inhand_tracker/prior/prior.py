@@ -134,6 +134,27 @@ def predict(
     return between(regressed, held, share, doubt=parameters.held_doubt)
 
 
+def predict_apart(
+    prior: Prior,
+    description: Singles,
+    anchors: Anchors,
+    height: float,
+    parameters: PriorParameters = DEFAULT_PRIOR,
+) -> list[Prediction]:
+    """Predict the object's pose in each of A anchors by itself, from the whole body's description
+    (1, D); how sure they are is not told: their covariances are 0."""
+    regression = prior.regressions[0]
+    kernel = regression.kernel_of(description[0])
+    stretch = max(parameters.farthest_kernel / max(float(kernel.max()), TINY), 1.0)
+    predicted = regression.predict_by(stretch * kernel).reshape(-1, TARGETS)
+    return [
+        Prediction(
+            *fuse(predicted, anchors, height, (weight, weight), prior.spread), np.zeros((6, 6))
+        )
+        for weight in np.eye(len(predicted))
+    ]
+
+
 @dataclass(frozen=True)
 class _Posture:
     """A body's posture beside those that were learned: the kernel to the ``nearest`` of them, from

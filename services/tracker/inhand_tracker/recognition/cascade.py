@@ -16,6 +16,7 @@ from inhand_tracker.body.convention_table import shared_convention
 from inhand_tracker.body.reader import Body
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.methods.object_tracker import ObjectTracker
@@ -74,6 +75,13 @@ class Cascade(ObjectRecogniser):
         if recognition.known is None:
             return None
         return self._trackers[recognition.known].outline(recognition.estimate, camera)
+
+    def considered(self) -> tuple[int, Considered] | None:
+        """The action that was recognised last, and what its object's pose was chosen from."""
+        if (known := self._last.known) is None:
+            return None
+        considered = self._trackers[known].considered()
+        return None if considered is None else (known, considered)
 
     def _recognise(
         self, body: Body, time_ns: int, image: Image | None, camera: Intrinsics | None

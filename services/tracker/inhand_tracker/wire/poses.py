@@ -5,10 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from inhand_schemas.messages import Box, ObjectPose, Pose
+from inhand_schemas.procedures import MOST_HYPOTHESES, ObjectHypotheses
 
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import Estimate
 
 
@@ -52,6 +54,29 @@ def object_pose_message(
         covariance=covariance,
         box=box,
         class_probabilities=dict(class_probabilities or {}),
+    )
+
+
+def hypotheses_message(
+    considered: Considered, *, name: str, person: int | None
+) -> ObjectHypotheses:
+    """Write what was considered of the object ``name`` that a person uses as a part of a message.
+
+    Only the likeliest hypotheses are told where there are many, and nothing that is not finite.
+    """
+    poses = np.concatenate((considered.translations, considered.rotations), axis=1)
+    likeliest = np.argsort(-considered.weights, kind="stable")[:MOST_HYPOTHESES]
+    told = likeliest[np.isfinite(poses[likeliest]).all(axis=1)]
+    return ObjectHypotheses(
+        object=name,
+        person=person,
+        poses=tuple(pose_message(pose[:3], pose[3:]) for pose in poses[told]),
+        weights=tuple(np.clip(considered.weights[told], 0.0, 1.0).tolist()),
+        predictions={
+            part: pose_message(*pose)
+            for part, pose in considered.predictions.items()
+            if np.isfinite(np.concatenate(pose)).all()
+        },
     )
 
 

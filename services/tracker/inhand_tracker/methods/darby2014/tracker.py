@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from inhand_tracker.body.reader import Body, BodyReader
-from inhand_tracker.body.skeleton import mirror_pose
+from inhand_tracker.body.skeleton import PARTS, mirror_pose
 from inhand_tracker.body.window import continues
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import Estimate, weighted_estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.weights import even_weights, normalised_weights, systematic_resample
@@ -94,13 +95,27 @@ class ParticleFollower(Follower):
         self._random = random
         self._particles: Particles | None = None
         self._weights = even_weights(tracked.parameters.particles)
+        self._last: tuple[Body, tuple[Array, Array]] | None = None
 
     def estimate(self, body: Body, time_ns: int, image: Image | None) -> Estimate:
         particles = self._reinitialise(self._predict(time_ns), body)
         poses = self._place(particles, body)
         weights = self._weigh(poses, image)
-        self._particles, self._weights = particles, weights
+        self._particles, self._weights, self._last = particles, weights, (body, poses)
         return weighted_estimate(*poses, weights)
+
+    def considered(self) -> Considered | None:
+        if self._last is None:
+            return None
+        body, poses = self._last
+        nearest, _ = self._object.index.nearest(body.pose)
+        parts = np.arange(len(PARTS))
+        frames = np.full(len(PARTS), nearest)
+        translations, orientations = self._place(Particles(frames, frames, parts, parts), body)
+        predictions = {
+            part: (translations[number], orientations[number]) for number, part in enumerate(PARTS)
+        }
+        return Considered(*poses, self._weights, predictions)
 
     def remember(self, body: Body, time_ns: int) -> None:
         """Take nothing: what the body did before says nothing here."""

@@ -6,16 +6,16 @@ own frame: what an image showed of it fades away, as learned, while the object i
 object that was left somewhere stays there, whatever the body does.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inhand_tracker.body.anchors import find_anchors
+from inhand_tracker.body.anchors import ANCHORS, find_anchors
 from inhand_tracker.body.reader import Body
 from inhand_tracker.body.skeleton import mirror_pose
-from inhand_tracker.body.window import BodyWindow
 from inhand_tracker.geometry import rotations
-from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.arrays import Array, Singles
 from inhand_tracker.geometry.pose_gaussian import (
     PoseGaussian,
     PoseMixture,
@@ -24,7 +24,8 @@ from inhand_tracker.geometry.pose_gaussian import (
 )
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
-from inhand_tracker.prior.prior import Prior, predict
+from inhand_tracker.prior.prediction import Prediction
+from inhand_tracker.prior.prior import Prior, predict, predict_apart
 
 
 @dataclass(frozen=True)
@@ -42,11 +43,23 @@ class BodyExpectation:
         centre, normal = self.prior.centre, self.mirror_normal
         return centre - 2.0 * (centre @ normal) * normal if self.left_handed else centre
 
-    def expect(self, body: Body, window: BodyWindow, time_ns: int) -> PoseGaussian:
-        """Return the pose that the body alone makes likely; the window takes the frame."""
-        descriptions = window.add(body.joints, time_ns, body.height)
+    def expect(self, body: Body, descriptions: Sequence[Singles]) -> PoseGaussian:
+        """Return the pose that the body alone makes likely, by its window's descriptions."""
         anchors = find_anchors(body.joints)
-        predicted = predict(self.prior, descriptions, anchors, body.height, self.parameters)
+        return self._of_person(
+            predict(self.prior, descriptions, anchors, body.height, self.parameters)
+        )
+
+    def expect_apart(self, body: Body, descriptions: Sequence[Singles]) -> dict[str, PoseGaussian]:
+        """Return the pose that each part of the body makes likely by itself, without covariance,
+        and that of ``expect``, named ``body``."""
+        anchors = find_anchors(body.joints)
+        apart = predict_apart(self.prior, descriptions[0], anchors, body.height, self.parameters)
+        parts = {name: self._of_person(one) for name, one in zip(ANCHORS, apart, strict=True)}
+        return parts | {"body": self.expect(body, descriptions)}
+
+    def _of_person(self, predicted: Prediction) -> PoseGaussian:
+        """A prediction, which is of right-handed people, as this person's."""
         centre, covariance = predicted.centre, predicted.covariance
         rotation = rotations.from_matrix(predicted.rotation)
         if self.left_handed:

@@ -37,6 +37,8 @@ class ImageSearch:
         self._looks = 0
         self._found: _Found | None = None
         self._support: Support | None = None
+        self.tried: WeighedPoses | None = None
+        """The last look's hypotheses; None where the object was out of the image."""
 
     def look(
         self,
@@ -56,11 +58,12 @@ class ImageSearch:
         hypotheses = belief.sample(parameters.hypotheses, self._random)
         region = self._region(hypotheses[0], image.camera)
         if region is None:
-            self._found = None
+            self._found = self.tried = None
             return None
         view = self._open(belief.parts[0], image, region, joints)
         posterior = ImagePosterior(self._sight, self._sphere, view, belief, sharpness, parameters)
         posterior, scores = self._compare_unseen(posterior, *hypotheses)
+        self.tried = WeighedPoses(*hypotheses, scores)
         modes, seen = posterior.modes(*self._starts(posterior, *hypotheses, scores))
         weighed = posterior.weigh(modes, seen)
         if self._looks % parameters.looks_to_learn == 0:
@@ -160,6 +163,15 @@ class ImageSearch:
         by_learning = self._sight.log_likelihoods_by_term(*pose, found.view)
         recoloured = float(by_learning["interior"][0]) - by_training["interior"]
         return Support(**by_training, recoloured=recoloured)
+
+
+@dataclass(frozen=True)
+class WeighedPoses:
+    """Hypotheses: ``centres`` (P, 3) of the object, ``orientations`` (P, 4), ``scores`` (P,)."""
+
+    centres: Array
+    orientations: Array
+    scores: Array
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,14 @@ import numpy as np
 from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.body.skeleton import mirror_joints
 from inhand_tracker.body.window import BodyWindow, continues
-from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.arrays import Array, Singles
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
+from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import AGREEMENT_M, AGREEMENT_RAD, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.kernels.pose_normals import share_near
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever
+from inhand_tracker.geometry.weights import normalised_weights
 from inhand_tracker.methods.follower import Follower, FollowingTracker
 from inhand_tracker.methods.fusion.belief import Belief, BodyExpectation, carry_over
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
@@ -105,17 +107,33 @@ class FusionFollower(Follower):
         self._search = search
         self._window = BodyWindow()
         self._before: Belief | None = None
+        self._body: tuple[Body, list[Singles]] | None = None
 
     def remember(self, body: Body, time_ns: int) -> None:
         self._window.add(body.joints, time_ns, body.height)
 
     def estimate(self, body: Body, time_ns: int, image: Image | None) -> Estimate:
-        expected = self._expectation.expect(body, self._window, time_ns)
+        descriptions = self._window.add(body.joints, time_ns, body.height)
+        self._body = body, descriptions
+        expected = self._expectation.expect(body, descriptions)
         belief = self._carry_over(expected, time_ns)
         seen = self._look(belief, expected, body, image)
         believed = belief.parts[0] if seen is None else seen
         self._before = Belief(expected, believed, time_ns)
         return self._state(believed, seen=seen is not None)
+
+    def considered(self) -> Considered | None:
+        if self._body is None:
+            return None
+        predictions = {
+            name: (self._sphere.origins(pose.centre, pose.rotation), pose.rotation)
+            for name, pose in self._expectation.expect_apart(*self._body).items()
+        }
+        if self._search is None or not self._looked or (tried := self._search.tried) is None:
+            return Considered(np.zeros((0, 3)), np.zeros((0, 4)), np.zeros(0), predictions)
+        origins = self._sphere.origins(tried.centres, tried.orientations)
+        weights = normalised_weights(tried.scores)
+        return Considered(origins, tried.orientations, weights, predictions)
 
     @property
     def support(self) -> Support | None:
