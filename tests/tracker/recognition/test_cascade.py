@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from inhand_tracker.body.skeleton import body_pose, pelvis_basis
 from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.people.watching import RecognisedObjects
 from inhand_tracker.recognition import cascade as cascade_module
 from inhand_tracker.recognition.cascade import Cascade, worth_following
 from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
@@ -31,7 +33,11 @@ class AtPixel:
         self.left = left
         self.confidence = 1.0
         self.support: Support | None = None
+        self.considers = Considered(np.zeros((0, 3)), np.zeros((0, 4)), np.zeros(0), {})
         self.restart()
+
+    def considered(self) -> Considered:
+        return self.considers
 
     def restart(self) -> None:
         self.seen: list[int] = []
@@ -166,6 +172,17 @@ def test_another_object_that_is_known_takes_the_place_of_the_last(script) -> Non
     assert [answer.known for answer in answers] == [0, 1, None]
     assert len(trackers[0].seen) == 1
     assert answers[-1].box[0] == 100.0
+
+
+def test_only_the_known_object_says_what_its_pose_was_chosen_from(script) -> None:
+    script += [[0.0, 0.9, 0.0, 0.0], [0.0, 0.0, 0.1, 0.0]]
+    cascade, trackers = new_cascade()
+    watcher = RecognisedObjects(cascade, ["mug", "phone", "broom", "shoe"])
+    assert watcher.considered() == {}
+    run(cascade, 1)
+    assert watcher.considered() == {"phone": trackers[1].considers}
+    run(cascade, 1, first=1)
+    assert watcher.considered() == {}
 
 
 def test_somebody_else_left_nothing(script) -> None:
