@@ -143,7 +143,7 @@ class Person(Struct, frozen=True, kw_only=True):
 
     The position of a ``missing`` joint means nothing (it is written as zeros). A joint that is
     exactly at zero, in the camera itself, or no finite number is missing whatever its state says:
-    trackers write so of what they do not see.
+    trackers write so of what they do not see. A confidence that is no number is none, 0.
     """
 
     id: Count
@@ -155,7 +155,9 @@ class Person(Struct, frozen=True, kw_only=True):
         places = [any(joint) and all(map(math.isfinite, joint)) for joint in self.joints]
         if not all(places):
             self._leave_out(places)
-        require_finite("confidence", self.confidences)
+        if not all(map(math.isfinite, self.confidences)):
+            sure = tuple(one if math.isfinite(one) else 0.0 for one in self.confidences)
+            msgspec.structs.force_setattr(self, "confidences", sure)
 
     def _leave_out(self, places: list[bool]) -> None:
         """Take joints as missing where they are no places."""

@@ -152,6 +152,13 @@ def test_a_joint_without_a_place_is_missing_whatever_its_state_says(
     assert read.joints[8] == (0.1, 0.2, 10.0)
 
 
+def test_a_joint_of_which_no_confidence_is_known_has_none_and_the_others_keep_theirs() -> None:
+    plain = msgpack.unpackb(SKELETONS.encode(EXAMPLE[Skeletons]))
+    plain["people"][0]["confidences"] = [0.5] * 19 + [math.nan]
+    (read,) = SKELETONS.decode(msgpack.packb(plain)).people
+    assert read.confidences == (0.5,) * 19 + (0.0,)
+
+
 def test_a_topic_encodes_its_own_type_only() -> None:
     with pytest.raises(MessageError, match="skeletons carries Skeletons, not ObjectPose"):
         SKELETONS.encode(EXAMPLE[ObjectPose])
