@@ -19,6 +19,8 @@ Pixels = Annotated[int, Meta(ge=1, le=16384)]
 Positive = Annotated[float, Meta(gt=0)]
 NonNegative = Annotated[float, Meta(ge=0)]
 Fraction = Annotated[float, Meta(ge=0, le=1)]
+FractionOrNaN = Annotated[float, Meta(extra_json_schema={"minimum": 0.0, "maximum": 1.0})]
+"""Bounds that decoding does not ask for, since it would refuse a NaN: the struct has to."""
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 Text = Annotated[str, Meta(max_length=4096)]

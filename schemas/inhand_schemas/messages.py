@@ -21,6 +21,7 @@ from inhand_schemas.fields import (
     Count,
     DepthCodec,
     Fraction,
+    FractionOrNaN,
     JointState,
     Name,
     Nanoseconds,
@@ -149,15 +150,17 @@ class Person(Struct, frozen=True, kw_only=True):
     id: Count
     joints: Annotated[tuple[Vector3, ...], Meta(min_length=20, max_length=20)]
     states: Annotated[tuple[JointState, ...], Meta(min_length=20, max_length=20)]
-    confidences: Annotated[tuple[Fraction, ...], Meta(min_length=20, max_length=20)]
+    confidences: Annotated[tuple[FractionOrNaN, ...], Meta(min_length=20, max_length=20)]
 
     def __post_init__(self) -> None:
         places = [any(joint) and all(map(math.isfinite, joint)) for joint in self.joints]
         if not all(places):
             self._leave_out(places)
-        if not all(map(math.isfinite, self.confidences)):
-            sure = tuple(one if math.isfinite(one) else 0.0 for one in self.confidences)
+        if any(map(math.isnan, self.confidences)):
+            sure = tuple(0.0 if math.isnan(one) else one for one in self.confidences)
             msgspec.structs.force_setattr(self, "confidences", sure)
+        if not all(0.0 <= one <= 1.0 for one in self.confidences):
+            raise ValueError("a confidence is not from 0 to 1")
 
     def _leave_out(self, places: list[bool]) -> None:
         """Take joints as missing where they are no places."""
