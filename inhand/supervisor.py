@@ -12,12 +12,16 @@ from types import FrameType
 
 from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
 
+from inhand.last_words import Told, how_it_ended
+
 log = logging.getLogger(__name__)
 
 TICK_S = 0.05
 LONGEST_TICK_S = 1.0
 FIRST_RESTART_S, LAST_RESTART_S = 0.5, 30.0
 HEALTHY_AFTER_S = 10.0
+LOOP_FAILURES = 5
+"""Number of ends, each within ``HEALTHY_AFTER_S`` of its start, after which that is an alert."""
 UP_WITHIN_S = 20.0
 HANGS_AFTER_S = 10.0
 """Seconds without a report of a main loop that came round, after which a child is killed and
@@ -38,6 +42,8 @@ class Child:
         self._process: subprocess.Popen[bytes] | None = None
         self._start_at = 0.0
         self._delay = FIRST_RESTART_S
+        self._told: Told | None = None
+        self._failures: list[float] = []
         self._reports: int | None = None
         self._silent_s: float | None = None
         self._tended_at = time.monotonic()
@@ -51,9 +57,12 @@ class Child:
                 self._process = subprocess.Popen(
                     self.command,
                     stdin=subprocess.DEVNULL,
+                    stderr=subprocess.PIPE,
                     process_group=0,
                     preexec_fn=_ending_with(os.getpid()),
                 )
+                assert self._process.stderr is not None
+                self._told = Told(self._process.stderr)
             return None
         code = self._process.poll()
         if code is None:
@@ -63,12 +72,33 @@ class Child:
         if self.done:
             log.info("%s ended with exit code %d", self.name, code)
         else:
-            if now - self._start_at > HEALTHY_AFTER_S:
-                self._delay = FIRST_RESTART_S
-            log.warning("%s ended with %d; starting it again in %g s", self.name, code, self._delay)
-            self._start_at = now + self._delay
-            self._delay = min(2 * self._delay, LAST_RESTART_S)
+            self._fail(code, now)
         return code
+
+    def _fail(self, code: int, now: float) -> None:
+        """Say how the process ended, and when it is started again."""
+        if now - self._start_at > HEALTHY_AFTER_S:
+            self._delay = FIRST_RESTART_S
+            self._failures.clear()
+        last_line = "" if self._told is None else self._told.last_line()
+        log.warning(
+            "%s %s; starting it again in %g s",
+            self.name,
+            how_it_ended(code, last_line),
+            self._delay,
+        )
+        self._failures.append(now)
+        if len(self._failures) == LOOP_FAILURES:
+            log.error(
+                "%s has ended %d times in %.0f s, and is started again for ever, each %g s at the "
+                "most: mend what it says above",
+                self.name,
+                LOOP_FAILURES,
+                now - self._failures[0],
+                LAST_RESTART_S,
+            )
+        self._start_at = now + self._delay
+        self._delay = min(2 * self._delay, LAST_RESTART_S)
 
     def kill_if_it_hangs(self, reports: int | None) -> None:
         """End the process when it has reported before and does so no more, for long.

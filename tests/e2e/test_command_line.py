@@ -320,7 +320,7 @@ def test_up_starts_a_killed_process_again(rig: RunningRig) -> None:
     up.said("recorder b is up")
     killed = next(child for child in children(up.pid) if "a" in child.cmdline())
     killed.kill()
-    up.said("recorder a ended with -9; starting it again")
+    up.said("recorder a was killed by SIGKILL")
     eventually("a second start", lambda: up.stderr.count("recorder a is up") == 2)
     assert up.stop() == 0
 

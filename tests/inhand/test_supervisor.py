@@ -1,0 +1,60 @@
+"""Children that end, and what is said of it."""
+
+import logging
+import sys
+import time
+
+import pytest
+
+from inhand.last_words import how_it_ended
+from inhand.supervisor import LOOP_FAILURES, Child
+
+FAILS = "import sys; print('before', file=sys.stderr); raise ZeroDivisionError('a bug')"
+KILLED = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
+
+
+def _run(child: Child, times: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a child end so often, without the pauses between its starts."""
+    monkeypatch.setattr("inhand.supervisor.FIRST_RESTART_S", 0.0)
+    monkeypatch.setattr("inhand.supervisor.LAST_RESTART_S", 0.0)
+    child._delay = 0.0
+    ended = 0
+    while ended < times:
+        ended += child.tend() is not None
+        time.sleep(0.005)
+
+
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        (FAILS, "ended with exit code 1: ZeroDivisionError: a bug; starting it again"),
+        (KILLED, "was killed by SIGSEGV; starting it again"),
+        ("import sys; sys.exit(7)", "ended with exit code 7; starting it again"),
+    ],
+)
+def test_how_a_child_died_is_said_with_what_it_said_last(
+    script: str,
+    said: str,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
+    capfdbinary: pytest.CaptureFixture[bytes],
+) -> None:
+    _run(Child("tracker mug", [sys.executable, "-c", script]), 1, monkeypatch)
+    assert f"tracker mug {said}" in caplog.text
+    if script is FAILS:
+        assert b"before" in capfdbinary.readouterr().err
+
+
+def test_a_child_that_ends_again_and_again_is_an_alert_once(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    child = Child("capture front", [sys.executable, "-S", "-c", "raise SystemExit(1)"])
+    _run(child, LOOP_FAILURES + 2, monkeypatch)
+    alerts = [one for one in caplog.records if one.levelno == logging.ERROR]
+    assert len(alerts) == 1
+    assert f"capture front has ended {LOOP_FAILURES} times" in alerts[0].getMessage()
+
+
+def test_a_lack_of_memory_is_named_where_it_may_be_the_reason() -> None:
+    assert "lack of memory" in how_it_ended(-9, "")
+    assert "memory" not in how_it_ended(-15, "")
