@@ -1,11 +1,12 @@
 """``inhand train``: learns where an object is from how people move with it."""
 
 import argparse
+import logging
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from inhand_lab.datasets.dataset import Dataset, load_dataset
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, load_dataset
 from inhand_lab.datasets.joint_names import named_joints
 from inhand_lab.datasets.stretches import stretches_note
 from inhand_lab.training.model_adaptation import adapt
@@ -19,6 +20,8 @@ from inhand_lab.training.model_training import (
 from inhand_lab.training.presence_training import learn_presence
 from inhand_lab.training.recogniser_training import recogniser_stages, train_recogniser
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.exit_codes import DONE, FAILED
+from inhand_runtime.wording import counted
 from inhand_tracker.model.model import Model
 from inhand_tracker.model.model_file import load_model, save_model
 from inhand_tracker.recognition.recogniser_file import save_recogniser
@@ -26,6 +29,8 @@ from rich.console import Console
 from rich.table import Table
 
 from inhand.progress import add_progress_option, progress_bars
+
+log = logging.getLogger(__name__)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -76,11 +81,12 @@ def run(arguments: argparse.Namespace) -> int:
     choose = entries_for if start is None else recordings_of
     entries = choose(dataset, arguments.object, arguments.without)
     stages = {**model_stages(len(entries), start), "saving": 1}
+    refused: dict[DatasetEntry, Exception] = {}
     with progress_bars(stages, lines=arguments.progress_lines) as advance:
         if start is None:
-            model = train(dataset, entries, advance)
+            model = train(dataset, entries, advance, refused.__setitem__)
         else:
-            model = adapt(start, dataset, entries, advance)
+            model = adapt(start, dataset, entries, advance, refused.__setitem__)
         save_model(model, arguments.output)
         advance("saving")
     console = Console()
@@ -90,7 +96,20 @@ def run(arguments: argparse.Namespace) -> int:
     if note := stretches_note(entries):
         console.print(note)
     console.print(f"saved {arguments.output}: {arguments.output.stat().st_size / 1e6:.1f} MB")
-    return 0
+    return _report_refused(list(refused.values()), len(entries))
+
+
+def _report_refused(refused: Sequence[Exception], recordings: int) -> int:
+    """Name the recordings that were passed over; return the exit code."""
+    for error in refused:
+        log.warning("%s", error)
+    if refused:
+        log.warning(
+            "%d of %s passed over, and the model is learned from the others",
+            len(refused),
+            counted(recordings, "recording"),
+        )
+    return FAILED if refused else DONE
 
 
 def _train_recogniser(dataset: Dataset, arguments: argparse.Namespace) -> int:
@@ -103,18 +122,20 @@ def _train_recogniser(dataset: Dataset, arguments: argparse.Namespace) -> int:
         )
     entries = [entry for entry in dataset.entries if entry.participant not in arguments.without]
     stages = {**recogniser_stages(len(entries)), "saving": 1}
+    refused: dict[DatasetEntry, Exception] = {}
     with progress_bars(stages, lines=arguments.progress_lines) as advance:
-        recogniser = train_recogniser(dataset, entries, advance)
+        recogniser = train_recogniser(dataset, entries, advance, refused.__setitem__)
         if arguments.models:
             models = _models_of(recogniser.actions, arguments.models)
-            presence = learn_presence(dataset, entries, recogniser.actions, models)
+            read = [entry for entry in entries if entry not in refused]
+            presence = learn_presence(dataset, read, recogniser.actions, models)
             recogniser = replace(recogniser, presence=presence)
         save_recogniser(recogniser, arguments.output)
         advance("saving")
     console = Console()
     console.print(f"learned to recognise {', '.join(recogniser.actions)}")
     console.print(f"saved {arguments.output}: {arguments.output.stat().st_size / 1e6:.1f} MB")
-    return 0
+    return _report_refused(list(refused.values()), len(entries))
 
 
 def _models_of(actions: Sequence[str], files: Sequence[Path]) -> list[Model]:

@@ -19,6 +19,7 @@ from inhand_lab.training.appearance_samples import appearance_samples
 from inhand_lab.training.model_training import (
     APPEARANCE,
     PRIOR,
+    OnRefused,
     checked_shape,
     learned_mapping,
     read_recordings,
@@ -34,15 +35,16 @@ def adapt(
     dataset: Dataset,
     entries: Sequence[DatasetEntry],
     on_step: Callable[[str], None] = lambda stage: None,
+    on_refused: OnRefused | None = None,
 ) -> Model:
     """Learn from what a model was learned from and the user's own recordings, one at the least.
 
     These weigh as much as all others in how the object is held. ``on_step`` is called at each step
-    of ``model_stages``. Raises DatasetError or InhandError.
+    of ``model_stages``, ``on_refused`` as in ``train``. Raises DatasetError or InhandError.
     """
     taught = taught_of(start)
     check_fits(start, dataset, entries)
-    sequences = read_recordings(dataset, entries, on_step)
+    entries, sequences = read_recordings(dataset, entries, on_step, on_refused, fewest=1)
     absent = absent_joints(entries, sequences)
     if set(absent) != set(start.mapping.absent_joints):
         lacking = sorted(set(absent) ^ set(start.mapping.absent_joints))

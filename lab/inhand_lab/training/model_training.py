@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Sequence
 from functools import lru_cache
 
+from inhand_runtime.recording import RecordingError
 from inhand_schemas.errors import MessageError
 from inhand_tracker.mapping.labelled_sequence import LabelledSequence
 from inhand_tracker.mapping.learning import STAGES, UnusableSequenceError, learn
@@ -26,6 +27,8 @@ from inhand_lab.training.shape_checks import check_shape
 
 FEWEST_LEARNED = 2
 """Number of recordings, or of stretches of one, that learning compares at the least."""
+OnRefused = Callable[[DatasetEntry, DatasetError | RecordingError], None]
+"""What is called with a recording that is passed over, and its error."""
 READING, VIEWPOINTS, APPEARANCE, PRIOR = "recordings", "viewpoints", "appearance", "prior"
 
 
@@ -99,14 +102,16 @@ def train(
     dataset: Dataset,
     entries: Sequence[DatasetEntry],
     on_step: Callable[[str], None] = lambda stage: None,
+    on_refused: OnRefused | None = None,
 ) -> Model:
     """Learn from recordings of one object; ``on_step`` is called at each step of ``model_stages``.
 
-    Raises DatasetError or InhandError.
+    Recordings that cannot be learned from are passed over, and ``on_refused`` called for each;
+    without it they are errors. Raises DatasetError or InhandError.
     """
     first = _first_of(dataset, entries)
     shape = checked_shape(dataset, str(first.object))
-    sequences = read_recordings(dataset, entries, on_step)
+    entries, sequences = read_recordings(dataset, entries, on_step, on_refused)
     absent = absent_joints(entries, sequences)
     sequences = [sequence.with_stand_ins(absent) for sequence in sequences]
     check_rotations(entries, sequences, shape.mirror_normal)
@@ -150,15 +155,35 @@ def _first_of(dataset: Dataset, entries: Sequence[DatasetEntry]) -> DatasetEntry
 
 
 def read_recordings(
-    dataset: Dataset, entries: Sequence[DatasetEntry], on_step: Callable[[str], None]
-) -> list[LabelledSequence]:
-    """Read and check all recordings; raises DatasetError."""
-    sequences = []
+    dataset: Dataset,
+    entries: Sequence[DatasetEntry],
+    on_step: Callable[[str], None],
+    on_refused: OnRefused | None = None,
+    fewest: int = FEWEST_LEARNED,
+) -> tuple[list[DatasetEntry], list[LabelledSequence]]:
+    """Read and check recordings; return those that can be learned from, and what they hold.
+
+    ``on_refused`` is called for each of the others. Raises the first one's error without it, and
+    where fewer than ``fewest`` are left.
+    """
+    usable, sequences = [], []
+    refused: list[tuple[DatasetEntry, DatasetError | RecordingError]] = []
     for entry in entries:
-        sequences.append(checked_sequence(dataset, entry))
+        try:
+            sequences.append(checked_sequence(dataset, entry))
+            usable.append(entry)
+        except (DatasetError, RecordingError) as error:
+            refused.append((entry, error))
+            if on_refused is None:
+                raise
         on_step(READING)
-    check_hands(entries, sequences)
-    return sequences
+    if refused and len(usable) < fewest:
+        raise refused[0][1]
+    for entry, reason in refused:
+        if on_refused is not None:
+            on_refused(entry, reason)
+    check_hands(usable, sequences)
+    return usable, sequences
 
 
 def checked_shape(dataset: Dataset, name: str) -> ObjectShape:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from inhand_runtime.recording import RecordingError
 from inhand_runtime.wording import counted
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.recognition.movement_classes import MovementClasses
@@ -13,6 +14,7 @@ from inhand_tracker.recognition.recogniser import Recogniser
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.people.joint_sequence import JointSequence
+from inhand_lab.training.model_training import OnRefused
 from inhand_lab.training.movement_gaussians import MovementSequence
 from inhand_lab.training.movement_training import train_movements
 from inhand_lab.training.parameters import DEFAULT_TRAINING
@@ -42,18 +44,27 @@ def train_recogniser(
     dataset: Dataset,
     entries: Sequence[DatasetEntry],
     on_step: Callable[[str], None] = lambda stage: None,
+    on_refused: OnRefused | None = None,
 ) -> Recogniser:
     """Learn the actions of recordings; raises DatasetError or RecordingError.
 
     Where some are labelled, those of other interactions without an object are of people who use
     nothing. Where none is, each interaction is an action.
 
-    ``on_step`` is called at every step of ``recogniser_stages``.
+    ``on_step`` is called at every step of ``recogniser_stages``. Recordings that cannot be read are
+    passed over, and ``on_refused`` called for each; without it they are errors.
     """
     used = {entry.interaction for entry in entries if entry.object is not None}
     people = []
     for entry in entries:
-        one = _read_joints(dataset, entry)
+        try:
+            one = _read_joints(dataset, entry)
+        except (DatasetError, RecordingError) as error:
+            if on_refused is None:
+                raise
+            on_refused(entry, error)
+            on_step(READING)
+            continue
         uses_nothing = bool(used) and entry.interaction not in used
         people.append(replace(one, action=NOTHING) if uses_nothing else one)
         on_step(READING)

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 import trimesh
-from inhand_lab.datasets.dataset import Dataset, DatasetError, load_dataset
+from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError, load_dataset
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.training.model_summary import summarise_model
 from inhand_lab.training.model_training import entries_for, model_stages, train
@@ -148,3 +148,76 @@ def test_a_dataset_that_is_wrong_is_one_line_and_exit_code_1(
     assert main([*arguments, "--without", "p01"]) == 1
     assert capsys.readouterr().err.count("\n") == 1
     assert not (tmp_path / "m").exists()
+
+
+def no_recording(dataset: Dataset, entry: DatasetEntry) -> None:
+    dataset.path(entry).write_bytes(b"no recording")
+
+
+def cut_off(dataset: Dataset, entry: DatasetEntry) -> None:
+    path = dataset.path(entry)
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def without_labels(dataset: Dataset, entry: DatasetEntry) -> None:
+    path = dataset.path(entry)
+    messages = [one for one in read_recording(path) if "/label/" not in one.key]
+    path.unlink()
+    with RecordingWriter(path) as writer:
+        for one in messages:
+            writer.write(
+                one.key,
+                bytes(one.payload),
+                received_ns=one.received_ns,
+                captured_ns=one.captured_ns,
+                sequence=one.sequence,
+            )
+
+
+def with_a_nan(dataset: Dataset, entry: DatasetEntry) -> None:
+    def spoil(label: dict) -> None:
+        label["camera_from_object"]["translation"][1] = float("nan")
+
+    rewrite_labels(dataset.path(entry), spoil)
+
+
+@pytest.mark.parametrize("spoil", [no_recording, cut_off, without_labels, with_a_nan])
+def test_one_bad_recording_is_named_and_passed_over_and_the_exit_code_says_so(
+    dataset: Dataset,
+    tmp_path: Path,
+    caplog: pytest.LogCaptureFixture,
+    spoil: Callable[[Dataset, DatasetEntry], None],
+) -> None:
+    bad = dataset.entries[0]
+    spoil(dataset, bad)
+    path = tmp_path / "mug.model"
+    assert main(["train", str(dataset.folder), "-o", str(path)]) == 1
+    warned = caplog.text
+    assert Path(bad.file).name in warned
+    assert "1 of 3 recordings passed over" in warned
+    learned = load_model(path)
+    assert learned.mapping.participants == ("p01", "p02")
+
+
+def test_where_too_few_recordings_are_good_the_first_bad_one_is_the_error(
+    dataset: Dataset, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for entry in dataset.entries[1:]:
+        no_recording(dataset, entry)
+    assert main(["train", str(dataset.folder), "-o", str(tmp_path / "m")]) == 1
+    refusal = capsys.readouterr().err
+    assert Path(dataset.entries[1].file).name in refusal
+    assert refusal.count("\n") == 1
+    assert not (tmp_path / "m").exists()
+
+
+def test_a_bad_recording_of_ones_own_is_passed_over_where_another_is_good(
+    dataset: Dataset, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    start = tmp_path / "start.model"
+    assert main(["train", str(dataset.folder), "-o", str(start)]) == 0
+    no_recording(dataset, dataset.entries[1])
+    adapting = ["train", str(dataset.folder), "--from", str(start), "--without", "p00"]
+    assert main([*adapting, "-o", str(tmp_path / "own.model")]) == 1
+    assert "1 of 2 recordings passed over" in caplog.text
+    assert load_model(tmp_path / "own.model").mapping.participants[-1] == "own p02"
