@@ -9,6 +9,7 @@ from inhand_tracker.prior.combination import (
     locality,
     products_at,
     rotation_error,
+    vertex_products,
 )
 from scipy.spatial.transform import Rotation
 
@@ -72,3 +73,17 @@ def test_the_rotation_error_takes_the_truth_to_the_estimate() -> None:
     true, error = Rotation.from_rotvec([0.5, -1.0, 0.3]), np.array([0.1, 0.2, -0.3])
     estimated = Rotation.from_rotvec(error) * true
     np.testing.assert_allclose(rotation_error(estimated.as_matrix(), true.as_matrix()), error)
+
+
+def test_the_product_of_two_errors_is_that_of_how_far_they_take_vertices() -> None:
+    """To first order, and in the mean over the axes of rotations."""
+    random = np.random.default_rng(4)
+    vertices = random.normal(size=(20000, 3)) * 0.2
+    spread = vertices.T @ vertices / len(vertices)
+    one, other = random.normal(size=(2, 1, 6)) * 0.1
+
+    def moved(error: np.ndarray) -> np.ndarray:
+        return error[0, :3] + np.cross(error[0, 3:], vertices)
+
+    expected = (moved(one) * moved(other)).sum(axis=1).mean()
+    np.testing.assert_allclose(vertex_products(one, other, spread), expected, rtol=0.05)

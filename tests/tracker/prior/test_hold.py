@@ -120,6 +120,49 @@ def test_what_both_hands_hold_turns_towards_the_other_hand() -> None:
     assert off.magnitude().mean() < 0.5 * off_alone.magnitude().mean()
 
 
+LOST_M = 0.1
+"""Metres from the other hand to where the user's sensor has it."""
+
+
+def test_a_users_sensor_that_loses_the_other_hand_does_not_undo_that_both_hold() -> None:
+    people = [with_a_bar(seed) for seed in range(4)]
+    own = []
+    for take in range(5):
+        seen = with_a_bar(10 + take)
+        seen.joints[:, [Joint.WRIST_LEFT, Joint.HAND_LEFT]] += np.array([0.0, LOST_M, 0.0])
+        own.append(replace(seen, participant="user", own=True))
+    alone, joined = (learn_prior(some, wedge()).hold for some in (people, [*people, *own]))
+    assert alone is not None
+    assert joined is not None
+    assert joined.holder == alone.holder
+    assert np.linalg.norm(joined.pull) > 0.3 * np.linalg.norm(alone.pull)
+
+
+def test_between_regressions_and_the_hold_the_truth_is_where_it_was_of_people_held_out() -> None:
+    learned = prior()
+    assert learned.hold is not None
+    joints = np.tile(STANDING, (5, 1, 1))
+    by_people = predictions(replace(learned, hold=None), joints)[-1]
+    by_hold = learned.hold.of(find_anchors(joints[-1]))
+    landmarks = np.ones(len(learned.hold.leanings))
+    for share in (0.0, 0.3, 1.0):
+        leanings = np.stack((share * landmarks, landmarks), axis=1)
+        hold = replace(learned.hold, leanings=leanings)
+        predicted = predictions(replace(learned, hold=hold), joints)[-1]
+        expected = by_people.centre + share * (by_hold.centre - by_people.centre)
+        np.testing.assert_allclose(predicted.centre, expected, atol=1e-6)
+
+
+def test_what_leans_towards_the_hold_is_the_truth_of_people_who_were_held_out() -> None:
+    """On the table the hold is far off, and regressions are right."""
+    learned = prior()
+    assert learned.hold is not None
+    towards, square = learned.hold.leanings.T
+    on_table = np.linalg.norm(learned.landmark_targets[:, 0, :3], axis=1) > 0.3
+    assert on_table.any()
+    assert np.abs(towards[on_table] / square[on_table]).max() < 0.1
+
+
 @pytest.mark.parametrize("holder", range(len(HOLDERS)))
 def test_a_holder_moves_with_the_body(holder: int) -> None:
     joints = waving(5)

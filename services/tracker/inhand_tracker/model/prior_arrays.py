@@ -37,7 +37,7 @@ def prior_from_arrays(arrays: Arrays) -> Prior:
         arrays["errors"],
         float(arrays["calibration"]),
         float(arrays["persistence_s"]),
-        _hold(arrays) if "hold.squares" in arrays else None,
+        _hold(arrays) if "hold.leanings" in arrays else None,
         float(arrays.get("widening", 0.0)),
     )
 
@@ -49,7 +49,7 @@ def _hold(arrays: Arrays) -> Hold:
         arrays["hold.grip"],
         arrays["hold.pull"],
         arrays["hold.covariance"],
-        arrays["hold.squares"],
+        arrays["hold.leanings"],
     )
 
 

@@ -89,11 +89,11 @@ def lower_triangles(triangles: Singles, count: int) -> Array:
     return kernels.lower_triangles(triangles.astype(np.float64), np.empty(count))
 
 
-def vertex_squares(errors: Array, heights: Array, spread: Array) -> Array:
-    """Mean squared distances (T,), in m², of marked vertices of covariance ``spread`` (3, 3) by
-    errors (T, 6) in body heights and radians, a rotation's about any axis."""
-    moved = np.square(errors[:, :3]).sum(axis=1) * heights**2
-    return moved + 2.0 / 3.0 * np.trace(spread) * np.square(errors[:, 3:]).sum(axis=1)
+def vertex_products(one: Array, other: Array, spread: Array) -> Array:
+    """Mean inner products (T,), in m², of how far two errors (T, 6), in metres and radians, take
+    marked vertices of covariance ``spread`` (3, 3), rotations about any axis."""
+    products = one * other
+    return products[:, :3].sum(axis=1) + 2.0 / 3.0 * np.trace(spread) * products[:, 3:].sum(axis=1)
 
 
 def rotation_error(estimated: Array, true: Array) -> Array:

@@ -26,9 +26,10 @@ class Hold:
     both hands hold it, the object turns towards the other one: ``pull`` (3,) is where that is in
     the object's axes from the holder, times how much surer that is than the rotation, in 1/m; 0
     where one hand holds. ``covariance`` (6, 6) of (translation, rotation vector on the left) is in
-    the object's axes, in metres and radians. ``squares`` (L, 2) are squared distances of
-    vertices, in m², at each landmark of the prior, by the hold and by the regressions of people
-    who were held out.
+    the object's axes, in metres and radians. ``leanings`` (L, 2) say how far the truth lies from
+    the regressions towards the hold at each landmark of the prior, of people who were held out:
+    the product, in the mean over vertices, of the ways from there to both, and the square of that
+    to the hold, in m².
     """
 
     holder: int
@@ -36,7 +37,7 @@ class Hold:
     grip: Array
     pull: Array
     covariance: Array
-    squares: Array
+    leanings: Array
 
     def of(self, anchors: Anchors, growth: float = 1.0) -> Prediction:
         """Predict the object's pose as it is held, for one body's anchors, or poses for many; the

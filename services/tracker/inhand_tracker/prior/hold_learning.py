@@ -9,7 +9,7 @@ import numpy as np
 from inhand_tracker.body.holders import HOLDERS, find_holder
 from inhand_tracker.geometry.arrays import Array, Flags
 from inhand_tracker.prior.calibration import calibration_of, widening_of
-from inhand_tracker.prior.combination import rotation_error, vertex_squares, widened
+from inhand_tracker.prior.combination import rotation_error, vertex_products, widened
 from inhand_tracker.prior.hold import Hold, rotation_near
 from inhand_tracker.prior.parameters import PriorLearningParameters
 from inhand_tracker.prior.prediction import Prediction
@@ -23,13 +23,14 @@ better."""
 def learn_hold(
     samples: Samples,
     landmarks: Samples,
-    regressed_squares: Array,
+    regressed: Array,
     spread: Array,
     units: int,
     parameters: PriorLearningParameters,
 ) -> Hold | None:
     """Learn the hold from samples of ``units`` people; ``spread`` (3, 3) is that of the marked
-    vertices, ``regressed_squares`` (L,) their squared held-out errors at the prior's landmarks.
+    vertices, ``regressed`` (L, 6) the regressions' held-out errors at the prior's landmarks, in the
+    camera frame, in metres and radians.
 
     The holder, by itself or with the other hand, is the one by which the others' mean says best
     where each group that is held out has the object. None where fewer than two groups carry it.
@@ -46,10 +47,10 @@ def learn_hold(
     scores = [trial.score(root) * trial.caution(parameters) for trial in trials]
     best = trials[int(np.argmin(scores))]
     held = best.tried_on(landmarks)
-    errors = _errors_in_object(held.centre, held.rotation, landmarks)
-    held_squares = vertex_squares(errors, np.ones(len(errors)), spread)
-    squares = np.stack((held_squares, regressed_squares), axis=1)
-    return replace(best.hold(units), squares=squares)
+    turned = rotation_error(held.rotation, landmarks.rotations)
+    to_hold = np.concatenate((held.centre - landmarks.centres, turned), axis=1) - regressed
+    leanings = [vertex_products(to_hold, other, spread) for other in (-regressed, to_hold)]
+    return replace(best.hold(units), leanings=np.stack(leanings, axis=1))
 
 
 def carried_frames(samples: Samples, root: Array, parameters: PriorLearningParameters) -> Flags:
@@ -165,14 +166,19 @@ def _trials(samples: Samples, holder: int, parameters: PriorLearningParameters) 
         return
     _, _, ways = find_holder(samples.anchors, holder)
     places = _turned_back(samples.rotations, ways)
+    # The user's own sensor may lose a hand beside the other one: many people say what both hold.
+    many = (
+        ~samples.own
+        if len(np.unique(samples.groups[~samples.own])) > 1
+        else np.full(len(samples.own), True)
+    )
     usual, mean = np.empty_like(places), np.empty_like(places)
     for group in np.unique(samples.groups):
         rows = samples.groups == group
-        usual[rows] = np.median(places[~rows], axis=0)
-        mean[rows] = places[~rows].mean(axis=0)
-    if np.median(np.linalg.norm(places - usual, axis=1)) < parameters.other_grip_m:
-        # Of the likelihood of a rotation and of the other hand's place, both normal: many people's.
-        many = ~samples.own if not samples.own.all() else samples.own
+        others = places[~rows & many]
+        usual[rows], mean[rows] = np.median(others, axis=0), others.mean(axis=0)
+    if np.median(np.linalg.norm(places - usual, axis=1)[many]) < parameters.other_grip_m:
+        # Of the likelihood of a rotation and of the other hand's place, both normal.
         turned = float(np.square(alone.errors()[many, 3:]).mean())
         variance = float(np.square((places - mean)[many]).mean()) + LEAST_VARIANCE
         yield _Trial(samples, holder, 2.0 * turned / variance)

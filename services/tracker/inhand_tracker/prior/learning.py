@@ -54,7 +54,7 @@ def learn_prior(
         learn_hold(
             samples,
             landmarks,
-            combination.vertex_squares(errors, landmarks.heights, spread),
+            _in_camera(errors, landmarks),
             spread,
             units,
             parameters,
@@ -114,6 +114,15 @@ def _errors(
     turned = combination.rotation_error(turns, landmarks.rotations)
     return np.concatenate(
         [np.einsum("lji,lj->li", axes, moved), np.einsum("lji,lj->li", axes, turned)], axis=1
+    )
+
+
+def _in_camera(errors: Array, landmarks: Samples) -> Array:
+    """Give errors (L, 6) in the trunk's axes and body heights in the camera frame and metres."""
+    axes = landmarks.anchors.axes[:, 0]
+    moved = errors[:, :3] * landmarks.heights[:, None]
+    return np.concatenate(
+        [np.einsum("lij,lj->li", axes, one) for one in (moved, errors[:, 3:])], axis=1
     )
 
 

@@ -85,9 +85,9 @@ class Prior:
         as nobody did may well stand as somebody did."""
         landmarks, width = self._postures
         distances = distances_of(described[:POSTURE], landmarks)
-        least, held, regressed = nearest_of(distances, width, hold.squares)
-        better = 1.0 - (held / max(regressed, TINY)) ** 2
-        return _Posture(math.exp(least / (-2.0 * width)), max(better, 0.0))
+        least, towards, square = nearest_of(distances, width, hold.leanings)
+        share = min(max(towards / max(square, TINY), 0.0), 1.0)
+        return _Posture(math.exp(least / (-2.0 * width)), share)
 
     def products_at(self, local: Array) -> Array:
         """The lower triangles (2, E, E) of both products that are expected, by landmarks' shares
@@ -113,8 +113,9 @@ def predict(
     """Predict the object's pose for one body: descriptions (1, D) of each view, its anchors and
     height.
 
-    By what people did in such postures; by how they hold the object, where that was better there
-    for people who were held out; and of a posture unlike all of theirs by how they hold it alone.
+    By what people did in such postures, as far towards how they hold the object as was best there
+    for people who were held out, in least squares; and of a posture unlike all of theirs by how
+    they hold it alone.
     """
     kernels = [
         regression.kernel_of(description[0])
@@ -127,7 +128,7 @@ def predict(
     if prior.hold is None:
         return regressed
     posture = prior.posture_of(descriptions[0][0], prior.hold)
-    share = max(posture.strangeness(parameters), posture.better_held)
+    share = max(posture.strangeness(parameters), posture.held_share)
     if share == 0.0:
         return regressed
     held = prior.hold.of(anchors, posture.growth(parameters))
@@ -158,11 +159,11 @@ def predict_apart(
 @dataclass(frozen=True)
 class _Posture:
     """A body's posture beside those that were learned: the kernel to the ``nearest`` of them, from
-    0 to 1, and how much better people who were held out were predicted by their hold around there,
-    from 0, where it erred by as much as the regressions or more, to 1."""
+    0 to 1, and ``held_share``, how far of the way from the regressions to the hold the truth was
+    around there, of people who were held out, in least squares, from 0 to 1."""
 
     nearest: float
-    better_held: float
+    held_share: float
 
     def strangeness(self, parameters: PriorParameters) -> float:
         """How strange the posture is, from 0 to 1."""
