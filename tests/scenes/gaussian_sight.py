@@ -1,5 +1,6 @@
 """A sight of which the likelihood is known: the likelier a pose, the nearer it is to the truth."""
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -7,6 +8,7 @@ import numpy as np
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
 from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.frame import SightFrame
+from inhand_tracker.sight.light import LightWatch
 from inhand_tracker.sight.refinement import Refined
 
 TRUE = PoseGaussian(
@@ -28,9 +30,13 @@ class GaussianSight:
     learned: list[np.ndarray] = field(default_factory=list)
     trusts: list[float] = field(default_factory=list)
     frames: list[SightFrame] = field(default_factory=list)
+    usual_light: tuple[float, float] = (math.nan, math.nan)
 
     def start(self) -> Colours:
         return TRAINED
+
+    def watch_light(self) -> LightWatch:
+        return LightWatch(self.usual_light)
 
     def view(self, frame: Any, colours: Colours, joints: Any) -> "View":
         self.frames.append(frame)

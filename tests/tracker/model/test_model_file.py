@@ -86,13 +86,28 @@ def test_what_is_seen_of_an_object_and_how_it_looks_come_back_too(tmp_path: Path
     full = replace(
         small_model(),
         viewpoints=replace(small_model().viewpoints, contours=contours),
-        appearance=Appearance(*colours, 0.8, 0.1),
+        appearance=Appearance(*colours, 0.8, 0.1, 0.02, 0.05),
     )
     save_model(full, tmp_path / "full.model")
     loaded = load_model(tmp_path / "full.model")
     assert equal(loaded, full)
     assert loaded.viewpoints.contours is not None
     assert loaded.viewpoints.contours.points.dtype == np.float32
+
+
+def test_a_model_of_a_release_that_learned_no_light_loads_and_knows_none(tmp_path: Path) -> None:
+    colours = np.full((2, 4096), 1.0 / 4096.0, np.float32)
+    new = replace(small_model(), appearance=Appearance(*colours, 0.8, 0.1, 0.02, 0.05))
+    save_model(new, tmp_path / "new.model")
+    with np.load(tmp_path / "new.model") as archive:
+        older = {name: archive[name] for name in archive if "tint" not in name}
+    with (tmp_path / "older.model").open("wb") as file:
+        np.savez(file, **older)
+    loaded, again = load_model(tmp_path / "older.model"), load_model(tmp_path / "new.model")
+    assert loaded.appearance is not None
+    assert again.appearance is not None
+    assert np.isnan([loaded.appearance.tint, loaded.appearance.tint_range]).all()
+    assert (again.appearance.tint, again.appearance.tint_range) == (0.02, 0.05)
 
 
 def test_a_model_of_a_release_without_surfaces_still_loads(tmp_path: Path) -> None:

@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 from inhand_tracker.sight.appearance import learn_appearance
 from inhand_tracker.sight.colours import Colours, colour_bins, log_odds_by_colour
+from inhand_tracker.sight.light import surrounding_tint
+from rooms import JOINTS, REDDER, USUAL, narrow, room
 from sights import CAMERA, PLACE, RED, TURN, WALL, box, draw
 
 ELBOW, WRIST, HAND = 9, 10, 11
 SKIN = (220, 180, 150)
+AHEAD = np.array([0.0, 0.0, 1.2])
 
 
 def odds_of(learned: object, colour: tuple[int, int, int], shade: float = 1.0) -> float:
@@ -75,6 +78,18 @@ def test_fingers_over_the_object_do_not_become_its_colour() -> None:
     assert without is not None
     assert odds_of(with_joints, SKIN) < odds_of(without, SKIN) - 0.5
     assert odds_of(with_joints, RED, 0.85) > 1.0
+
+
+def test_the_light_of_the_images_is_learned_with_how_much_it_varies() -> None:
+    images = [room(light=light) for light in (USUAL, USUAL, REDDER)]
+    learned = learn_appearance(box(), [(image, AHEAD, TURN, JOINTS) for image in images])
+    assert learned is not None
+    tints = [surrounding_tint(image, JOINTS) for image in images]
+    assert learned.tint == pytest.approx(np.mean(tints))
+    assert learned.tint_range == pytest.approx(max(tints) - np.mean(tints))
+    without = learn_appearance(box(), [(narrow(images[0]), AHEAD, TURN, JOINTS)])
+    assert without is not None
+    assert np.isnan([without.tint, without.tint_range]).all()
 
 
 def test_nothing_is_learned_without_colours_or_out_of_the_image() -> None:

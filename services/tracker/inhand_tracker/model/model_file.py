@@ -1,6 +1,6 @@
 """A learned model in one file (``archive``)."""
 
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -127,9 +127,13 @@ def _values(part: Contours | Appearance) -> Arrays:
 
 
 def _part(name: str, kind: type[Part], arrays: Arrays) -> Part | None:
-    """A part of a model; None in files of older releases, which do not have it."""
-    names = [field.name for field in fields(kind)]
-    if any(f"{name}.{field}" not in arrays for field in names):
+    """A part of a model; None in files of older releases, which do not have it.
+
+    Fields with a default came later than others, and older files lack them.
+    """
+    needed = [field.name for field in fields(kind) if field.default is MISSING]
+    if any(f"{name}.{field}" not in arrays for field in needed):
         return None
-    values = {field: arrays[f"{name}.{field}"] for field in names}
+    present = [field.name for field in fields(kind) if f"{name}.{field.name}" in arrays]
+    values = {field: arrays[f"{name}.{field}"] for field in present}
     return kind(**{f: value if value.ndim else value.item() for f, value in values.items()})

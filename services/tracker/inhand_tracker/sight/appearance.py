@@ -1,5 +1,6 @@
 """How an object looks, learned from frames with its true pose."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -11,6 +12,7 @@ from inhand_tracker.geometry.image import Image
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.sight.colours import BINS, Bins, smoothed
 from inhand_tracker.sight.frame import SightFrame, prepare
+from inhand_tracker.sight.light import surrounding_tint
 from inhand_tracker.sight.limbs import limb_mask
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 from inhand_tracker.sight.silhouette import (
@@ -30,12 +32,16 @@ class Appearance:
     """``of_object`` and ``around`` (4096,): histograms of the colours within an object's outline
     (without the fingers that lie over it) and around it. ``returned`` is the share of its
     surface of which a depth sensor measures the depth, and ``behind`` the share of which it
-    measures something farther away; nothing is measured of the rest."""
+    measures something farther away; nothing is measured of the rest. ``tint`` is the mean
+    ``surrounding_tint`` of the images, and ``tint_range`` how far from it any of them was; NaN
+    where none showed it, and in models of older releases."""
 
     of_object: Singles
     around: Singles
     returned: float
     behind: float
+    tint: float = math.nan
+    tint_range: float = math.nan
 
 
 @dataclass
@@ -84,10 +90,13 @@ def learn_appearance(
     and so is the share of the colours of arms and hands that fingers over the object make likely.
     """
     counts = _Counts()
+    tints: list[float] = []
     for image, translation, rotation, joints in samples:
         region = region_around(shape, translation, rotation, image.camera, parameters)
         if region is None:
             continue
+        tint = surrounding_tint(image, joints, parameters)
+        tints += [] if tint is None else [tint]
         frame = prepare(image, region, parameters)
         depths = silhouette_depths(shape, translation, rotation, frame.camera)
         silhouette = np.isfinite(depths)
@@ -107,7 +116,15 @@ def learn_appearance(
         smoothed((around / around.sum()).astype(np.float32), parameters),
         counts.returned / looked_at if looked_at else parameters.returned,
         counts.behind / looked_at if looked_at else parameters.behind,
+        *_mean_and_range(tints),
     )
+
+
+def _mean_and_range(tints: list[float]) -> tuple[float, float]:
+    if not tints:
+        return math.nan, math.nan
+    mean = float(np.mean(tints))
+    return mean, float(np.abs(np.array(tints) - mean).max())
 
 
 def _without_limbs(of_object: Array, of_limbs: Array, parameters: SightParameters) -> Singles:

@@ -7,10 +7,11 @@ from functools import cached_property
 import cv2
 import numpy as np
 
-from inhand_tracker.geometry.arrays import Bytes, Singles
+from inhand_tracker.geometry.arrays import Array, Bytes, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.sight.colours import Bins, colour_bins, without_noise
+from inhand_tracker.sight.light import scale_colours
 from inhand_tracker.sight.oriented_edges import edge_distances, edge_scores
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 
@@ -60,11 +61,13 @@ def prepare(
     region: Region | None = None,
     parameters: SightParameters = DEFAULT_SIGHT,
     most_pixels: float = math.inf,
+    gains: Array | None = None,
 ) -> SightFrame:
     """Cut the part within a region out of an image, or take all of it.
 
     Depth of another size is brought to that of the colours. Of a part of more than ``most_pixels``
-    several pixels become one. Edges and bins are found when they are first asked for.
+    several pixels become one. Colours are multiplied by ``gains`` (3,), as ``LightWatch`` finds
+    them. Edges and bins are found when they are first asked for.
     """
     camera, colour, depth = image.camera, image.colour, image.depth
     given = colour if colour is not None else depth
@@ -80,6 +83,8 @@ def prepare(
     step = math.ceil(math.sqrt(camera.width * camera.height / most_pixels))
     if step > 1:
         camera, colour, depth = _smaller(camera, colour, depth, step)
+    if colour is not None and gains is not None:
+        colour = scale_colours(colour, gains)
     return SightFrame(
         camera,
         None if colour is None else np.ascontiguousarray(colour),

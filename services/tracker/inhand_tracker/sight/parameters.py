@@ -62,6 +62,31 @@ class SightParameters:
     """Share of the surface that returns depth below which depth says nothing: what is measured is
     then the hand around the object."""
 
+    # How another light is known (light). Among 66 simulated rooms half the log(red / blue) around a
+    # person deviates by 0.03, 0.08 at the most; lamps and daylight differ by 0.15 and more.
+    same_light: float = 0.08
+    """Difference of half the log(red / blue) from training's up to which it is a room's own."""
+    other_light_ratio: float = 1.3
+    """Number of times that difference from which on all of it is the light's."""
+    light_rate: float = 0.25
+    """Share of the newest image in what is known of the light."""
+    person_m: float = 0.5
+    """Metres before and behind a person's middle joint within which nothing is surroundings."""
+    fewest_surroundings: int = 100
+    """Number of samples around the person below which they say nothing of the light."""
+    light_samples: int = 80
+    """Number of samples, about, in a row of an image."""
+    darkest: int = 8
+    """Level from which each of red, green and blue of a sample is measured well."""
+    brightest: int = 249
+    """Level up to which each of them is."""
+    tint_cells: int = 24
+    """Number of cells, each way, of tints by log(red / green) and log(blue / green)."""
+    widest_tint: float = 1.0
+    """Greatest such logarithm, either way; what is more colourful counts as so much."""
+    rare_tint_share: float = 1e-5
+    """Share of the samples from which on a tint counts by the logarithm of its share."""
+
     # How colours speak (colours, view).
     smoothing_levels: float = 0.8
     """Standard deviation, in levels of colour, by which a histogram is smoothed."""

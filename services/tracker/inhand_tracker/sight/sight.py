@@ -6,6 +6,7 @@ where it was measured at the surface, or nearer by something in front, which say
 farther away, which speaks against.
 """
 
+import math
 from collections.abc import Collection
 from dataclasses import replace
 from typing import Literal, get_args
@@ -25,6 +26,7 @@ from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.frame import SightFrame, prepare
 from inhand_tracker.sight.kernels.inputs import Outlines
 from inhand_tracker.sight.kernels.weigh import VISIBLE
+from inhand_tracker.sight.light import LightWatch, surrounding_tint
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 from inhand_tracker.sight.refinement import PosePrior, PoseRefiner, Refined
 from inhand_tracker.sight.view import SightView, view_frame
@@ -74,7 +76,9 @@ class Sight:
 
     def compile(self) -> None:
         """Compile all that a first frame would wait for: seconds, once an installation."""
-        frame = prepare(blank_image(), parameters=self._parameters)
+        image = blank_image()
+        surrounding_tint(image, np.ones((20, 3)), self._parameters)
+        frame = prepare(image, parameters=self._parameters)
         ahead, upright = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0, 0.0])
         colours = self.learn(Colours(), frame, ahead, upright, of_object=0.5, around=0.5)
         view = self.view(frame, colours, np.tile(ahead, (20, 1)))
@@ -86,6 +90,12 @@ class Sight:
         if self._appearance is None:
             return Colours()
         return Colours(self._appearance.of_object, self._appearance.around)
+
+    def watch_light(self) -> LightWatch:
+        """A watch of the light, which knows the one that the object was learned in."""
+        learned = self._appearance
+        usual = (math.nan, math.nan) if learned is None else (learned.tint, learned.tint_range)
+        return LightWatch(usual, self._parameters)
 
     def learn(
         self,

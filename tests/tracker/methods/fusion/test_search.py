@@ -1,5 +1,6 @@
 """The search in an image whose likelihood is known."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,9 @@ from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
 from inhand_tracker.methods.fusion.search import ImageSearch
+from inhand_tracker.sight.light import surrounding_tint
 from people import STANDING
+from rooms import BLUER, JOINTS, USUAL, room
 
 CAMERA = Intrinsics(260.0, 260.0, 159.5, 119.5, 320, 240)
 BLANK = Image(None, CAMERA, None, np.zeros((240, 320, 3), np.uint8))
@@ -128,3 +131,27 @@ def test_where_an_object_may_be_anywhere_it_is_looked_for_coarsely_a_large_one_i
     sphere = BoundingSphere(np.zeros(3), radius_m)
     ImageSearch(sight, sphere, parameters, seed=1).look(belief(TRUE.centre), BLANK, STANDING, 1.0)
     assert (sight.frames[-1].camera.fx < CAMERA.fx) == coarse
+
+
+def test_images_in_another_light_are_searched_in_that_of_training() -> None:
+    usual = surrounding_tint(room(), JOINTS)
+    assert usual is not None
+    brightness = []
+    for light in (USUAL, BLUER):
+        sight = GaussianSight(usual_light=(usual, 0.0))
+        search(sight).look(belief(TRUE.centre), room(light=light), JOINTS, 1.0)
+        colour = sight.frames[0].colour
+        assert colour is not None
+        brightness.append(colour.reshape(-1, 3).mean(axis=0))
+    np.testing.assert_allclose(brightness[1], brightness[0], rtol=0.03)
+
+
+def test_images_in_the_light_of_training_are_searched_as_they_are() -> None:
+    usual = surrounding_tint(room(), JOINTS)
+    assert usual is not None
+    looks = []
+    for light in ((usual, 0.0), (math.nan, math.nan)):
+        sight = GaussianSight(usual_light=light)
+        search(sight).look(belief(TRUE.centre), room(), JOINTS, 1.0)
+        looks.append(sight.frames[0].colour)
+    np.testing.assert_array_equal(*looks)

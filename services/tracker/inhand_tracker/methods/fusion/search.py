@@ -34,6 +34,7 @@ class ImageSearch:
         self._parameters = parameters
         self._random = np.random.default_rng(seed)
         self._colours = sight.start()
+        self._light = sight.watch_light()
         self._looks = 0
         self._found: _Found | None = None
         self._support: Support | None = None
@@ -101,10 +102,13 @@ class ImageSearch:
         return across * across
 
     def _open(self, guess: PoseGaussian, image: Image, region: Region, joints: Array) -> SightView:
-        """Prepare a region of the image; in the first one the surroundings' colours are learned."""
+        """Prepare a region of the image, in the light of training; in the first one the
+        surroundings' colours are learned."""
         own_pixels = self._own_pixels(guess, image.camera)
         most_pixels = max(self._parameters.most_pixels, 2.0 * own_pixels)
-        frame = prepare(image, region, self._parameters.sight, most_pixels)
+        if self._looks % self._parameters.looks_to_learn == 0:
+            self._light.watch(image, joints)
+        frame = prepare(image, region, self._parameters.sight, most_pixels, self._light.gains)
         if self._found is None:
             self._learn_colours(guess, frame, of_object=0.0)
         return self._sight.view(frame, self._colours, joints)
