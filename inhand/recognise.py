@@ -1,12 +1,14 @@
 """``inhand recognise``: measures how well objects that are not given are recognised and tracked."""
 
 import argparse
+import math
 import time
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from inhand_lab.datasets.dataset import Dataset, load_dataset
+from inhand_lab.datasets.other_light import RECORDED, Light
 from inhand_lab.datasets.recorded_frames import has_images
 from inhand_lab.recognition.adaptive_comparison import Environments
 from inhand_lab.recognition.cascade_learning import labelled_entries
@@ -26,6 +28,7 @@ from inhand_lab.recognition.recognition_summary import summarise_recognition
 from inhand_lab.recognition.recognition_tables import (
     false_object_grid,
     known_frames_grid,
+    light_grid,
     recognition_grids,
 )
 from inhand_lab.report.grid import Grid
@@ -97,6 +100,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="PYTHON",
         help="a Python with OpenCV's contrib build, for CSRT and TLD: `make contrib`",
     )
+    parser.add_argument(
+        "--light",
+        action="append",
+        default=[],
+        metavar="R,G,B",
+        help="show what is tested in another light too: factors on red, green and blue, as "
+        "0.85,1,1.15; may be repeated",
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
     parser.add_argument("--report", type=Path, metavar="DIR", help="write tables and pictures")
 
@@ -133,13 +144,40 @@ def _cascades(dataset: Dataset, arguments: argparse.Namespace) -> tuple[dict[str
     if unknown := [name for name in methods if name not in CASCADES]:
         raise SettingsError(f"no method {unknown[0]!r}; there are: {', '.join(CASCADES)}")
     pythons = Environments(arguments.contrib).of() if arguments.adaptive else {}
+    lights = {name: _light(name) for name in arguments.light}
     protocol = RecognitionProtocol(
-        dataset, _unseen(dataset, arguments.unseen), methods, arguments.tracking, pythons
+        dataset,
+        _unseen(dataset, arguments.unseen),
+        methods,
+        arguments.tracking,
+        pythons,
+        (RECORDED, *lights.values()),
     )
     with progress_bar("participants", len(protocol.unseen)) as advance:
         trials = evaluate_recognition(protocol, usable_cores(), advance)
-    result = summarise_recognition(trials)
-    return result, recognition_grids(result)
+    result = summarise_recognition([trial for trial in trials if trial.light == RECORDED])
+    grids = recognition_grids(result)
+    if lights:
+        by_light = {
+            name: summarise_recognition([trial for trial in trials if trial.light == light])
+            for name, light in lights.items()
+        }
+        grids.append(light_grid({"as recorded": result, **by_light}))
+        result = {**result, "lights": by_light}
+    return result, grids
+
+
+def _light(name: str) -> Light:
+    """Read factors on red, green and blue; raises SettingsError."""
+    try:
+        red, green, blue = (float(factor) for factor in name.split(","))
+    except ValueError:
+        red = green = blue = 0.0
+    if not all(0.0 < factor < math.inf for factor in (red, green, blue)):
+        raise SettingsError(
+            f"--light {name}: not three factors above 0 on red, green and blue, as 0.85,1,1.15"
+        )
+    return red, green, blue
 
 
 def _alone(dataset: Dataset, report: Path | None) -> tuple[dict[str, Any], list[Grid]]:

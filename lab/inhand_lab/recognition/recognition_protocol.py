@@ -20,6 +20,7 @@ from inhand_tracker.wire.conversion import Need
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.observations import observe
+from inhand_lab.datasets.other_light import RECORDED, Light, in_light
 from inhand_lab.datasets.recorded_frames import RecordedFrame, load_camera
 from inhand_lab.datasets.stretches import entry_frames
 from inhand_lab.evaluation.pose_errors import ErrorGauge
@@ -49,7 +50,8 @@ class RecognitionProtocol:
     """Methods that are compared on participants of a dataset, who are ``unseen`` one by one.
 
     ``tracking`` is the method of the trackers under `cascade`; ``pythons`` run adaptive trackers,
-    by name, as ``Environments`` gives them.
+    by name, as ``Environments`` gives them. What is tested is shown in each of ``lights``; all is
+    learned, and adaptive trackers are compared, in the light in which it was recorded.
     """
 
     dataset: Dataset
@@ -57,6 +59,7 @@ class RecognitionProtocol:
     methods: tuple[str, ...]
     tracking: MethodName
     pythons: dict[str, str]
+    lights: tuple[Light, ...] = (RECORDED,)
     seed: int = 0
 
     def needs(self) -> set[Need]:
@@ -84,13 +87,14 @@ class RecognitionProtocol:
 
 @dataclass(frozen=True)
 class RecognitionTrial:
-    """A method's, or an adaptive tracker's, score on one recording."""
+    """A method's, or an adaptive tracker's, score on one recording in a light."""
 
     method: str
     interaction: str
     participant: str
     person_pixels: float
     score: RecognitionScore
+    light: Light = RECORDED
 
 
 def evaluate_recognition(
@@ -124,20 +128,22 @@ def _try_recording(
 ) -> list[RecognitionTrial]:
     path = protocol.dataset.path(entry)
     test = _prepare(protocol.dataset, taught, entry)
-    recognisers = [
-        protocol.new_recogniser(name, taught, left_handed=entry.handedness == "left")
-        for name in protocol.methods
-    ]
-    observations = observe(path, test.frames, protocol.needs())
-    answers = answer_together(recognisers, observations, len(test.frames), test.camera)
-    scores = {name: test.score(one) for name, one in zip(protocol.methods, answers, strict=True)}
-    followed = follow_adaptively(path, test.frames, test.truth, protocol.pythons)
-    scores |= {name: score_boxes(boxes, test.truth) for name, boxes in followed.items()}
     pixels = person_pixels(test.frames, test.camera)
-    return [
-        RecognitionTrial(name, entry.interaction, entry.participant, pixels, score)
-        for name, score in scores.items()
-    ]
+    about = entry.interaction, entry.participant, pixels
+    trials = []
+    for light in protocol.lights:
+        recognisers = [
+            protocol.new_recogniser(name, taught, left_handed=entry.handedness == "left")
+            for name in protocol.methods
+        ]
+        observations = in_light(observe(path, test.frames, protocol.needs()), light)
+        answers = answer_together(recognisers, observations, len(test.frames), test.camera)
+        for name, one in zip(protocol.methods, answers, strict=True):
+            trials.append(RecognitionTrial(name, *about, test.score(one), light))
+    followed = follow_adaptively(path, test.frames, test.truth, protocol.pythons)
+    for name, boxes in followed.items():
+        trials.append(RecognitionTrial(name, *about, score_boxes(boxes, test.truth)))
+    return trials
 
 
 @dataclass(frozen=True)

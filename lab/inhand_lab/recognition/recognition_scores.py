@@ -62,6 +62,13 @@ class RecognitionScore:
     precision: float | None = None
     vertex_error_m: float | None = None
 
+    @property
+    def right_share(self) -> float | None:
+        """Share of frames in which the right action is recognised (None: none ever is)."""
+        if self.recognised_share is None:
+            return None
+        return self.recognised_share * (self.precision or 0.0)
+
 
 def answer_together(
     recognisers: Sequence[ObjectRecogniser],

@@ -38,6 +38,7 @@ def _means(trials: Sequence[RecognitionTrial]) -> dict[str, float | None]:
         ),
         "known_percent": _mean([_times_100(s.recognised_share) for s in scores]),
         "precision_percent": _mean([_times_100(s.precision) for s in scores]),
+        "right_percent": _mean([_times_100(s.right_share) for s in scores]),
         "vertex_error_cm": _mean([_times_100(s.vertex_error_m) for s in scores]),
     }
 

@@ -68,6 +68,28 @@ def _measure_grid(methods: dict[str, Any]) -> Grid:
     return Grid("means over interactions", ("measure", *ours), tuple(rows))
 
 
+def light_grid(results: dict[str, dict[str, Any]]) -> Grid:
+    """Return a table of how often the right object is known in each light, by the light's name."""
+    columns = {
+        f"{name}, {light}": method
+        for light, result in results.items()
+        for name, method in result["methods"].items()
+        if name in CASCADES
+    }
+    interactions = next(iter(columns.values()))["interactions"]
+    rows = [
+        (
+            interaction,
+            *(_number(m["interactions"][interaction]["right_percent"]) for m in columns.values()),
+        )
+        for interaction in interactions
+    ]
+    means = ("mean", *(_number(method["right_percent"]) for method in columns.values()))
+    return Grid(
+        "the right object known, % of frames", ("interaction", *columns), tuple(rows), (means,)
+    )
+
+
 def false_object_grid(counted: FalseObjects) -> Grid:
     """Return a table of false objects by people who use nothing, or do what was not taught."""
     rows = [

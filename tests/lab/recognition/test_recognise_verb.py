@@ -176,6 +176,7 @@ def test_the_tracker_s_settings_name_a_recogniser_and_all_its_models(
 def test_the_command_measures_both_cascades(people: Dataset, tmp_path: Path) -> None:
     file = tmp_path / "result.json"
     arguments = ["recognise", str(people.folder), "--unseen", "p04", "--json", str(file)]
+    arguments += ["--light", "0.85,1,1.15"]
     assert main([*arguments, "--report", str(tmp_path / "report")]) == 0
     result = json.loads(file.read_text())
     assert set(result["methods"]) == {"cascade-2012", "cascade"}
@@ -183,7 +184,10 @@ def test_the_command_measures_both_cascades(people: Dataset, tmp_path: Path) -> 
         assert set(method["interactions"]) == set(ACTIONS)
         assert method["precision_percent"] > 60.0
         assert 0.0 < method["known_percent"] <= 100.0
-    assert "cascade-2012" in (tmp_path / "report" / "recognition.md").read_text()
+    # Without images no light shows.
+    assert result["lights"]["0.85,1,1.15"]["methods"] == result["methods"]
+    report = (tmp_path / "report" / "recognition.md").read_text()
+    assert "cascade-2012, 0.85,1,1.15" in report
 
 
 def test_recognition_alone_leaves_every_person_out(people: Dataset, tmp_path: Path) -> None:
@@ -202,6 +206,15 @@ def test_an_unknown_participant_is_one_line(
     assert main(["recognise", str(people.folder), "--unseen", "nobody"]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line == "inhand recognise: no participant 'nobody'; there are: p00, p01, p02, p03, p04"
+
+
+@pytest.mark.parametrize("light", ["0.85,1", "0,1,1", "red", "1,inf,1"])
+def test_a_light_that_is_none_is_one_line(
+    people: Dataset, capsys: pytest.CaptureFixture[str], light: str
+) -> None:
+    assert main(["recognise", str(people.folder), "--light", light]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"inhand recognise: --light {light}: not three factors")
 
 
 def test_a_recogniser_is_trained_by_a_command(people: Dataset, tmp_path: Path) -> None:

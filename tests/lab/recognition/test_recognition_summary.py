@@ -1,10 +1,12 @@
 """Means of trials of recognition, by hand."""
 
+from dataclasses import replace
+
 import pytest
 from inhand_lab.recognition.recognition_protocol import RecognitionTrial
 from inhand_lab.recognition.recognition_scores import RecognitionScore
 from inhand_lab.recognition.recognition_summary import PAPER_PERSON_PIXELS, summarise_recognition
-from inhand_lab.recognition.recognition_tables import recognition_grids
+from inhand_lab.recognition.recognition_tables import light_grid, recognition_grids
 
 TRIALS = [
     RecognitionTrial(
@@ -35,3 +37,19 @@ def test_tables_show_every_method_s_boxes_and_the_cascades_other_measures() -> N
     assert errors.rows[0] == ("sweepFloor", "8.0 (50)", "12.0", "33 (96)", "175")
     assert measures.header == ("measure", "cascade")
     assert [row[0] for row in measures.rows][:2] == ["box error, pixels", "known, % of frames"]
+
+
+def test_how_often_the_right_object_is_known_stands_for_each_light() -> None:
+    other = [replace(TRIALS[2], score=RecognitionScore(10, 9.0, 0.8, 0.25))]
+    results = {"as recorded": summarise_recognition(TRIALS), "blue": summarise_recognition(other)}
+    grid = light_grid({"as recorded": summarise_recognition(TRIALS[2:3]), "blue": results["blue"]})
+    assert grid.header == ("interaction", "cascade, as recorded", "cascade, blue")
+    assert grid.rows == (("hammerNail", "100.0", "20.0"),)
+    assert grid.summary == (("mean", "100.0", "20.0"),)
+    sweep = results["as recorded"]["methods"]["cascade"]["interactions"]["sweepFloor"]
+    assert sweep["right_percent"] == pytest.approx(20.0)
+
+
+def test_who_knows_no_object_is_never_right() -> None:
+    assert RecognitionScore(10, 5.0, 0.6).right_share == 0.0
+    assert RecognitionScore(10, 5.0).right_share is None
