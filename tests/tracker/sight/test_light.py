@@ -83,7 +83,7 @@ def test_another_room_is_no_other_light() -> None:
 
 
 def test_the_more_the_light_differs_the_more_of_it_is_taken_away_without_a_jump() -> None:
-    shifts = np.linspace(0.0, 0.2, 41)
+    shifts = np.linspace(0.0, 0.2, 101)
     watches = [watch_of(room(light=(np.exp(s), 1.0, np.exp(-s)))) for s in shifts]
     blue = np.array([1.0 if watch.gains is None else watch.gains[2] for watch in watches])
     steps = np.diff(np.log(blue))
