@@ -56,9 +56,8 @@ class LightWatch:
         if self._tint is None:
             return None
         usual = max(self._parameters.same_light, self._range)
-        other = self._parameters.other_light_ratio * usual
         change = self._tint - self._usual
-        share = min((abs(change) - usual) / (other - usual), 1.0)
+        share = min((abs(change) - usual) / self._parameters.light_ramp, 1.0)
         if share <= 0.0:
             return None
         return np.exp(share * change * np.array([-1.0, 0.0, 1.0]))

@@ -67,8 +67,8 @@ class SightParameters:
     # `inhand recognise --light`.
     same_light: float = 0.09
     """Difference of half the log(red / blue) from training's up to which it is a room's own."""
-    other_light_ratio: float = 1.2
-    """Number of times that difference from which on all of it is the light's."""
+    light_ramp: float = 0.018
+    """Width beyond that difference over which more and more of it is the light's, up to all."""
     light_rate: float = 0.25
     """Share of the newest image in what is known of the light."""
     person_m: float = 0.5
