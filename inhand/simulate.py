@@ -9,6 +9,7 @@ from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.driven.dataset import DrivenSettings, generate_driven, pairs_for
 from inhand_lab.sensing.cameras import CAMERAS, KINECT
 from inhand_lab.world.interactions import INTERACTIONS
+from inhand_lab.world.parameters import CAMERA_PLACINGS, USUAL_VIEWS
 from inhand_lab.world.sheet import write_sheet
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.wording import counted
@@ -34,6 +35,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--no-images", action="store_true", help="skeletons and labels only: small and quick"
+    )
+    parser.add_argument(
+        "--views",
+        choices=list(CAMERA_PLACINGS),
+        default=USUAL_VIEWS,
+        help=f"where cameras stand: before people, or anywhere round them (default: {USUAL_VIEWS})",
     )
     parser.add_argument(
         "--camera", choices=CAMERAS, default=KINECT.name, help=f"(default: {KINECT.name})"
@@ -75,6 +82,9 @@ def run(arguments: argparse.Namespace) -> int:
         raise SettingsError(f"no interaction {unknown[0]!r}; there are: {', '.join(INTERACTIONS)}")
     if arguments.participants < 1 or arguments.frames < 1 or arguments.seed < 0:
         raise SettingsError("participants and frames are 1 or more, and the seed is 0 or more")
+    people = arguments.bodies is None and arguments.out is not None
+    if not people and arguments.views != USUAL_VIEWS:
+        raise SettingsError("--views is for a dataset of simulated people: leave it out")
     if arguments.out is None and arguments.sheet is None:
         raise SettingsError("name the new dataset's folder, or a picture with --sheet")
     if arguments.sheet is not None:
@@ -104,6 +114,7 @@ def _generate(arguments: argparse.Namespace) -> Dataset:
                 arguments.frames,
                 images=not arguments.no_images,
                 camera=CAMERAS[arguments.camera],
+                views=arguments.views,
             ),
             advance,
         )

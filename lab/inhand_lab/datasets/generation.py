@@ -17,8 +17,9 @@ from inhand_lab.world.messages import (
     pixels_message,
     shape_of,
 )
+from inhand_lab.world.parameters import USUAL_VIEWS
 from inhand_lab.world.random_streams import GENERATOR_VERSION
-from inhand_lab.world.simulation import Simulation, simulate
+from inhand_lab.world.simulation import Casting, Simulation, simulate_cast
 
 GENERATED_RATE = 30
 """Frames a second of generated datasets."""
@@ -28,7 +29,8 @@ GENERATED_RATE = 30
 class GenerationSettings:
     """Settings of a dataset in which every participant does every interaction.
 
-    ``images`` leaves nothing out but pictures if it is false.
+    ``images`` leaves nothing out but pictures if it is false. ``views`` names
+    one of CAMERA_PLACINGS.
     """
 
     interactions: Sequence[str]
@@ -37,6 +39,7 @@ class GenerationSettings:
     frames: int
     images: bool = True
     camera: Camera = KINECT
+    views: str = USUAL_VIEWS
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,16 @@ def generate(
         Take(
             f"{interaction}_p{participant:02}",
             f"p{participant:02}",
-            simulate(interaction, participant, settings.seed, settings.frames, camera),
+            simulate_cast(
+                Casting(
+                    interaction,
+                    participant,
+                    settings.seed,
+                    views=settings.views,
+                ),
+                settings.frames,
+                camera,
+            ),
         )
         for interaction in settings.interactions
         for participant in range(settings.participants)
@@ -76,6 +88,7 @@ def generate(
             "frames": settings.frames,
             "camera": settings.camera.name,
             "images": settings.images,
+            "views": settings.views,
         },
         images=settings.images,
         on_progress=on_progress,

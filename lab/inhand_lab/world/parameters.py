@@ -23,6 +23,9 @@ class CameraPlacing:
     """Distance from the person, metres; more where the person would not fit."""
     aside: float = float(np.radians(30.0))
     """Angle by which it is aside of what the person faces, at the most, radians."""
+    tries: int = 1
+    """Number of places, at most, of which the first is taken from where no furniture hides the
+    person."""
     headroom: float = 0.60
     """Height that is in the image beside the person's, metres."""
     aim: float = 0.43
@@ -72,8 +75,15 @@ class IdleHandParameters:
     """Number of places that a fidgeting hand goes to before it hangs again, at most."""
 
 
-DEFAULT_CAMERA_PLACING = CameraPlacing()
-"""Cameras before people who use an object."""
+CAMERA_PLACINGS = {
+    "before": CameraPlacing(),
+    "around": CameraPlacing(height=(0.7, 2.0), distance=(2.2, 3.8), aside=float(np.pi), tries=20),
+}
+"""Cameras that film people who use an object, by the views that a dataset has of them: from before,
+as one sets a camera up to see what is done, or from anywhere round, from a low shelf to the top of
+one, as far as a Kinect measures well (0.8 to 4 m)."""
+USUAL_VIEWS = "before"
+"""Views of a dataset that names none."""
 IDLE_CAMERA_PLACING = CameraPlacing(distance=(2.9, 3.6), aside=0.5)
 """Cameras before people who use nothing; they look at the world's middle."""
 DEFAULT_WALK = WalkParameters()

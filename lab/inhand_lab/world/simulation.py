@@ -40,6 +40,7 @@ from inhand_lab.sensing.skeleton_noise import SkeletonReading, read_skeleton
 from inhand_lab.sensing.structured_light import StillRoom
 from inhand_lab.world.enactment import Enactment
 from inhand_lab.world.interactions import INTERACTIONS
+from inhand_lab.world.parameters import USUAL_VIEWS
 from inhand_lab.world.random_streams import random_stream
 from inhand_lab.world.room import build_room
 from inhand_lab.world.viewpoint import place_camera
@@ -189,6 +190,24 @@ class Simulation:
         )
 
 
+@dataclass(frozen=True)
+class Casting:
+    """Who does what in which world, for which time, seen from where.
+
+    ``views`` names one of CAMERA_PLACINGS.
+    """
+
+    interaction: str
+    participant: int
+    seed: int
+    performance: int = 0
+    views: str = USUAL_VIEWS
+
+    def random(self, purpose: str, *more: int) -> np.random.Generator:
+        """A stream of its own for a purpose."""
+        return random_stream(self.seed, self.participant, self.interaction, purpose, *more)
+
+
 def simulate(
     interaction: str,
     participant: int,
@@ -203,27 +222,31 @@ def simulate(
     before the same camera in every performance of an interaction. A performance lasts 12 s or as
     long as the frames, whichever is longer; fewer frames are the beginning of more.
     """
+    return simulate_cast(Casting(interaction, participant, seed, performance), frames, camera)
+
+
+def simulate_cast(cast: Casting, frames: int, camera: Camera) -> Simulation:
+    """Simulate as ``simulate`` does; raises ValueError for an unknown interaction."""
+    interaction, performance = cast.interaction, cast.performance
     if interaction not in INTERACTIONS:
         raise ValueError(f"no interaction {interaction!r}; there are {', '.join(INTERACTIONS)}")
-
-    def stream(purpose: str, *more: int) -> np.random.Generator:
-        return random_stream(seed, participant, interaction, purpose, *more)
-
-    person = sample_person(seed, participant)
-    enacted = _enact(interaction, person, stream("motion", performance), frames, camera.frame_rate)
-    facing, camera_from_world = place_camera(person, camera.intrinsics, stream("camera"))
+    person = sample_person(cast.seed, cast.participant)
+    motion = cast.random("motion", performance)
+    enacted = _enact(interaction, person, motion, frames, camera.frame_rate)
+    facing, camera_from_world = place_camera(
+        person, camera.intrinsics, cast.random("camera"), enacted.furniture, cast.views
+    )
     body_in_camera = enacted.body.seen_from(camera_from_world)
+    skeleton = cast.random("skeleton", performance)
     return Simulation(
         interaction=interaction,
-        participant=participant,
-        seed=seed,
+        participant=cast.participant,
+        seed=cast.seed,
         performance=performance,
         person=person,
         object_model=INTERACTIONS[interaction].object_model(),
         camera=camera,
-        reading=read_skeleton(
-            person, body_in_camera.joints, camera.frame_rate, stream("skeleton", performance)
-        ),
+        reading=read_skeleton(person, body_in_camera.joints, camera.frame_rate, skeleton),
         body_in_camera=body_in_camera,
         camera_from_object=camera_from_world @ enacted.world_from_object,
         contact=enacted.contact,

@@ -7,22 +7,65 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
 
 from inhand_lab.geometry.transforms import Transform, normalised, rotation_about
+from inhand_lab.motions.furniture import Cuboid, Furniture
 from inhand_lab.people.person import SimulatedPerson
-from inhand_lab.world.parameters import DEFAULT_CAMERA_PLACING
+from inhand_lab.world.parameters import CAMERA_PLACINGS, USUAL_VIEWS, CameraPlacing
+
+SEEN_AT = (0.45, 0.6, 0.75, 0.9)
+"""Heights of what a camera must see of a person, as shares of stature."""
 
 
 def place_camera(
-    person: SimulatedPerson, intrinsics: Intrinsics, random: np.random.Generator
+    person: SimulatedPerson,
+    intrinsics: Intrinsics,
+    random: np.random.Generator,
+    furniture: Furniture = (),
+    views: str = USUAL_VIEWS,
 ) -> tuple[float, Transform]:
-    """The direction to the camera as a turn to the person's left, and camera_from_world."""
-    placing = DEFAULT_CAMERA_PLACING
+    """The direction to the camera as a turn to the person's left, and camera_from_world.
+
+    ``furniture`` is what the person uses; it stands between camera and person only where it does so
+    from everywhere that is tried. ``views`` names one of CAMERA_PLACINGS.
+    """
+    placing = CAMERA_PLACINGS[views]
+    for _ in range(placing.tries):
+        facing, position = _position(person, intrinsics, random, placing)
+        if not hidden(person, position, furniture):
+            break
+    target = np.array([0.0, 0.0, placing.aim * person.height + random.normal(0.0, 0.02)])
+    return facing, looking(position, target)
+
+
+def _position(
+    person: SimulatedPerson,
+    intrinsics: Intrinsics,
+    random: np.random.Generator,
+    placing: CameraPlacing,
+) -> tuple[float, Array]:
     facing = float(random.uniform(-placing.aside, placing.aside))
     fitting = (person.height + placing.headroom) * intrinsics.fy / intrinsics.height
     distance = max(random.uniform(*placing.distance), fitting)
     ahead = rotation_about("z", facing)[:, 1]
-    position = ahead * distance + np.array([0.0, 0.0, random.uniform(*placing.height)])
-    target = np.array([0.0, 0.0, placing.aim * person.height + random.normal(0.0, 0.02)])
-    return facing, looking(position, target)
+    return facing, ahead * distance + np.array([0.0, 0.0, random.uniform(*placing.height)])
+
+
+def hidden(person: SimulatedPerson, position: Array, furniture: Furniture) -> bool:
+    """Whether a piece of furniture hides half of the person's height, or more, from a position (3,)
+    in the person's world."""
+    points = np.outer(SEEN_AT, [0.0, 0.0, person.height])
+    return any(
+        2 * sum(_between(box, position, p) for p in points) >= len(points) for box in furniture
+    )
+
+
+def _between(box: Cuboid, one: Array, other: Array) -> bool:
+    """Whether the line from one point (3,) to the other passes through a cuboid."""
+    way = other - one
+    way = np.where(np.abs(way) < 1e-9, 1e-9, way)
+    half = 0.5 * np.array(box.size)
+    bounds = (np.array([-half, half]) + box.centre - one) / way
+    enters, leaves = bounds.min(axis=0).max(), bounds.max(axis=0).min()
+    return bool(max(enters, 0.0) < min(leaves, 1.0))
 
 
 def looking(position: Array, target: Array) -> Transform:

@@ -13,6 +13,7 @@ from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.world.sheet import HEIGHT, NAME_WIDTH, PICTURES, WIDTH, write_sheet
 from inhand_lab.world.simulation import simulate
 from inhand_runtime.errors import InhandError
+from inhand_schemas.joints import Joint
 
 from inhand.__main__ import main
 
@@ -32,6 +33,24 @@ def test_the_same_seed_writes_the_same_bytes(tmp_path: Path) -> None:
     for path in files:
         other = second.folder / path.relative_to(first.folder)
         assert path.read_bytes() == other.read_bytes(), path.name
+
+
+def test_cameras_of_a_dataset_stand_where_its_views_say(tmp_path: Path) -> None:
+    settings = GenerationSettings(["drinkFromMug"], 6, 5, FRAMES, images=False, views="around")
+    around = generate(tmp_path / "around", settings, lambda: None)
+    folder = tmp_path / "command"
+    options = ("--interactions", "drinkFromMug", "--participants", "6", "--seed", "5")
+    more = ("--frames", str(FRAMES), "--no-images", "--views", "around")
+    assert main(["simulate", str(folder), *options, *more]) == 0
+    for file in ("dataset.toml", around.entries[0].file):
+        assert (around.folder / file).read_bytes() == (folder / file).read_bytes()
+    sequences = [labelled_sequence(around, entry) for entry in around.entries]
+    right, left = (
+        np.array([one.joints[0, joint, 0] for one in sequences])
+        for joint in (Joint.SHOULDER_RIGHT, Joint.SHOULDER_LEFT)
+    )
+    assert set(np.sign(left - right)) == {-1.0, 1.0}
+    assert main(["simulate", "--sheet", str(tmp_path / "x.png"), "--views", "around"]) == 2
 
 
 def test_every_label_tells_the_whole_truth(tmp_path: Path) -> None:
