@@ -67,6 +67,16 @@ class Site:
         require_name("verb", verb)
         return f"{self._root}/@rpc/{service}/{verb}"
 
+    def access_key(self, service: str, instance: str) -> str:
+        """The key on which a hub answers an instance that may be what it is."""
+        require_name("service", service)
+        require_name("instance", instance)
+        return f"{self._root}/@access/{service}/{instance}"
+
+    def access_pattern(self) -> str:
+        """The keys on which a hub answers all of this rig, as a Zenoh key expression."""
+        return f"{self._root}/@access/*/*"
+
     def pattern_of_version(self, version: int) -> str:
         """All that another version of Inhand publishes for this rig, as a Zenoh key expression."""
         return f"{self.realm}/@v{version}/{self.rig}/*/*"
@@ -74,6 +84,11 @@ class Site:
     @property
     def _root(self) -> str:
         return f"{self.realm}/@v{VERSION}/{self.rig}"
+
+
+def beside(key: str) -> str:
+    """All that Zenoh itself exchanges beside a key, or pattern, of a kept stream."""
+    return f"{key}/@adv/**"
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ A request goes to all instances of the service; each that it concerns replies fo
 """
 
 from dataclasses import dataclass
-from typing import Annotated, Generic, TypeVar
+from typing import Annotated, Any, Generic, TypeVar
 
 import msgspec
 from msgspec import Meta, Struct
@@ -141,3 +141,5 @@ SHUTTER = Procedure("capture", "shutter", ShutterRequest, ShutterReply)
 CONTROL = Procedure("capture", "control", ControlRequest, ControlReply)
 HYPOTHESES = Procedure("tracker", "hypotheses", HypothesesRequest, HypothesesReply)
 RELOAD = Procedure("tracker", "reload", ReloadRequest, ReloadReply)
+
+PROCEDURES: tuple[Procedure[Any, Any], ...] = (SHUTTER, CONTROL, HYPOTHESES, RELOAD)

@@ -7,7 +7,14 @@ from typing import Any, Literal
 
 import pytest
 from inhand_runtime.errors import SettingsError
-from inhand_runtime.settings import FilePath, Section, Settings, load_rig_file, load_settings
+from inhand_runtime.settings import (
+    Credentials,
+    FilePath,
+    Section,
+    Settings,
+    load_rig_file,
+    load_settings,
+)
 from inhand_schemas.keys import Site
 
 
@@ -278,3 +285,36 @@ def test_an_instance_that_the_file_does_not_name_is_refused(load: Load) -> None:
 def test_a_missing_file_is_named() -> None:
     with pytest.raises(SettingsError, match=r"cannot read /nowhere/rig\.toml: No such file"):
         load_rig_file(Path("/nowhere/rig.toml"))
+
+
+FILES = 'certificate = "c.pem"\nkey = "k.pem"\nauthority = "a.pem"\n'
+
+
+def test_a_client_s_files_stand_beside_the_settings(load: Load, tmp_path: Path) -> None:
+    zenoh = f'[zenoh]\nmode = "client"\nconnect = ["tls/hub.local:7448"]\n{FILES}'
+    given = load(f"{zenoh}[capture.front]\nsource = 'replay'").zenoh.credentials
+    assert given is not None
+    assert given == Credentials(Path("c.pem"), Path("k.pem"), Path("a.pem"))
+    (tmp_path / "below").mkdir()
+    (tmp_path / "below/rig.toml").write_text(zenoh)
+    beside = load_rig_file(tmp_path / "below/rig.toml").zenoh.credentials
+    assert beside is not None
+    assert beside.certificate == tmp_path / "below/c.pem"
+
+
+@pytest.mark.parametrize(
+    ("zenoh", "words"),
+    [
+        (
+            'mode = "client"\nconnect = ["tls/hub:7448"]\ncertificate = "c.pem"\n',
+            "belong together: key is missing",
+        ),
+        ('mode = "client"\nconnect = ["tls/hub:7448"]\n', "tls/hub:7448 needs certificate"),
+        (f'mode = "client"\nconnect = ["tcp/hub:7447"]\n{FILES}', "begin with tls/"),
+        (FILES, 'are for mode = "client"'),
+    ],
+)
+def test_a_client_s_files_that_do_nothing_are_refused(load: Load, zenoh: str, words: str) -> None:
+    with pytest.raises(SettingsError, match=words) as raised:
+        load(f"[zenoh]\n{zenoh}[capture.front]\nsource = 'replay'")
+    assert "rig.toml:1: setting zenoh: " in str(raised.value)

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from inhand_schemas.errors import KeyFormatError, UnknownVersionError
-from inhand_schemas.keys import ParsedKey, Site, parse_claim, parse_key, parse_live_key
+from inhand_schemas.keys import ParsedKey, Site, beside, parse_claim, parse_key, parse_live_key
 from inhand_schemas.topics import POSE, TOPICS, topic_of
 from message_strategies import names
 
@@ -84,6 +84,9 @@ def test_patterns_cover_one_rig() -> None:
     assert site.pattern() == "home/@v1/kitchen/*/*"
     assert site.live_key("tracker", "a") == "home/@v1/kitchen/@live/tracker/a"
     assert site.live_pattern() == "home/@v1/kitchen/@live/*/*"
+    assert site.access_key("tracker", "a") == "home/@v1/kitchen/@access/tracker/a"
+    assert site.access_pattern() == "home/@v1/kitchen/@access/*/*"
+    assert beside(POSE.pattern(site)) == "home/@v1/kitchen/pose/*/@adv/**"
 
 
 def test_a_liveliness_key_is_no_stream() -> None:

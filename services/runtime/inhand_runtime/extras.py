@@ -1,6 +1,7 @@
 """The optional dependencies of the distribution, and the line about one that is not installed."""
 
 EXTRAS = {
+    "hub": ("cryptography",),
     "lab": ("faiss", "fast_simplification", "matplotlib", "scipy", "sklearn", "trimesh"),
     "pose": ("ai_edge_litert",),
     "oak": ("depthai",),

@@ -10,11 +10,18 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Generic, Literal, TypeVar
+from typing import Annotated, Any, Generic, Literal, Self, TypeVar
 
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import Site, require_name
-from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError, ValidationInfo
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
 
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings_environment import texts_read, with_environment
@@ -54,17 +61,57 @@ FilePath = Annotated[Path, AfterValidator(_beside_the_file)]
 """A path of a settings file: a relative one follows the file's folder."""
 
 
+@dataclass(frozen=True)
+class Credentials:
+    """The files (PEM) by which a client and a hub know each other."""
+
+    certificate: Path
+    key: Path
+    authority: Path
+
+
 class ZenohSettings(Section):
     """How to reach the other processes.
 
     A ``peer`` meets the others at ``meeting``, an address of this machine that the first one
-    takes; ``listen`` and ``connect`` add addresses. A ``client`` connects to hubs only.
+    takes; ``listen`` and ``connect`` add addresses. A ``client`` connects to hubs only, at ``tls``
+    addresses with the files that ``inhand hub add`` made: ``certificate``, ``key``, ``authority``.
     """
 
     mode: Literal["peer", "client"] = "peer"
     meeting: Address = MEETING
     listen: tuple[Address, ...] = ()
     connect: tuple[Address, ...] = ()
+    certificate: FilePath | None = None
+    key: FilePath | None = None
+    authority: FilePath | None = None
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        files = {"certificate": self.certificate, "key": self.key, "authority": self.authority}
+        missing = [name for name, path in files.items() if path is None]
+        secured = [address for address in self.connect if address.startswith("tls/")]
+        if missing and len(missing) < len(files):
+            raise ValueError(
+                f"certificate, key and authority belong together: {missing[0]} is missing"
+            )
+        if missing and secured:
+            raise ValueError(
+                f"{secured[0]} needs certificate, key and authority, which `inhand hub add` makes"
+            )
+        if not missing and (self.mode != "client" or len(secured) < len(self.connect)):
+            raise ValueError(
+                'certificate, key and authority are for mode = "client" and addresses in connect '
+                "that begin with tls/: nothing else would be encrypted"
+            )
+        return self
+
+    @property
+    def credentials(self) -> Credentials | None:
+        """The files of a client, if it has any."""
+        if self.certificate is None or self.key is None or self.authority is None:
+            return None
+        return Credentials(self.certificate, self.key, self.authority)
 
 
 class LogSettings(Section):
@@ -131,7 +178,8 @@ def load_rig_file(path: Path | None) -> RigFile:
     """Read a file, or take the defaults; raises SettingsError naming file, line and mend."""
     values = with_environment({} if path is None else _read(path), RigFile)
     try:
-        rig_file = RigFile.model_validate(values)
+        context = None if path is None else {"folder": path.parent}
+        rig_file = RigFile.model_validate(values, context=context)
         Site(rig_file.realm, rig_file.rig)
     except ValidationError as error:
         raise SettingsError(explain(error, path, (), RigFile)) from None

@@ -1,0 +1,220 @@
+"""What each member of a site may do on the wire: rules by role, and nothing else is allowed.
+
+A rule holds for messages that the hub takes from a member (``ingress``) or passes on to it
+(``egress``), on whole key expressions: a subscription is heard of only where the rule includes all
+of it, so rules for reading name the pattern of a stream, and rules for publishing name keys.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+from inhand_schemas.fields import Name, Text
+from inhand_schemas.keys import Site, beside
+from inhand_schemas.procedures import PROCEDURES, Procedure
+from inhand_schemas.topics import (
+    HEALTH,
+    INFO,
+    POSE,
+    PREVIEW,
+    RGBD,
+    SKELETONS,
+    TOPICS,
+    AnyTopic,
+)
+from msgspec import Meta, Struct
+
+CommonName = Annotated[str, Meta(pattern=r"^[a-z0-9_.]+(?![\s\S])", max_length=64)]
+RoleName = Literal["camera", "tracker", "recorder", "studio", "viewer"]
+Flow = Literal["ingress", "egress"]
+Operation = Literal[
+    "put",
+    "declare_subscriber",
+    "query",
+    "reply",
+    "declare_queryable",
+    "liveliness_token",
+    "liveliness_query",
+    "declare_liveliness_subscriber",
+]
+
+
+@dataclass(frozen=True)
+class Role:
+    """What a kind of member does: as which service it runs, if any, what it publishes under names
+    of its own, what it reads of its whole rig beside healths, and which procedures it answers and
+    asks."""
+
+    service: str | None
+    publishes: tuple[AnyTopic, ...] = ()
+    reads: tuple[AnyTopic, ...] = ()
+    answers: tuple[Procedure[Any, Any], ...] = ()
+    asks: tuple[Procedure[Any, Any], ...] = ()
+
+
+def _of(service: str) -> tuple[Procedure[Any, Any], ...]:
+    return tuple(procedure for procedure in PROCEDURES if procedure.service == service)
+
+
+EVERYTHING_ELSE = tuple(topic for topic in TOPICS.values() if topic is not HEALTH)
+ROLES: dict[RoleName, Role] = {
+    "camera": Role("capture", (INFO, RGBD, SKELETONS, PREVIEW), answers=_of("capture")),
+    "tracker": Role("tracker", (POSE,), (INFO, RGBD, SKELETONS), answers=_of("tracker")),
+    "recorder": Role("recorder", reads=EVERYTHING_ELSE),
+    "studio": Role("studio", reads=EVERYTHING_ELSE, asks=PROCEDURES),
+    "viewer": Role(None, reads=(PREVIEW, POSE, SKELETONS, INFO)),
+}
+
+
+class Member(Struct, frozen=True, kw_only=True):
+    """Who may take part: its name in its rig, its role, and its certificate's common name.
+
+    A camera publishes under its own name, a tracker the poses of its ``objects``.
+    """
+
+    name: Name
+    rig: Name
+    role: RoleName
+    common_name: CommonName
+    objects: tuple[Name, ...] = ()
+
+    @property
+    def place(self) -> Text:
+        """The member as people write it, ``RIG/NAME``."""
+        return f"{self.rig}/{self.name}"
+
+    @property
+    def published_names(self) -> tuple[str, ...]:
+        """The names under which it publishes its role's topics."""
+        return self.objects if self.role == "tracker" else (self.name,)
+
+
+@dataclass(frozen=True)
+class Rule:
+    """These operations are allowed in one direction, on these key expressions."""
+
+    flow: Flow
+    operations: tuple[Operation, ...]
+    keys: tuple[str, ...]
+
+
+def rules_of(member: Member, realm: str) -> tuple[Rule, ...]:
+    """Return all that a member may do."""
+    site, role = Site(realm, member.rig), ROLES[member.role]
+    rules = [*_watching_rules(site), *_reading_rules(HEALTH, site)]
+    if role.service is not None:
+        rules += _instance_rules(site, role.service, member.name)
+    for topic in role.publishes:
+        rules += _publishing_rules(topic, site, member.published_names)
+    for topic in role.reads:
+        rules += _reading_rules(topic, site)
+    rules += _procedure_rules(site, role)
+    return tuple(rules)
+
+
+def access_control(realm: str, members: Iterable[Member]) -> dict[str, Any]:
+    """Return the hub's access rules as Zenoh's settings have them: who is no member may nothing."""
+    rules: list[dict[str, Any]] = []
+    subjects: list[dict[str, Any]] = []
+    policies: list[dict[str, Any]] = []
+    for member in members:
+        ids = []
+        for number, rule in enumerate(rules_of(member, realm)):
+            ids.append(f"{member.common_name} {number}")
+            rules.append(
+                {
+                    "id": ids[-1],
+                    "permission": "allow",
+                    "flows": [rule.flow],
+                    "messages": list(rule.operations),
+                    "key_exprs": list(rule.keys),
+                }
+            )
+        subjects.append({"id": member.common_name, "cert_common_names": [member.common_name]})
+        policies.append({"rules": ids, "subjects": [member.common_name]})
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": rules,
+        "subjects": subjects,
+        "policies": policies,
+    }
+
+
+def _instance_rules(site: Site, service: str, name: str) -> list[Rule]:
+    """What a daemon does under its own name: ask for access, claim the name, live, and say how it
+    is."""
+    live, claims = site.live_key(service, name), (site.claim_pattern(service, name),)
+    access = (site.access_key(service, name),)
+    return [
+        Rule("ingress", ("query",), access),
+        Rule("egress", ("declare_queryable", "reply"), access),
+        Rule("ingress", ("liveliness_token",), (live, *claims)),
+        Rule("ingress", ("liveliness_query", "declare_liveliness_subscriber"), claims),
+        Rule("egress", ("liveliness_token",), claims),
+        *_publishing_rules(HEALTH, site, (name,)),
+    ]
+
+
+def _publishing_rules(topic: AnyTopic, site: Site, names: Sequence[str]) -> list[Rule]:
+    keys = tuple(topic.key(site, name) for name in names)
+    if not keys:  # what a rule without keys means is not said anywhere
+        return []
+    rules = [
+        Rule("ingress", ("put",), keys),
+        Rule("egress", ("declare_subscriber",), (topic.pattern(site),)),
+    ]
+    if not topic.delivery.kept:
+        return rules
+    own = tuple(beside(key) for key in keys)
+    return [
+        *rules,
+        Rule("ingress", ("reply",), keys),
+        Rule("ingress", ("put", "declare_queryable", "liveliness_token"), own),
+        Rule("egress", ("query", "declare_subscriber"), (beside(topic.pattern(site)),)),
+    ]
+
+
+def _reading_rules(topic: AnyTopic, site: Site) -> list[Rule]:
+    pattern = (topic.pattern(site),)
+    rules = [Rule("ingress", ("declare_subscriber",), pattern), Rule("egress", ("put",), pattern)]
+    if not topic.delivery.kept:
+        return rules
+    around = (beside(topic.pattern(site)),)
+    looks: tuple[Operation, ...] = (
+        "query",
+        "liveliness_query",
+        "declare_liveliness_subscriber",
+        "declare_subscriber",
+    )
+    return [
+        *rules,
+        Rule("egress", ("reply",), pattern),
+        Rule("ingress", looks, around),
+        Rule("egress", ("put", "declare_queryable", "liveliness_token"), around),
+    ]
+
+
+def _procedure_rules(site: Site, role: Role) -> list[Rule]:
+    rules = []
+    for procedure in role.answers:
+        key = (procedure.key(site),)
+        rules += [
+            Rule("ingress", ("declare_queryable", "reply"), key),
+            Rule("egress", ("query",), key),
+        ]
+    for procedure in role.asks:
+        key = (procedure.key(site),)
+        rules += [
+            Rule("ingress", ("query",), key),
+            Rule("egress", ("declare_queryable", "reply"), key),
+        ]
+    return rules
+
+
+def _watching_rules(site: Site) -> list[Rule]:
+    """What all members may: see who lives. With the healths it is what ``inhand up`` and ``inhand
+    status`` go by, on every host."""
+    lives = (site.live_pattern(),)
+    looks: tuple[Operation, ...] = ("liveliness_query", "declare_liveliness_subscriber")
+    return [Rule("ingress", looks, lives), Rule("egress", ("liveliness_token",), lives)]

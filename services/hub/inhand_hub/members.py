@@ -1,0 +1,110 @@
+"""Who belongs to a site: the list that ``inhand hub add`` writes and the hub reads."""
+
+import time
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+from inhand_runtime.errors import SettingsError
+from inhand_schemas.fields import Name, Text
+from msgspec import Meta, Struct
+
+from inhand_hub.access import Member
+
+MEMBERS_FILE = "members.json"
+AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE = "authority.pem", "certificate.pem", "key.pem"
+"""What the hub, and each member, has beside: whom it trusts, and what it shows."""
+DAY_S = 86_400.0
+
+
+class SiteMembers(Struct, frozen=True, kw_only=True):
+    """A site: its realm, its rigs, under which hosts its hub is reached, and its members.
+
+    ``ends_at`` is when each certificate ends, by common name, in seconds since the epoch.
+    """
+
+    realm: Name
+    rigs: Annotated[tuple[Name, ...], Meta(min_length=1)]
+    hosts: tuple[Text, ...]
+    members: tuple[Member, ...] = ()
+    ends_at: dict[Text, float] = {}
+
+    def find(self, text: str) -> Member:
+        """Return the member that ``RIG/NAME`` means, or ``NAME`` where only one rig has it."""
+        found = [one for one in self.members if text in (one.name, one.place)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            places = " or ".join(one.place for one in found)
+            raise SettingsError(f"several members are named {text!r}: say {places}")
+        there = ", ".join(one.place for one in self.members) or "none yet"
+        raise SettingsError(f"there is no member {text!r} (there are: {there})")
+
+    def ending(self, within_days: float) -> list[tuple[Member, float]]:
+        """Return the members whose certificate ends within some days, with the days that remain."""
+        now = time.time()
+        days = [(one, (self.ends_at[one.common_name] - now) / DAY_S) for one in self.members]
+        return [(member, left) for member, left in days if left < within_days]
+
+
+def with_member(site: SiteMembers, member: Member, ends_at: float) -> SiteMembers:
+    """Return the site with a member added, or in the place of the one with its common name."""
+    others = tuple(one for one in site.members if one.common_name != member.common_name)
+    return msgspec.structs.replace(
+        site,
+        members=(*others, member),
+        ends_at={**site.ends_at, member.common_name: ends_at},
+    )
+
+
+def without_member(site: SiteMembers, member: Member) -> SiteMembers:
+    """Return the site without a member."""
+    return msgspec.structs.replace(
+        site,
+        members=tuple(one for one in site.members if one != member),
+        ends_at={name: at for name, at in site.ends_at.items() if name != member.common_name},
+    )
+
+
+def encode_members(site: SiteMembers) -> bytes:
+    """Return the list as its file holds it: JSON, a line a value."""
+    return msgspec.json.format(msgspec.json.encode(site)) + b"\n"
+
+
+def load_members(path: Path) -> SiteMembers:
+    """Read the list; raises SettingsError for one that is none, or contradicts itself."""
+    try:
+        site = msgspec.json.decode(path.read_bytes(), type=SiteMembers)
+    except OSError as error:
+        raise SettingsError(
+            f"cannot read {path}: {error.strerror}: make a site by `inhand hub init`, or copy its "
+            "hub folder"
+        ) from None
+    except (msgspec.MsgspecError, UnicodeDecodeError) as error:
+        raise SettingsError(f"{path} is no list of members: {error}; copy it again") from None
+    if problem := _contradiction(site):
+        raise SettingsError(f"{path}: {problem}; copy it again")
+    return site
+
+
+def _contradiction(site: SiteMembers) -> str | None:
+    common_names = [one.common_name for one in site.members]
+    if twice := _repeated(common_names):
+        return f"{twice!r} stands there twice"
+    if twice := _repeated(one.place for one in site.members):
+        return f"{twice!r} stands there twice"
+    if set(site.ends_at) != set(common_names):
+        return "members and ends of their certificates do not fit"
+    if strangers := {one.rig for one in site.members} - set(site.rigs):
+        return f"{min(strangers)!r} is no rig of the site"
+    return None
+
+
+def _repeated(names: Iterable[str]) -> str | None:
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            return name
+        seen.add(name)
+    return None

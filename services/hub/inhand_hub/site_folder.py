@@ -1,0 +1,247 @@
+"""The folder of a site: its authority, and what its hub and each member are given.
+
+``authority`` stays with who administers the site, ``hub`` goes to the hub, ``members/RIG.NAME`` to
+that member. What counts is the hub's list of members: it is written last where somebody joins, and
+first where somebody leaves, each time whole, so that a crash leaves the site as it was before, or
+as it is after.
+"""
+
+import contextlib
+import ipaddress
+import os
+import re
+import secrets
+import shutil
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.locked_folder import locked_folder
+
+from inhand_hub.access import Member, RoleName
+from inhand_hub.certificates import (
+    Issued,
+    hub_certificate,
+    key_pem,
+    load_issued,
+    load_key,
+    member_certificate,
+    new_authority,
+    new_key,
+)
+from inhand_hub.members import (
+    AUTHORITY_FILE,
+    CERTIFICATE_FILE,
+    KEY_FILE,
+    MEMBERS_FILE,
+    SiteMembers,
+    encode_members,
+    load_members,
+    with_member,
+    without_member,
+)
+from inhand_hub.parameters import DEFAULT_HUB
+
+HUB = "hub"
+"""The hub's folder, and the name that is therefore no member's."""
+LONGEST_COMMON_NAME = 64
+"""Characters that X.509 allows."""
+PRIVATE_FILE, PRIVATE_FOLDER = 0o600, 0o700
+
+_HOST_NAME = re.compile(r"(?!-)[a-z0-9-]{1,63}(?<!-)(\.(?!-)[a-z0-9-]{1,63}(?<!-))*", re.IGNORECASE)
+
+
+class SiteFolder:
+    """The folder of a site, as ``create_site`` makes it.
+
+    What is done to it raises SettingsError, or InhandError where it cannot be written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.hub = path / HUB
+
+    def load(self) -> SiteMembers:
+        """Read who belongs to the site."""
+        return load_members(self.hub / MEMBERS_FILE)
+
+    def folder_of(self, member: Member) -> Path:
+        """Return the folder of what a member is given."""
+        return self.path / "members" / f"{member.rig}.{member.name}"
+
+    def add(self, role: RoleName, name: str, rig: str, objects: Sequence[str]) -> Member:
+        """Let somebody join; raises SettingsError for a name or an object that another has."""
+        with self._locked():
+            site = self.load()
+            member = _new_member(site, role, name, rig, objects)
+            key = new_key()
+            issued = member_certificate(self._authority(), member.common_name, key)
+            folder = self.folder_of(member)
+            with _new_folder(folder, replace=True) as unfinished:
+                _write_given(unfinished, issued, self._authority_pem())
+            self._write(with_member(site, member, issued.ends_at))
+        return member
+
+    def renew(self, text: str) -> Path:
+        """Give a member, or the hub, a new certificate for its key; return its file."""
+        with self._locked():
+            site = self.load()
+            if text == HUB:
+                key = load_key((self.hub / KEY_FILE).read_bytes())
+                issued = hub_certificate(self._authority(), _hub_name(site.realm), key, site.hosts)
+                _write_file(self.hub / CERTIFICATE_FILE, issued.certificate)
+                return self.hub / CERTIFICATE_FILE
+            member = site.find(text)
+            folder = self.folder_of(member)
+            key = load_key((folder / KEY_FILE).read_bytes())
+            issued = member_certificate(self._authority(), member.common_name, key)
+            _write_file(folder / CERTIFICATE_FILE, issued.certificate)
+            self._write(with_member(site, member, issued.ends_at))
+            return folder / CERTIFICATE_FILE
+
+    def revoke(self, text: str) -> Member:
+        """Let a member do nothing any more; what it was given is removed here."""
+        with self._locked():
+            site = self.load()
+            member = site.find(text)
+            self._write(without_member(site, member))
+            shutil.rmtree(self.folder_of(member), ignore_errors=True)
+        return member
+
+    def _write(self, site: SiteMembers) -> None:
+        _write_file(self.hub / MEMBERS_FILE, encode_members(site))
+
+    def _authority_pem(self) -> bytes:
+        return (self.path / "authority" / CERTIFICATE_FILE).read_bytes()
+
+    def _authority(self) -> Issued:
+        folder = self.path / "authority"
+        try:
+            return load_issued(self._authority_pem(), (folder / KEY_FILE).read_bytes())
+        except ValueError as error:
+            raise SettingsError(f"{folder}: {error}: get it back from a backup") from None
+
+    @contextlib.contextmanager
+    def _locked(self) -> Iterator[None]:
+        try:
+            with locked_folder(self.path):
+                yield
+        except ValueError as error:
+            raise SettingsError(f"{self.path}: {error}: get it back from a backup") from None
+        except OSError as error:
+            raise _failure(error, self.path) from None
+
+
+def create_site(path: Path, realm: str, rigs: Sequence[str], hosts: Sequence[str]) -> SiteFolder:
+    """Make a site without members; raises SettingsError where there is something already."""
+    for host in hosts:
+        _require_host(host)
+    site = SiteMembers(realm=realm, rigs=tuple(dict.fromkeys(rigs)), hosts=tuple(hosts))
+    authority = new_authority(f"Inhand authority of {realm}"[:LONGEST_COMMON_NAME])
+    hub = hub_certificate(authority, _hub_name(realm), new_key(), hosts)
+    try:
+        path.absolute().parent.mkdir(parents=True, exist_ok=True)
+        with locked_folder(path.absolute().parent), _new_folder(path, replace=False) as unfinished:
+            for folder in ("authority", HUB, "members"):
+                (unfinished / folder).mkdir(mode=PRIVATE_FOLDER)
+            _write_file(unfinished / "authority" / KEY_FILE, key_pem(authority.key))
+            _write_file(unfinished / "authority" / CERTIFICATE_FILE, authority.certificate)
+            _write_given(unfinished / HUB, hub, authority.certificate)
+            _write_file(unfinished / HUB / MEMBERS_FILE, encode_members(site))
+    except OSError as error:
+        raise _failure(error, path) from None
+    return SiteFolder(path)
+
+
+def _new_member(
+    site: SiteMembers, role: RoleName, name: str, rig: str, objects: Sequence[str]
+) -> Member:
+    if rig not in site.rigs:
+        raise SettingsError(f"the site has no rig {rig!r} (there are: {', '.join(site.rigs)})")
+    if name == HUB:
+        raise SettingsError("the name hub is the hub's own: choose another one")
+    common_name = f"{rig}.{name}.{secrets.token_hex(DEFAULT_HUB.suffix_bytes)}"
+    if len(common_name) > LONGEST_COMMON_NAME:
+        raise SettingsError(f"{rig}/{name} is too long for a certificate: choose a shorter name")
+    member = Member(name=name, rig=rig, role=role, common_name=common_name, objects=tuple(objects))
+    for other in site.members:
+        if other.place == member.place:
+            raise SettingsError(
+                f"{member.place} is a {other.role} already: choose another name, or revoke it first"
+            )
+        if other.rig == rig and (shared := set(other.objects) & set(objects)):
+            raise SettingsError(
+                f"{other.place} publishes the pose of {min(shared)} already: each object has one "
+                "tracker in a rig"
+            )
+    return member
+
+
+def _hub_name(realm: str) -> str:
+    return f"Inhand hub of {realm}"[:LONGEST_COMMON_NAME]
+
+
+def _require_host(host: str) -> None:
+    with contextlib.suppress(ValueError):
+        ipaddress.ip_address(host)
+        return
+    if not _HOST_NAME.fullmatch(host) or len(host) > 253:
+        raise SettingsError(f"{host!r} is no host: write a name such as hub.local, or an address")
+
+
+def _write_given(folder: Path, issued: Issued, authority: bytes) -> None:
+    """Write what the hub or a member needs: its certificate and key, and whom it trusts."""
+    _write_file(folder / KEY_FILE, key_pem(issued.key))
+    _write_file(folder / CERTIFICATE_FILE, issued.certificate)
+    _write_file(folder / AUTHORITY_FILE, authority)
+
+
+@contextlib.contextmanager
+def _new_folder(path: Path, *, replace: bool) -> Iterator[Path]:
+    """Fill a folder, which gets its name when it is whole; what is left of an earlier try goes.
+
+    ``replace`` takes the place of a folder that counts no more; else raises SettingsError for it.
+    """
+    if not replace and (path.is_symlink() or path.exists()):
+        raise SettingsError(f"{path} is there already, and stays: choose another folder")
+    unfinished = path.absolute().with_name(f".{path.name}.unfinished")
+    if unfinished.exists():
+        shutil.rmtree(unfinished)
+    unfinished.mkdir(mode=PRIVATE_FOLDER)
+    try:
+        yield unfinished
+        if replace and path.exists():
+            shutil.rmtree(path)
+        unfinished.rename(path)
+        _sync_folder(path.absolute().parent)
+    finally:
+        shutil.rmtree(unfinished, ignore_errors=True)
+
+
+def _write_file(path: Path, data: bytes) -> None:
+    """Write a file that only its owner reads, whole or not at all."""
+    unfinished = path.with_name(f".{path.name}.unfinished")
+    unfinished.unlink(missing_ok=True)
+    descriptor = os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL, PRIVATE_FILE)
+    with os.fdopen(descriptor, "wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+    unfinished.replace(path)
+    _sync_folder(path.parent)
+
+
+def _sync_folder(folder: Path) -> None:
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _failure(error: OSError, path: Path) -> InhandError:
+    if isinstance(error, FileNotFoundError):
+        return SettingsError(
+            f"{error.filename or path} is not there: name the folder that `inhand hub init` made"
+        )
+    return InhandError(f"cannot write {error.filename or path}: {error.strerror}")

@@ -1,0 +1,57 @@
+"""The list of members as the hub reads it."""
+
+from pathlib import Path
+
+import pytest
+from inhand_hub.access import Member
+from inhand_hub.members import (
+    SiteMembers,
+    encode_members,
+    load_members,
+    with_member,
+    without_member,
+)
+from inhand_runtime.errors import SettingsError
+from msgspec.structs import replace
+
+FRONT = Member(name="front", rig="kitchen", role="camera", common_name="kitchen.front.1")
+SITE = SiteMembers(realm="home", rigs=("kitchen",), hosts=("localhost",))
+WITH_FRONT = with_member(SITE, FRONT, 1e9)
+
+
+def test_what_is_written_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "members.json"
+    path.write_bytes(encode_members(WITH_FRONT))
+    assert load_members(path) == WITH_FRONT
+    assert without_member(WITH_FRONT, FRONT) == SITE
+
+
+@pytest.mark.parametrize(
+    ("site", "words"),
+    [
+        (replace(WITH_FRONT, members=(FRONT, FRONT)), "'kitchen.front.1' stands there twice"),
+        (
+            with_member(WITH_FRONT, replace(FRONT, common_name="kitchen.front.2"), 1e9),
+            "'kitchen/front' stands there twice",
+        ),
+        (replace(WITH_FRONT, rigs=("garage",)), "'kitchen' is no rig of the site"),
+        (replace(WITH_FRONT, ends_at={}), "do not fit"),
+        (with_member(SITE, replace(FRONT, name="front/**"), 1e9), "is no list of members"),
+        (with_member(SITE, replace(FRONT, rig="*"), 1e9), "is no list of members"),
+        (with_member(SITE, replace(FRONT, common_name=""), 1e9), "is no list of members"),
+        (with_member(SITE, replace(FRONT, role="all"), 1e9), "is no list of members"),  # type: ignore[arg-type]
+    ],
+)
+def test_a_list_that_contradicts_itself_or_names_patterns_is_refused(
+    tmp_path: Path, site: SiteMembers, words: str
+) -> None:
+    path = tmp_path / "members.json"
+    path.write_bytes(encode_members(site))
+    with pytest.raises(SettingsError, match=words):
+        load_members(path)
+
+
+def test_who_ends_soon_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("inhand_hub.members.time.time", lambda: 1e9 - 10 * 86_400.0)
+    assert WITH_FRONT.ending(within_days=11) == [(FRONT, 10.0)]
+    assert WITH_FRONT.ending(within_days=9) == []
