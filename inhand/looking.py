@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.inbox import Inbox, Received
 from inhand_runtime.questions import ask
-from inhand_runtime.session import Session, open_session, subscribe, watch_instances
+from inhand_runtime.session import Session, connected, open_session, subscribe, watch_instances
 from inhand_runtime.settings import load_rig_file
 from inhand_runtime.signals import set_on_signals
 from inhand_schemas.errors import KeyFormatError, MessageError
@@ -40,13 +40,20 @@ OTHER_VERSIONS = tuple(version for version in range(10) if version != VERSION)
 class Look:
     """Samples of one rig as they arrive, without taking part in its work."""
 
-    def __init__(self, session: Session, site: Site, stop: threading.Event) -> None:
+    def __init__(
+        self, session: Session, site: Site, stop: threading.Event, *, needs_hub: bool = False
+    ) -> None:
         self.site = site
         self.skipped = 0
         self._stop = stop
+        self._needs_hub = needs_hub
         self._session = session
         self._inbox = Inbox()
         self._subscribers: list[Any] = []
+
+    def can_hear(self) -> bool:
+        """Whether anything can arrive now: a client hears nothing while its hub is away."""
+        return not self._needs_hub or bool(connected(self._session))
 
     def follow(self, topic: AnyTopic, name: str | None = None) -> None:
         """Let a topic arrive: one name of it, or all."""
@@ -125,7 +132,8 @@ def open_look(config: Path | None) -> Iterator[Look]:
     rig_file = load_rig_file(config)
     stop = threading.Event()
     with set_on_signals(stop), open_session(rig_file.zenoh) as session:
-        yield Look(session, Site(rig_file.realm, rig_file.rig), stop)
+        site, needs_hub = Site(rig_file.realm, rig_file.rig), rig_file.zenoh.mode == "client"
+        yield Look(session, site, stop, needs_hub=needs_hub)
 
 
 def add_looking_arguments(

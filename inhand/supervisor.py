@@ -100,11 +100,12 @@ class Child:
         self._start_at = now + self._delay
         self._delay = min(2 * self._delay, LAST_RESTART_S)
 
-    def kill_if_it_hangs(self, reports: int | None) -> None:
+    def kill_if_it_hangs(self, reports: int | None, *, can_hear: bool = True) -> None:
         """End the process when it has reported before and does so no more, for long.
 
         Only time in which this process itself ran counts: after a suspended night, or on a machine
-        that was too busy to let anybody run, all have time to speak again.
+        that was too busy to let anybody run, all have time to speak again. So have they after a
+        time in which nothing can be heard, since the hub is away.
         """
         now = time.monotonic()
         awake, self._tended_at = min(now - self._tended_at, LONGEST_TICK_S), now
@@ -116,7 +117,7 @@ class Child:
             self._silent_s = None if self._reports is None else 0.0
             self._reports = reports
         elif self._silent_s is not None:
-            self._silent_s += awake
+            self._silent_s = self._silent_s + awake if can_hear else 0.0
         if self._silent_s is not None and self._silent_s > HANGS_AFTER_S:
             log.error(
                 "%s has not come round for %.0f s: it hangs, and is killed",
@@ -149,14 +150,18 @@ class Supervisor:
     last, and started in reverse: a stage begins when the one after it is up, or has had time
     enough, so that nothing early is missed. ``reports`` says how many reports of its health came
     from a child of that name so far, None while it is not up; a child from which no more come is
-    killed, and so started again.
+    killed, and so started again. ``can_hear`` says whether any could come, as where a hub is up.
     """
 
     def __init__(
-        self, stages: Sequence[Sequence[Child]], reports: Callable[[str], int | None]
+        self,
+        stages: Sequence[Sequence[Child]],
+        reports: Callable[[str], int | None],
+        can_hear: Callable[[], bool],
     ) -> None:
         self._stages = stages
         self._reports = reports
+        self._can_hear = can_hear
         self._signals = 0
 
     def run(self) -> int:
@@ -193,7 +198,7 @@ class Supervisor:
                 if child.tend() == WRONG_USAGE:
                     log.error("%s has wrong settings (see above): stopping everything", child.name)
                     return WRONG_USAGE
-                child.kill_if_it_hangs(self._reports(child.name))
+                child.kill_if_it_hangs(self._reports(child.name), can_hear=self._can_hear())
             if not waiting and all(child.done for child in started):
                 return DONE
             time.sleep(TICK_S)

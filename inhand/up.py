@@ -31,6 +31,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Supervise until the end; raises SettingsError when there is nothing to run."""
     rig_file = load_rig_file(arguments.config)
+    if rig_file.hub:
+        raise SettingsError(
+            f"{arguments.config} names a hub, which is run by itself: `inhand hub`, with "
+            "settings of its own"
+        )
     stages = [_children(rig_file, arguments.config, service) for service in STOP_ORDER]
     if not any(stages):
         raise SettingsError(
@@ -63,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     with open_look(arguments.config) as look:
         look.follow_tokens(roll.change)
         look.follow_health(hear)
-        return Supervisor(stages, reports).run()
+        return Supervisor(stages, reports, look.can_hear).run()
 
 
 def _children(rig_file: RigFile, config: Path | None, service: str) -> list[Child]:

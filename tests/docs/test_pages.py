@@ -11,6 +11,8 @@ from inhand_recorder.service import RecorderSettings
 from inhand_tracker.settings import TrackerSettings
 from running_rig import ROOT, RunningRig
 
+from inhand.__main__ import main
+
 PAGES = sorted((ROOT / "docs").glob("*.md"))
 
 
@@ -47,6 +49,24 @@ def test_the_tutorials_rig_is_valid_and_follows_whom_the_model_does_not_know() -
     CaptureSettings(**rig["capture"]["front"])
     TrackerSettings(**rig["tracker"]["mug"])
     RecorderSettings(**rig["recorder"]["disk"])
+
+
+def test_the_commands_of_the_hub_s_page_do_what_it_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs/hub.md").read_text()
+    hub, member = blocks("hub.md", "toml")
+    printed = {}
+    for line in re.findall(r"^inhand (hub (?:init|add|renew|revoke) .*)$", page, re.MULTILINE):
+        assert main(line.split()) == 0
+        printed[line] = capsys.readouterr().out
+    added = printed["hub add camera front"]
+    assert all(line in added for line in member.splitlines()[1:])
+    made = printed["hub init site --realm home --rigs kitchen --hosts hub.local 192.168.1.10"]
+    assert tomllib.loads(hub)["hub"]["hub"]["listen"][0] in made
+    Path("hub.toml").write_text(hub)
+    assert main(["hub", "--config", "hub.toml", "--check-config"]) == 0
 
 
 @pytest.mark.long

@@ -61,6 +61,10 @@ def _run(code: str, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
         (["echo", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER, "numpy")),
         (["recorder", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER, "numpy", "rich")),
         (["capture", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER, "rich", "depthai")),
+        (
+            ["hub", "--config", "/nowhere"],
+            (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER, "numpy", "rich", "cryptography"),
+        ),
         (["replay", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER)),
         (["tracker", "--help"], (*NEEDED_BY_NOBODY, "rich", "inhand_lab")),
         (["simulate", "--help"], ("matplotlib", "sklearn")),

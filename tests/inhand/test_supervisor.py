@@ -3,6 +3,7 @@
 import logging
 import sys
 import time
+from collections.abc import Sequence
 
 import pytest
 
@@ -58,3 +59,34 @@ def test_a_child_that_ends_again_and_again_is_an_alert_once(
 def test_a_lack_of_memory_is_named_where_it_may_be_the_reason() -> None:
     assert "lack of memory" in how_it_ended(-9, "")
     assert "memory" not in how_it_ended(-15, "")
+
+
+def _silent(child: Child, hears: Sequence[bool], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Start a child, hear it twice, and then no more: a second for each of ``hears``."""
+    now = [100.0]
+    monkeypatch.setattr("inhand.supervisor.time.monotonic", lambda: now[0])
+    child.tend()
+    for reports in (1, 2):
+        child.kill_if_it_hangs(reports)
+    for can_hear in hears:
+        now[0] += 1.0
+        child.kill_if_it_hangs(2, can_hear=can_hear)
+
+
+@pytest.mark.parametrize(
+    ("hears", "killed"),
+    [([True] * 12, True), ([False] * 30, False), ([False] * 30 + [True] * 8, False)],
+    ids=["silent", "the hub is away", "the hub was away"],
+)
+def test_a_silent_child_is_killed_but_not_where_nothing_could_be_heard(
+    hears: list[bool],
+    killed: bool,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    child = Child("recorder disk", ["sleep", "60"])
+    try:
+        _silent(child, hears, monkeypatch)
+        assert ("it hangs, and is killed" in caplog.text) == killed
+    finally:
+        child.kill()

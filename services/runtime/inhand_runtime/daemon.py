@@ -22,6 +22,7 @@ from inhand_runtime.claims import Elders, claimed_name
 from inhand_runtime.errors import InhandError
 from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import UNBOUNDED, Inbox, Lane, Received
+from inhand_runtime.known_member import require_known
 from inhand_runtime.logs import configure_logs
 from inhand_runtime.memory import give_libraries_back, give_memory_back
 from inhand_runtime.questions import Question, answer, ask
@@ -198,8 +199,14 @@ class Daemon:
 
 
 @contextlib.contextmanager
-def running_daemon(service: str, settings: Settings[Section]) -> Iterator[Daemon]:
+def running_daemon(
+    service: str,
+    settings: Settings[Section],
+    router: contextlib.AbstractContextManager[Session] | None = None,
+) -> Iterator[Daemon]:
     """Open the session, announce the instance, and publish its health until the block ends.
+
+    ``router`` opens the session of a hub, which is reached by others and looks for nobody.
 
     SIGTERM or SIGINT sets ``daemon.stop``; a second one ends the process at once. Raises
     SettingsError or InhandError when the session cannot be opened, and InhandError when an
@@ -208,11 +215,15 @@ def running_daemon(service: str, settings: Settings[Section]) -> Iterator[Daemon
     """
     configure_logs(settings.log, settings.instance)
     stop = threading.Event()
-    with set_on_signals(stop), open_session(settings.zenoh) as session:
+    opened = open_session(settings.zenoh) if router is None else router
+    with set_on_signals(stop), opened as session:
         site, instance = settings.site, settings.instance
+        if router is None and settings.zenoh.credentials is not None:
+            require_known(session, settings, service, stop)
         with claimed_name(session, site, service, instance, stop) as elders:
             daemon = Daemon(session, site, service, instance, stop)
-            with _publishing_health(daemon, elders, settings.zenoh):
+            looks_for = settings.zenoh if router is None else None
+            with _publishing_health(daemon, elders, looks_for):
                 log.info("%s %s is up", service, instance)
                 try:
                     yield daemon
@@ -226,7 +237,9 @@ def running_daemon(service: str, settings: Settings[Section]) -> Iterator[Daemon
 
 
 @contextlib.contextmanager
-def _publishing_health(daemon: Daemon, elders: Elders, settings: ZenohSettings) -> Iterator[None]:
+def _publishing_health(
+    daemon: Daemon, elders: Elders, settings: ZenohSettings | None
+) -> Iterator[None]:
     """Publish the health once a second, and a last time at the end of the block.
 
     Whoever publishes health under the same name is a namesake, and both say so.
@@ -251,7 +264,7 @@ def _report(
     elders: Elders,
     publisher: Publisher[Health],
     finished: threading.Event,
-    settings: ZenohSettings,
+    settings: ZenohSettings | None,
 ) -> None:
     reports = 0
     while not finished.wait(HEALTH_PERIOD_S):
@@ -260,7 +273,7 @@ def _report(
         publisher.put(daemon.health.report())
         daemon.repeat_kept()
         reports += 1
-        if reports == REPORTS_UNTIL_LONELY and daemon.is_alone():
+        if reports == REPORTS_UNTIL_LONELY and settings is not None and daemon.is_alone():
             log.warning("no other process is connected yet; %s", _where_to_meet(settings))
         if reports % REPORTS_UNTIL_TIDY == REPORTS_UNTIL_STARTED:
             give_memory_back()

@@ -18,7 +18,8 @@ Question = zenoh.Queryable[None]
 
 
 def answer(session: Session, key: str, on_request: Callable[[bytes], bytes | None]) -> Question:
-    """Answer what is asked on a key, from Zenoh's threads; keep the returned handle.
+    """Answer what is asked on a key, or on all of a pattern, from Zenoh's threads; keep the
+    returned handle.
 
     ``on_request`` returns the reply, or None where the request is another's to answer; what it
     raises is logged, and answered as an error.
@@ -34,7 +35,7 @@ def answer(session: Session, key: str, on_request: Callable[[bytes], bytes | Non
                 query.reply_err(str(error).encode())
                 return
             if reply is not None:
-                query.reply(key, reply)
+                query.reply(query.key_expr if "*" in key else key, reply)
 
     return session.declare_queryable(key, receive)
 

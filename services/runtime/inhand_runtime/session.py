@@ -8,7 +8,7 @@ away, the next process that starts takes it and the others find it by retrying.
 import contextlib
 import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Generic, TypeVar
 
 import zenoh
@@ -19,6 +19,7 @@ from inhand_schemas.messages import Message
 from inhand_schemas.topics import Delivery, Topic
 
 from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.hub_access import require_usable, why_closed
 from inhand_runtime.inbox import Received
 from inhand_runtime.settings import ZenohSettings
 
@@ -66,14 +67,13 @@ def open_session(settings: ZenohSettings) -> Iterator[Session]:
 def _open_client(settings: ZenohSettings) -> Session:
     if not settings.connect:
         raise SettingsError('zenoh.mode = "client" needs zenoh.connect, the addresses of hubs')
+    if settings.credentials is not None:
+        require_usable(settings.credentials)
     config = _config(settings, listen=(), connect=settings.connect)
     try:
         return zenoh.open(config)
     except zenoh.ZError:
-        raise InhandError(
-            f"no hub answers at {', '.join(settings.connect)}: check that it runs, the address, "
-            "and that user, password and certificates are the hub's"
-        ) from None
+        raise InhandError(why_closed(settings)) from None
 
 
 def _open_peer(settings: ZenohSettings) -> Session:
@@ -105,6 +105,22 @@ def _config(
         "connect/timeout_ms": CLIENT_TIMEOUT_MS if client else FOR_EVER_MS,
         "connect/exit_on_failure": client,
         "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000},
+    }
+    if settings.credentials is not None:
+        values["transport/link/tls"] = {
+            "root_ca_certificate": str(settings.credentials.authority),
+            "connect_certificate": str(settings.credentials.certificate),
+            "connect_private_key": str(settings.credentials.key),
+            "enable_mtls": True,
+            "verify_name_on_connect": True,
+            "close_link_on_expiration": True,
+        }
+    return zenoh_config(values)
+
+
+def zenoh_config(values: Mapping[str, Any]) -> zenoh.Config:
+    """Zenoh's settings of a session, with those that all sessions of ours have."""
+    shared: dict[str, Any] = {
         "transport/unicast/open_timeout": HANDSHAKE_TIMEOUT_MS,
         "scouting/multicast/enabled": False,
         "transport/link/tx/queue/size/data": LONGEST_QUEUE,
@@ -113,7 +129,7 @@ def _config(
         "transport/shared_memory/enabled": False,
     }
     config = zenoh.Config()
-    for key, value in values.items():
+    for key, value in {**shared, **values}.items():
         config.insert_json5(key, json.dumps(value))
     return config
 

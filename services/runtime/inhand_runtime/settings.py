@@ -27,7 +27,7 @@ from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings_environment import texts_read, with_environment
 from inhand_runtime.settings_errors import ENCODING, explain, place, suggestion
 
-SERVICES = ("capture", "tracker", "recorder", "studio")
+SERVICES = ("capture", "tracker", "recorder", "studio", "hub")
 
 MEETING = "tcp/127.0.0.1:7447"
 
@@ -132,6 +132,7 @@ class RigFile(Section):
     tracker: Tables = {}
     recorder: Tables = {}
     studio: Tables = {}
+    hub: Tables = {}
 
 
 S = TypeVar("S", bound=Section)

@@ -1,0 +1,25 @@
+"""What a settings file says of a hub."""
+
+from pathlib import Path
+from typing import Annotated
+
+from inhand_runtime.settings import Address, FilePath, Section
+from pydantic import AfterValidator, Field
+
+
+def _encrypted(address: str) -> str:
+    if not address.startswith("tls/"):
+        raise ValueError(f"{address!r} is not encrypted; write it as tls/127.0.0.1:7448")
+    return address
+
+
+class HubSettings(Section):
+    """``[hub.NAME]``: the hub's ``folder``, which ``inhand hub init`` made, and where to listen.
+
+    Without a word that is this machine alone; ``tls/0.0.0.0:7448`` is all of its addresses.
+    """
+
+    folder: FilePath = Field(default=Path("site/hub"), validate_default=True)
+    listen: Annotated[
+        tuple[Annotated[Address, AfterValidator(_encrypted)], ...], Field(min_length=1)
+    ] = ("tls/127.0.0.1:7448",)

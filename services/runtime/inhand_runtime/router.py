@@ -1,0 +1,66 @@
+"""A Zenoh router in this process: clients with certificates may do there what rules say."""
+
+import contextlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import zenoh
+
+from inhand_runtime.errors import InhandError
+from inhand_runtime.session import HANDSHAKE_TIMEOUT_MS, Session, zenoh_config
+
+LARGEST_MESSAGE_BYTES = 64 << 20
+"""Bytes of a message, at the most, that a router puts together: no frame is as large."""
+
+
+@dataclass(frozen=True)
+class RouterSettings:
+    """Where a router listens, the files (PEM) of its certificate, key and authority, and Zenoh's
+    access rules."""
+
+    listen: tuple[str, ...]
+    certificate: Path
+    key: Path
+    authority: Path
+    access_control: Mapping[str, Any]
+
+
+@contextlib.contextmanager
+def open_router(settings: RouterSettings) -> Iterator[Session]:
+    """Run a router, with a session of this process in it, until the block ends; raises InhandError.
+
+    The session itself is bound by no rule.
+    """
+    zenoh.init_log_from_env_or("off")
+    tls = {
+        "root_ca_certificate": str(settings.authority),
+        "listen_certificate": str(settings.certificate),
+        "listen_private_key": str(settings.key),
+        "enable_mtls": True,
+        "close_link_on_expiration": True,
+    }
+    config = zenoh_config(
+        {
+            "mode": "router",
+            "listen/endpoints": list(settings.listen),
+            "listen/exit_on_failure": True,
+            "scouting/gossip/enabled": False,
+            "adminspace/enabled": False,
+            "transport/unicast/accept_timeout": HANDSHAKE_TIMEOUT_MS,
+            "transport/link/protocols": ["tls"],
+            "transport/link/tls": tls,
+            "transport/link/rx/max_message_size": LARGEST_MESSAGE_BYTES,
+            "access_control": dict(settings.access_control),
+        }
+    )
+    try:
+        session = zenoh.open(config)
+    except zenoh.ZError:
+        raise InhandError(
+            f"cannot listen on {', '.join(settings.listen)}: the port is in use, or the address is "
+            f"not of this machine; or {settings.certificate} and {settings.key} cannot be used"
+        ) from None
+    with session:
+        yield session

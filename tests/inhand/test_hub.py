@@ -1,0 +1,114 @@
+"""``inhand hub init``, ``add``, …: what they print can be done as it stands."""
+
+import re
+from pathlib import Path
+
+import pytest
+from inhand_hub.service import check
+from inhand_hub.settings import HubSettings
+from inhand_runtime.session import require_usable
+from inhand_runtime.settings import load_rig_file, load_settings
+
+from inhand.__main__ import main
+
+INIT = ["hub", "init", "site", "--realm", "home", "--rigs", "kitchen"]
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def settings_in(text: str) -> str:
+    """The settings that a command prints."""
+    lines = text.splitlines()
+    first = next(i for i, line in enumerate(lines) if line.startswith("realm = "))
+    last = max(i for i, line in enumerate(lines) if re.match(r"\w+ = |\[", line))
+    return "\n".join(lines[first : last + 1])
+
+
+def test_the_hub_runs_with_what_init_prints(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(INIT) == 0
+    Path("hub.toml").write_text(settings_in(capsys.readouterr().out))
+    settings = load_settings(Path("hub.toml"), "hub", HubSettings)
+    assert settings.service.listen == ("tls/127.0.0.1:7448",)
+    check(settings)
+    assert main(["hub", "--config", "hub.toml", "--check-config"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "table"),
+    [
+        (["camera", "front"], "capture"),
+        (["tracker", "follower", "--objects", "mug", "pan"], "tracker"),
+        (["recorder", "disk"], "recorder"),
+        (["studio", "desk"], "studio"),
+        (["viewer", "anna"], None),
+    ],
+)
+def test_a_member_connects_with_what_add_prints(
+    arguments: list[str], table: str | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main([*INIT, "--hosts", "hub.local", "192.168.1.10"])
+    assert 'listen = ["tls/0.0.0.0:7448"]' in capsys.readouterr().out
+    assert main(["hub", "add", *arguments]) == 0
+    folder = Path("site/members")
+    (folder / "member.toml").write_text(settings_in(capsys.readouterr().out))
+    rig_file = load_rig_file(folder / "member.toml")
+    assert (rig_file.realm, rig_file.rig) == ("home", "kitchen")
+    assert rig_file.zenoh.connect == ("tls/hub.local:7448",)
+    assert rig_file.zenoh.credentials is not None
+    require_usable(rig_file.zenoh.credentials)
+    if table is not None:
+        assert list(getattr(rig_file, table)) == [arguments[1]]
+
+
+def test_renewal_and_revocation_say_what_is_to_be_done(capsys: pytest.CaptureFixture[str]) -> None:
+    main(INIT)
+    main(["hub", "add", "camera", "front"])
+    capsys.readouterr()
+    assert main(["hub", "renew", "front"]) == 0
+    assert "copy site/members/kitchen.front/certificate.pem" in capsys.readouterr().out
+    assert main(["hub", "renew", "hub"]) == 0
+    assert "copy site/hub/certificate.pem" in capsys.readouterr().out
+    assert main(["hub", "revoke", "front"]) == 0
+    assert "copy site/hub/members.json" in capsys.readouterr().out
+    assert not list(Path("site/members").iterdir())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (INIT, "site is there already"),
+        (["hub", "init", "s", "--realm", "My Home", "--rigs", "a"], "realm 'My Home' is no name"),
+        (["hub", "init", "s", "--realm", "home", "--rigs", "a/**"], "rig 'a/\\*\\*' is no name"),
+        (["hub", "add", "camera", "Front"], "name 'Front' is no name"),
+        (["hub", "add", "tracker", "m", "--objects", "*"], "object '\\*' is no name"),
+        (["hub", "add", "camera", "front", "--objects", "mug"], "publishes no poses"),
+        (["hub", "add", "camera", "front", "--site", "nowhere"], "cannot read nowhere"),
+        (["hub", "revoke", "nobody"], "there is no member 'nobody'"),
+    ],
+)
+def test_what_cannot_be_done_is_one_line_and_code_2(
+    arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(INIT)
+    capsys.readouterr()
+    assert main(arguments) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("inhand hub: ")
+    assert re.search(words, line)
+
+
+def test_no_key_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    main(INIT)
+    main(["hub", "add", "camera", "front"])
+    printed = "".join(capsys.readouterr())
+    for path in Path("site").rglob("key.pem"):
+        assert path.read_text().splitlines()[1] not in printed
+
+
+def test_up_does_not_run_a_hub(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("hub.toml").write_text("[hub.hub]\n")
+    assert main(["up", "--config", "hub.toml"]) == 2
+    assert "is run by itself: `inhand hub`" in capsys.readouterr().err
