@@ -22,6 +22,20 @@ def test_the_origin_is_an_arm_away_from_the_centre() -> None:
         np.testing.assert_allclose(centre - SPHERE.arm(turn), translation, atol=1e-12)
 
 
+def test_poses_of_a_pivot_have_the_same_origin_and_sphere() -> None:
+    pivoted = BoundingSphere(SPHERE.centre, SPHERE.radius, np.array([0.0, 0.1, -0.2]))
+    translations, turns = np.array([[0.0, 1.0, 2.0], [3.0, 0.5, 1.0]]), quaternion_of(TURNS)
+    pivots = translations + TURNS.apply([0.0, 0.1, -0.2])
+    middles = translations + TURNS.apply(SPHERE.centre)
+    np.testing.assert_allclose(pivoted.origins(pivots, turns), translations, atol=1e-12)
+    np.testing.assert_allclose(pivoted.middles(pivots, turns), middles, atol=1e-12)
+    poses, of_pivots = (
+        [PoseGaussian(place, turn, np.eye(6)) for place, turn in zip(places, turns, strict=True)]
+        for places in (middles, pivots)
+    )
+    assert pivoted.way(*of_pivots, CAMERA) == pytest.approx(SPHERE.way(*poses, CAMERA))
+
+
 def pose(centre: tuple[float, float, float], turn: Rotation) -> PoseGaussian:
     return PoseGaussian(np.array(centre), quaternion_of(turn), np.eye(6))
 

@@ -11,24 +11,42 @@ from inhand_tracker.geometry.pose_gaussian import PoseGaussian
 
 @dataclass(frozen=True)
 class BoundingSphere:
-    """A sphere that holds an object: ``centre`` (3,) in its frame, ``radius`` in metres."""
+    """A sphere that holds an object: ``centre`` (3,) in its frame, ``radius`` in metres.
+
+    Poses are those of a point of the object, its ``pivot`` (3,), the sphere's centre where none is
+    given.
+    """
 
     centre: Array
     radius: float
+    pivot: Array | None = None
 
-    def origins(self, centres: Array, orientations: Array) -> Array:
-        """Give the translations (P, 3) of poses by their spheres' centres (P, 3)."""
-        return centres - rotations.rotate(orientations, self.centre)
+    @property
+    def _pivot(self) -> Array:
+        return self.centre if self.pivot is None else self.pivot
+
+    def origins(self, pivots: Array, orientations: Array) -> Array:
+        """Give the translations (P, 3) of poses by their pivots (P, 3) and rotations (P, 4)."""
+        return pivots - rotations.rotate(orientations, self._pivot)
+
+    def middles(self, pivots: Array, orientations: Array) -> Array:
+        """Give the spheres' centres (P, 3) of poses by their pivots (P, 3) and rotations (P, 4)."""
+        return pivots + rotations.rotate(orientations, self.centre - self._pivot)
 
     def way(self, earlier: PoseGaussian, now: PoseGaussian, camera: Intrinsics) -> float:
         """Pixels that the sphere goes between two poses' means: the farthest that one of six points
         of it does, opposite in pairs. 0 where none is before the camera."""
         return float(
             farthest_way(
-                earlier.centre, earlier.rotation, now.centre, now.rotation, self.radius, camera.lens
+                self.middles(earlier.centre, earlier.rotation),
+                earlier.rotation,
+                self.middles(now.centre, now.rotation),
+                now.rotation,
+                self.radius,
+                camera.lens,
             )
         )
 
     def arm(self, rotation: Array) -> Array:
-        """Give the way (3,) from the object's origin to the centre, as a rotation (4,) turns it."""
-        return rotations.rotate(rotation, self.centre)
+        """Give the way (3,) from the object's origin to the pivot, as a rotation (4,) turns it."""
+        return rotations.rotate(rotation, self._pivot)
