@@ -5,7 +5,13 @@ import pytest
 from gaussian_sight import alone
 from hypothesis import given
 from hypothesis import strategies as st
-from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever, mixture
+from inhand_tracker.geometry.pose_gaussian import (
+    PoseGaussian,
+    PoseMixture,
+    mixture,
+    moved_covariance,
+    moved_information,
+)
 from people import quaternion_of, same_rotation, scipy_rotation
 from scipy.spatial.transform import Rotation
 from scipy.special import logsumexp
@@ -76,22 +82,26 @@ def test_square_distance_is_mahalanobis_to_the_other_s_mean() -> None:
 
 
 @given(st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3))
-def test_a_lever_is_the_derivative_of_the_point_it_moves(arm: list[float]) -> None:
+def test_a_covariance_and_an_information_move_as_the_point_does(arm: list[float]) -> None:
     """Of x + R(ω) arm by finite differences; a rotation stays what it is."""
-    step, expected = 1e-6, np.empty((6, 6))
+    step, lever = 1e-6, np.empty((6, 6))
     for axis in range(6):
         by = step * np.eye(6)[axis]
         points = [
             sign * by[:3] + Rotation.from_rotvec(sign * by[3:]).apply(arm) for sign in (1, -1)
         ]
-        expected[:3, axis] = (points[0] - points[1]) / (2 * step)
-        expected[3:, axis] = by[3:] / step
-    np.testing.assert_allclose(lever(np.array(arm)), expected, atol=1e-8)
+        lever[:3, axis] = (points[0] - points[1]) / (2 * step)
+        lever[3:, axis] = by[3:] / step
+    one = covariance(3)
+    moved, informed = moved_covariance(one, np.array(arm)), moved_information(one, np.array(arm))
+    np.testing.assert_allclose(moved, lever @ one @ lever.T, atol=1e-7)
+    np.testing.assert_allclose(informed, lever.T @ one @ lever, atol=1e-7)
 
 
-def test_a_lever_and_its_opposite_take_a_covariance_there_and_back() -> None:
-    there, back = lever(np.array([0.1, 0.2, -0.3])), lever(-np.array([0.1, 0.2, -0.3]))
-    np.testing.assert_allclose(back @ there, np.eye(6), atol=1e-12)
+def test_a_covariance_moves_there_and_back() -> None:
+    one, arm = covariance(2), np.array([0.1, 0.2, -0.3])
+    there = moved_covariance(one, arm)
+    np.testing.assert_allclose(moved_covariance(there, -arm), one, atol=1e-12)
 
 
 def two() -> PoseMixture:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import kernel_arrays as arrays
 import numpy as np
 import pytest
@@ -20,6 +22,11 @@ def off(metres: float, radians: float) -> tuple[np.ndarray, np.ndarray]:
 
 def test_reach_is_the_root_mean_square_in_metres_and_radians() -> None:
     assert PRIOR.reach() == pytest.approx((0.05 * 3**0.5, 0.2 * 3**0.5))
+
+
+def test_reach_is_no_more_than_what_poses_are_known_to_be_off_by() -> None:
+    assert replace(PRIOR, most=(0.05, 0.25)).reach() == pytest.approx((0.05, 0.25))
+    assert replace(PRIOR, most=(0.5, 0.25)).reach() == pytest.approx((0.05 * 3**0.5, 0.25))
 
 
 def test_log_density_falls_by_half_a_deviations_square() -> None:

@@ -55,7 +55,7 @@ class PoseMixture:
         return means_of(self.parts)
 
     @cached_property
-    def _roots(self) -> Array:
+    def roots(self) -> Array:
         """The triangular roots (K, 6, 6) of the parts' covariances."""
         return roots_of(np.array([part.covariance for part in self.parts]))
 
@@ -64,13 +64,13 @@ class PoseMixture:
         ends = np.rint(np.cumsum(self.weights) * count).astype(int)
         parts = np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
         normals = random.standard_normal((len(parts), 6))
-        poses: tuple[Array, Array] = kernels.draw(parts, *self.means, self._roots, normals)
+        poses: tuple[Array, Array] = kernels.draw(parts, *self.means, self.roots, normals)
         return poses
 
     def log_densities(self, centres: Array, orientations: Array) -> Array:
         """Log densities (K, P) of poses, of each part times its weight."""
         densities: Array = kernels.log_densities(
-            self.weights, *self.means, self._roots, centres, orientations
+            self.weights, *self.means, self.roots, centres, orientations
         )
         return densities
 
@@ -89,6 +89,16 @@ class PoseMixture:
         covariance = (self.weights[:, None] * apart).T @ apart
         covariance += (self.weights @ within.reshape(-1, 36)).reshape(6, 6)
         return PoseGaussian(mean.centre, mean.rotation, covariance)
+
+
+def draw_about(
+    means: tuple[Array, Array], roots: Array, random: np.random.Generator
+) -> tuple[Array, Array]:
+    """Draw a pose about each of the ``means`` (P, 3) and (P, 4), by triangular roots (P, 6, 6) of
+    covariances."""
+    normals = random.standard_normal((len(roots), 6))
+    poses: tuple[Array, Array] = kernels.draw(np.arange(len(roots)), *means, roots, normals)
+    return poses
 
 
 def roots_of(covariances: Array) -> Array:
@@ -117,17 +127,13 @@ def means_of(parts: Sequence[PoseGaussian]) -> tuple[Array, Array]:
 
 
 def moved_information(information: Array, arms: Array) -> Array:
-    """Take the information (..., 6, 6) of a point at ``arms`` (..., 3) from the centre of a pose
-    to that centre: Lᵀ I L, L of ``lever``."""
+    """Take the information (..., 6, 6) of a point at ``arms`` (..., 3) to where the
+    pose is: Lᵀ I L, where L takes deviations of a pose to those of a point that moves along."""
     return kernels.moved_information(information, arms)
 
 
-def lever(arm: Array) -> Array:
-    """Give the matrix (6, 6) that takes deviations of a pose to those of a point that moves along.
-
-    ``arm`` (3,) is the way from the pose's centre to the point.
-    """
-    x, y, z = arm
-    moved = np.eye(6)
-    moved[:3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+def moved_covariance(covariance: Array, arms: Array) -> Array:
+    """Take the covariance (..., 6, 6) of a pose to that of a point at ``arms`` (..., 3) from where
+    it is of: L C Lᵀ, L as in ``moved_information``."""
+    moved: Array = kernels.moved_covariance(covariance, arms)
     return moved

@@ -110,6 +110,27 @@ def predict(
     height: float,
     parameters: PriorParameters = DEFAULT_PRIOR,
 ) -> Prediction:
+    """Predict the object's pose for one body, as ``predict_both`` does, by both together."""
+    return predict_both(prior, descriptions, anchors, height, parameters).whole
+
+
+@dataclass(frozen=True)
+class BothPredictions:
+    """What is predicted by what people did and how they hold the object, together, ``whole``, and
+    by what they did alone, ``regressed``; and how strange the posture is, from 0 to 1."""
+
+    whole: Prediction
+    regressed: Prediction
+    strangeness: float
+
+
+def predict_both(
+    prior: Prior,
+    descriptions: Sequence[Singles],
+    anchors: Anchors,
+    height: float,
+    parameters: PriorParameters = DEFAULT_PRIOR,
+) -> BothPredictions:
     """Predict the object's pose for one body: descriptions (1, D) of each view, its anchors and
     height.
 
@@ -126,13 +147,15 @@ def predict(
         prior, kernels, _Locality(local, float(nearness)), anchors, height, parameters
     )
     if prior.hold is None:
-        return regressed
+        return BothPredictions(regressed, regressed, 0.0)
     posture = prior.posture_of(descriptions[0][0], prior.hold)
-    share = max(posture.strangeness(parameters), posture.held_share)
+    strangeness = posture.strangeness(parameters)
+    share = max(strangeness, posture.held_share)
     if share == 0.0:
-        return regressed
+        return BothPredictions(regressed, regressed, 0.0)
     held = prior.hold.of(anchors, posture.growth(parameters))
-    return between(regressed, held, share, doubt=parameters.held_doubt)
+    whole = between(regressed, held, share, doubt=parameters.held_doubt)
+    return BothPredictions(whole, regressed, strangeness)
 
 
 def predict_apart(

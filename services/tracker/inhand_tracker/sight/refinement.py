@@ -25,16 +25,19 @@ _REFINED_TERMS = [0, 1, 3]
 class PosePrior:
     """Gaussians about poses, ``translation`` (..., 3) and ``rotation`` (..., 4), by their
     ``information`` (..., 6, 6): of a translation in the camera frame, then of a rotation vector on
-    the left."""
+    the left. Poses are known to be off by no more than ``most`` (2,), in metres and radians."""
 
     translation: Array
     rotation: Array
     information: Array
+    most: tuple[float, float] = (np.inf, np.inf)
 
     def reach(self) -> Array:
-        """The root mean squares (..., 2) of translation and rotation, in metres and radians."""
+        """How far poses may be off (..., 2), in metres and radians: the root mean squares of
+        translation and rotation."""
         variances = np.diagonal(inverses(self.information), axis1=-2, axis2=-1)
-        return np.sqrt(variances.reshape(*variances.shape[:-1], 2, 3).sum(axis=-1))
+        squares = variances.reshape(*variances.shape[:-1], 2, 3).sum(axis=-1)
+        return np.minimum(np.sqrt(squares), self.most)
 
     def log_density(self, translations: Array, orientations: Array) -> Array:
         """The log-density (..., K) of poses (..., K, 3) and (..., K, 4), up to a constant."""

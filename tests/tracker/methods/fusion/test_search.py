@@ -155,3 +155,37 @@ def test_images_in_the_light_of_training_are_searched_as_they_are() -> None:
         search(sight).look(belief(TRUE.centre), room(), JOINTS, 1.0)
         looks.append(sight.frames[0].colour)
     np.testing.assert_array_equal(*looks)
+
+
+def test_a_thorough_search_narrows_its_hypotheses_down() -> None:
+    """Without refinement the pose is that of the best hypotheses: it lies closer to the truth."""
+    parameters = replace(DEFAULT_FUSION, refines=False)
+    distances = []
+    for thoroughly in (False, True):
+        found = [
+            ImageSearch(GaussianSight(refines=False), SPHERE, parameters, seed).look(
+                belief(TRUE.centre + 2.0 * AWAY), BLANK, JOINTS, 1.0, thoroughly=thoroughly
+            )
+            for seed in range(5)
+        ]
+        distances.append(np.median([away(one) for one in found if one is not None]))
+    assert distances[1] < 0.7 * distances[0]
+
+
+def test_with_less_effort_a_thorough_search_tries_fewer_hypotheses_too() -> None:
+    weighed = []
+    for effort in (1.0, 0.5):
+        sight = GaussianSight()
+        search(sight).look(belief(TRUE.centre), BLANK, STANDING, 1.0, effort, thoroughly=True)
+        weighed.append(sight.weighed)
+    assert weighed[1] == pytest.approx(0.5 * weighed[0], abs=4)
+
+
+def test_an_object_is_looked_for_about_its_centre_though_poses_are_of_a_pivot() -> None:
+    """A pivot out of the image: the object itself is in it."""
+    sight = GaussianSight()
+    sphere = BoundingSphere(np.zeros(3), 0.1, np.array([3.0, 0.0, 0.0]))
+    pivot = TRUE.centre + np.array([3.0, 0.0, 0.0])
+    sure = PoseGaussian(pivot, TRUE.rotation, np.diag([1e-4] * 6))
+    one = ImageSearch(sight, sphere, DEFAULT_FUSION, seed=1)
+    assert one.look(PoseMixture((sure,), np.ones(1)), BLANK, STANDING, 1.0) is not None

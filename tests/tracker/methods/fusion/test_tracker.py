@@ -12,13 +12,16 @@ from followed import follow
 from inhand_tracker.body import skeleton as body
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.geometry.pose_gaussian import PoseGaussian, moved_covariance
 from inhand_tracker.methods.fusion.parameters import FusionParameters
-from inhand_tracker.methods.fusion.tracker import FusionTracker
+from inhand_tracker.methods.fusion.search import ImageSearch
+from inhand_tracker.methods.fusion.tracker import FusionTracker, confidence_of
 from inhand_tracker.model.model import Model, ModelError
 from people import (
     FRAME_NS,
     held,
     scipy_rotation,
+    sequence,
     unseen_wave,
     wave_model,
     waving,
@@ -60,7 +63,8 @@ def errors(estimates: Sequence[Estimate], places: np.ndarray) -> np.ndarray:
 
 FIRST_FRAME = """
 import sys
-from inhand_tracker.methods.fusion.tracker import FusionTracker
+from inhand_tracker.methods.fusion.search import ImageSearch
+from inhand_tracker.methods.fusion.tracker import FusionTracker, confidence_of
 from numba.core.dispatcher import Dispatcher
 from people import FRAME_NS, held, unseen_wave, wave_model
 from wedges import draw
@@ -381,3 +385,39 @@ def test_a_model_of_an_older_release_says_to_train_again() -> None:
     old: Model = replace(wave_model(), prior=None)
     with pytest.raises(ModelError, match=r"the model of wedge .* no prior: train it again"):
         FusionTracker(old)
+
+
+# --- Postures unlike all that were learned
+
+
+def sharpness_while(shoulders_m: float, monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """How much images count while the wedge is waved, by shoulders that far from where they are."""
+    counted: list[float] = []
+    looked = ImageSearch.look
+
+    def look(search: ImageSearch, *given: object, thoroughly: bool) -> object:
+        counted.append(given[3])
+        return looked(search, *given, thoroughly=thoroughly)
+
+    one = tracker()
+    monkeypatch.setattr(ImageSearch, "look", look)
+    joints = sequence("p0", seed=0).joints[:8].copy()
+    joints[:, [2, 4, 8], 1] += shoulders_m
+    follow(one, joints, images()[:8])
+    return counted
+
+
+def test_a_smear_counts_less_but_in_a_strange_posture_it_says_more_than_the_body(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert min(sharpness_while(0.0, monkeypatch)) < 0.9
+    assert sharpness_while(0.3, monkeypatch) == [1.0] * 8
+
+
+def test_the_confidence_is_that_of_the_object_s_centre() -> None:
+    (estimate,), prior = follow(tracker(), unseen_wave(1)), wave_model().prior
+    assert prior is not None
+    arm = scipy_rotation(estimate.rotation).apply(prior.centre)
+    covariance = moved_covariance(estimate.covariance, arm)
+    of_centre = PoseGaussian(np.zeros(3), estimate.rotation, covariance)
+    assert estimate.confidence == pytest.approx(confidence_of(of_centre, 256), abs=0.01)

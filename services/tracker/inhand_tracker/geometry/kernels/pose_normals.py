@@ -235,6 +235,25 @@ def each_once(
 
 
 @vectorised("(s,s),(v)->(s,s)")
+def moved_covariance(covariance: Array, arm: Array, moved: Array) -> None:
+    """Find L C Lᵀ, where L takes deviations of a pose to those of a point at ``arm`` (3,)."""
+    x, y, z = vector_in(arm)
+    half = np.empty((6, 6))
+    for column in range(6):
+        a, b, c = covariance[3, column], covariance[4, column], covariance[5, column]
+        half[0, column] = covariance[0, column] + b * z - c * y
+        half[1, column] = covariance[1, column] - a * z + c * x
+        half[2, column] = covariance[2, column] + a * y - b * x
+        half[3, column], half[4, column], half[5, column] = a, b, c
+    for row in range(6):
+        a, b, c = half[row, 3], half[row, 4], half[row, 5]
+        moved[row, 0] = half[row, 0] + b * z - c * y
+        moved[row, 1] = half[row, 1] - a * z + c * x
+        moved[row, 2] = half[row, 2] + a * y - b * x
+        moved[row, 3], moved[row, 4], moved[row, 5] = a, b, c
+
+
+@vectorised("(s,s),(v)->(s,s)")
 def moved_information(information: Array, arm: Array, moved: Array) -> None:
     """Find Lᵀ I L, where L takes deviations of a pose to those of a point at ``arm`` (3,)."""
     x, y, z = vector_in(arm)

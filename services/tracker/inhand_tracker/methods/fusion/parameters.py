@@ -38,6 +38,13 @@ class FusionParameters:
     left_deviation_rad: float = 0.05
     """Standard deviation, in radians, of a frame's turn of an object that was left, or of the
     camera."""
+    goes_on_share: float = 0.3
+    """Probability, beside those three, that the object goes on as it went, where a posture is
+    strange: joints lag and leap more than an object does."""
+    goes_on_deviation_m: float = 0.02
+    """Standard deviation, in metres, of a frame's change of an object's movement."""
+    goes_on_deviation_rad: float = 0.1
+    """Standard deviation, in radians, of a frame's change of an object's turning."""
     forgetting_s: float = 0.3
     """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
 
@@ -89,6 +96,24 @@ class FusionParameters:
     confidence_samples: int = 256
     """Number of poses drawn from an estimate to find its confidence."""
 
+    # How an image is searched where a posture is strange, and the body says little.
+    narrowing_rounds: int = 3
+    """Number of rounds in which more hypotheses scatter about the best ones so far (narrowing)."""
+    narrowing_share: float = 0.4
+    """Share of the deviations of what is believed by which those of the first round scatter; those
+    of each further one scatter by half as much."""
+    narrowed_hypotheses: int = 120
+    """Number of hypotheses in each of these rounds."""
+    narrowed_best: int = 20
+    """Number of hypotheses, the best ones so far, that those of a round scatter about."""
+    narrowed_refined: int = 4
+    """Number of hypotheses, best first, that are refined after these rounds."""
+    narrowed_off_m: float = 0.05
+    """Metres, at the most, that a pose is off then: it lies closer to the truth than what is
+    believed is wide, and from far away refinement finds other things than the object."""
+    narrowed_off_rad: float = 0.25
+    """Radians, at the most, that a pose is off then."""
+
     def with_effort(self, effort: float) -> "FusionParameters":
         """Return the parameters of a search of which only a share of the work may be done."""
         if effort >= 1.0:
@@ -98,6 +123,8 @@ class FusionParameters:
             self,
             hypotheses=max(fewest, round(effort * self.hypotheses)),
             refined_hypotheses=max(1, round(effort * self.refined_hypotheses)),
+            narrowed_hypotheses=max(1, round(effort * self.narrowed_hypotheses)),
+            narrowed_refined=max(1, round(effort * self.narrowed_refined)),
         )
 
 

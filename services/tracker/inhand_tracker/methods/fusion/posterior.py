@@ -26,7 +26,8 @@ from inhand_tracker.sight.view import SightView
 class ImagePosterior:
     """One object's poses, judged by a view of an image and by a belief.
 
-    The image counts by its ``sharpness``, from 0 to 1.
+    The image counts by its ``sharpness``, from 0 to 1. Where the search is ``thorough``, poses are
+    near the truth before they are refined.
     """
 
     sight: Sight
@@ -35,6 +36,7 @@ class ImagePosterior:
     belief: PoseMixture
     sharpness: float
     parameters: FusionParameters
+    thorough: bool = False
 
     def scores(
         self, centres: Array, orientations: Array, *, quickly: bool = False
@@ -84,7 +86,12 @@ class ImagePosterior:
             self.sphere.origins(centres, orientations),
             orientations,
             self.view,
-            PosePrior((places - arms)[nearest], turns[nearest], of_origins[nearest]),
+            PosePrior(
+                (places - arms)[nearest],
+                turns[nearest],
+                of_origins[nearest],
+                self._most_off(),
+            ),
             self.parameters.refinement_temper * self.sharpness,
         )
         arms = self.sphere.arm(refined.rotations)
@@ -99,6 +106,12 @@ class ImagePosterior:
         """Choose poses (S, 3), (S, 4) of which none is the same as one before."""
         near = self.parameters.same_mode_m, self.parameters.same_mode_rad
         return np.flatnonzero(each_once(centres, orientations, *near))
+
+    def _most_off(self) -> tuple[float, float]:
+        """How far poses are off before they are refined, in metres and radians, at the most."""
+        if not self.thorough:
+            return np.inf, np.inf
+        return self.parameters.narrowed_off_m, self.parameters.narrowed_off_rad
 
     def _tempered(self, seen: Array) -> Array:
         return self.parameters.image_temper * self.sharpness * seen

@@ -13,6 +13,7 @@ from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.camera import NEAREST_M, Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, means_of
+from inhand_tracker.methods.fusion.narrowing import Hypotheses, narrow
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.methods.fusion.posterior import ImagePosterior
 from inhand_tracker.sight.colours import Colours
@@ -38,7 +39,7 @@ class ImageSearch:
         self._looks = 0
         self._found: _Found | None = None
         self._support: Support | None = None
-        self.tried: WeighedPoses | None = None
+        self.tried: Hypotheses | None = None
         """The last look's hypotheses; None where the object was out of the image."""
 
     def look(
@@ -48,24 +49,31 @@ class ImageSearch:
         joints: Array,
         sharpness: float,
         effort: float = 1.0,
+        *,
+        thoroughly: bool = False,
     ) -> PoseGaussian | None:
         """Return what is believed after a look at the image; None where the object is out of it.
 
         ``joints`` (20, 3) in the camera frame; an image counts by ``sharpness``, from 0 to 1; fewer
-        hypotheses are tried with less ``effort`` than 1.
+        hypotheses are tried with less ``effort`` than 1. ``thoroughly`` where bodies say little of
+        the object: hypotheses are narrowed down then.
         """
         self._support = None
         parameters = self._parameters.with_effort(effort)
         hypotheses = belief.sample(parameters.hypotheses, self._random)
-        region = self._region(hypotheses[0], image.camera)
+        region = self._region(self._sphere.middles(*hypotheses), image.camera)
         if region is None:
             self._found = self.tried = None
             return None
         view = self._open(belief.parts[0], image, region, joints)
-        posterior = ImagePosterior(self._sight, self._sphere, view, belief, sharpness, parameters)
+        posterior = ImagePosterior(
+            self._sight, self._sphere, view, belief, sharpness, parameters, thoroughly
+        )
         posterior, scores = self._compare_unseen(posterior, *hypotheses)
-        self.tried = WeighedPoses(*hypotheses, scores)
-        modes, seen = posterior.modes(*self._starts(posterior, *hypotheses, scores))
+        self.tried = Hypotheses(*hypotheses, scores)
+        if thoroughly:
+            self.tried = narrow(posterior, self.tried, self._random)
+        modes, seen = posterior.modes(*self._starts(posterior, self.tried))
         weighed = posterior.weigh(modes, seen)
         if self._looks % parameters.looks_to_learn == 0:
             best = int(np.argmax(weighed.weights))
@@ -126,18 +134,18 @@ class ImageSearch:
         posterior = replace(posterior, view=view)
         return posterior, posterior.scores_by(weighed, centres, orientations)[0]
 
-    def _starts(
-        self, posterior: ImagePosterior, centres: Array, orientations: Array, scores: Array
-    ) -> tuple[Array, Array]:
+    def _starts(self, posterior: ImagePosterior, hypotheses: Hypotheses) -> tuple[Array, Array]:
         """Poses (S, 3), (S, 4) to refine: the means of parts that are believed, and the likeliest
-        of hypotheses (P, 3), (P, 4) by their scores (P,)."""
+        of hypotheses."""
         means, turns = posterior.belief.means
         believed = posterior.belief.weights >= posterior.parameters.least_refined_weight
-        count = posterior.parameters.refined_hypotheses
-        likeliest = np.argpartition(scores, -count)[-count:]
+        parameters = posterior.parameters
+        likeliest = hypotheses.best(
+            parameters.narrowed_refined if posterior.thorough else parameters.refined_hypotheses
+        )
         return (
-            np.concatenate((means[believed], centres[likeliest])),
-            np.concatenate((turns[believed], orientations[likeliest])),
+            np.concatenate((means[believed], likeliest.centres)),
+            np.concatenate((turns[believed], likeliest.orientations)),
         )
 
     def _learn_colours(self, pose: PoseGaussian, frame: SightFrame, *, of_object: float) -> None:
@@ -167,15 +175,6 @@ class ImageSearch:
         by_learning = self._sight.log_likelihoods_by_term(*pose, found.view)
         recoloured = float(by_learning["interior"][0]) - by_training["interior"]
         return Support(**by_training, recoloured=recoloured)
-
-
-@dataclass(frozen=True)
-class WeighedPoses:
-    """Hypotheses: ``centres`` (P, 3) of the object, ``orientations`` (P, 4), ``scores`` (P,)."""
-
-    centres: Array
-    orientations: Array
-    scores: Array
 
 
 @dataclass(frozen=True)

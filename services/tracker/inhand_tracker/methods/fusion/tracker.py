@@ -18,10 +18,16 @@ from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import AGREEMENT_M, AGREEMENT_RAD, Estimate
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.kernels.pose_normals import share_near
-from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, lever
+from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, moved_covariance
 from inhand_tracker.geometry.weights import normalised_weights
 from inhand_tracker.methods.follower import Follower, FollowingTracker
-from inhand_tracker.methods.fusion.belief import Belief, BodyExpectation, carry_over
+from inhand_tracker.methods.fusion.belief import (
+    Belief,
+    BodyExpectation,
+    Expected,
+    carry_over,
+    expect_afresh,
+)
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
 from inhand_tracker.methods.fusion.search import ImageSearch
 from inhand_tracker.model.model import Model, ModelError
@@ -56,7 +62,7 @@ class FusionTracker(FollowingTracker):
             model.prior, model.shape.mirror_normal, left_handed, parameters.prior
         )
         radius = np.linalg.norm(model.shape.vertices - model.prior.centre, axis=1).max()
-        sphere = BoundingSphere(expectation.centre, float(radius))
+        sphere = BoundingSphere(expectation.centre, float(radius), expectation.pivot)
         self._object = _FusedObject(expectation, sphere, parameters)
         self._sight: Sight | None = None
         if terms:
@@ -115,11 +121,12 @@ class FusionFollower(Follower):
     def estimate(self, body: Body, time_ns: int, image: Image | None) -> Estimate:
         descriptions = self._window.add(body.joints, time_ns, body.height)
         self._body = body, descriptions
-        expected = self._expectation.expect(body, descriptions)
+        looks = self._search is not None and image is not None
+        expected = self._expectation.expect(body, descriptions, apart=looks)
         belief = self._carry_over(expected, time_ns)
         seen = self._look(belief, expected, body, image)
         believed = belief.parts[0] if seen is None else seen
-        self._before = Belief(expected, believed, time_ns)
+        self._before = self._after(expected, believed, time_ns)
         return self._state(believed, seen=seen is not None)
 
     def considered(self) -> Considered | None:
@@ -139,9 +146,16 @@ class FusionFollower(Follower):
     def support(self) -> Support | None:
         return self._search.support if self._search is not None and self._looked else None
 
-    def _carry_over(self, expected: PoseGaussian, time_ns: int) -> PoseMixture:
+    def _after(self, expected: Expected, believed: PoseGaussian, time_ns: int) -> Belief:
+        """The belief at the end of a frame, with the frame before it where that is not long ago."""
+        before = self._before
+        if before is None or not continues(before.time_ns, time_ns):
+            return Belief(expected, believed, time_ns)
+        return Belief(expected, believed, time_ns, replace(before, earlier=None))
+
+    def _carry_over(self, expected: Expected, time_ns: int) -> PoseMixture:
         """What is believed before the image is seen; after a gap, what the body says alone."""
-        before, alone = self._before, PoseMixture((expected,), np.ones(1))
+        before, alone = self._before, expect_afresh(expected)
         if before is None or not self._parameters.carries:
             return alone
         if not continues(before.time_ns, time_ns):
@@ -150,22 +164,25 @@ class FusionFollower(Follower):
         return carry_over(before, expected, time_ns, persistence_s, self._parameters)
 
     def _look(
-        self, belief: PoseMixture, expected: PoseGaussian, body: Body, image: Image | None
+        self, belief: PoseMixture, expected: Expected, body: Body, image: Image | None
     ) -> PoseGaussian | None:
         """What is believed after a look at the image; None where it shows nothing of the object."""
         if self._search is None or image is None:
             return None
         joints = mirror_joints(body.joints) if self._expectation.left_handed else body.joints
         sharpness = self._sharpness(expected, image)
-        seen = self._search.look(belief, image, joints, sharpness, self.effort)
+        seen = self._search.look(
+            belief, image, joints, sharpness, self.effort, thoroughly=expected.strange
+        )
         self._looked = True
         return seen
 
-    def _sharpness(self, expected: PoseGaussian, image: Image) -> float:
-        """Sharpness, from 0 to 1, of an object that moved to where it is expected."""
-        if self._before is None:
+    def _sharpness(self, expected: Expected, image: Image) -> float:
+        """Sharpness, from 0 to 1, of an object that moved to where it is expected: whole where the
+        posture is strange, as even a smear says more than the body does."""
+        if self._before is None or expected.strange:
             return 1.0
-        way = self._sphere.way(self._before.expected, expected, image.camera)
+        way = self._sphere.way(self._before.expected.whole, expected.whole, image.camera)
         return 1.0 / (1.0 + (way / self._parameters.blurred_pixels) ** 2)
 
     def _state(self, believed: PoseGaussian, *, seen: bool) -> Estimate:
@@ -173,13 +190,17 @@ class FusionFollower(Follower):
         scale = self._parameters.seen_covariance_scale if seen else 1.0
         stated = replace(believed, covariance=scale * believed.covariance)
         arm = self._sphere.arm(stated.rotation)
-        back = lever(-arm)
+        middle = self._sphere.middles(stated.centre, stated.rotation)
+        of_middle = moved_covariance(stated.covariance, middle - stated.centre)
         return Estimate(
             "tracked",
-            confidence_of(stated, self._parameters.confidence_samples),
+            confidence_of(
+                PoseGaussian(middle, stated.rotation, of_middle),
+                self._parameters.confidence_samples,
+            ),
             stated.centre - arm,
             stated.rotation,
-            back @ stated.covariance @ back.T,
+            moved_covariance(stated.covariance, -arm),
         )
 
 
