@@ -115,9 +115,11 @@ def test_images_show_where_it_is_held_otherwise_than_usual() -> None:
     places, turns = held(joints, seed=7)
     places = places + np.array([0.0, 0.04, 0.0])
     shown = [draw(*pose) for pose in zip(places, turns, strict=True)]
-    unseen, seen = (follow(tracker(), joints, given) for given in (None, shown))
-    assert errors(unseen, places)[5:].mean() > 0.03
-    assert errors(seen, places)[5:].mean() < 0.5 * errors(unseen, places)[5:].mean()
+    off_unseen = errors(follow(tracker(), joints), places)[5:].mean()
+    off_seen = [errors(follow(tracker(seed=s), joints, shown), places)[5:].mean() for s in range(6)]
+    assert off_unseen > 0.03
+    assert np.mean(off_seen) < 0.55 * off_unseen
+    assert max(off_seen) < 0.65 * off_unseen
 
 
 def test_what_was_seen_is_kept_for_a_while_and_fades() -> None:
