@@ -18,7 +18,8 @@ from inhand_studio.rig import Rig
 from inhand_studio.shapes import Shapes
 
 LIKELIEST, UNLIKELY = np.array([255.0, 110.0, 0.0]), np.array([15.0, 20.0, 60.0])
-"""Colours of the likeliest hypothesis, and of those that weigh next to nothing."""
+"""Colours of the likeliest hypothesis, and of those that weigh next to nothing, as the browser gets
+them, which shows them lighter (findings/viser-line-colours.sh)."""
 WITHOUT_SHAPE_M = 0.1
 """Length in metres of the stick that stands for an object without a mesh."""
 AXES_M = 0.05
