@@ -6,7 +6,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from inhand_hub.access import ROLES, Member
-from inhand_hub.members import SiteMembers
+from inhand_hub.members import (
+    AUTHORITY_FILE,
+    CERTIFICATE_FILE,
+    KEY_FILE,
+    MEMBERS_FILE,
+    SiteMembers,
+)
+from inhand_hub.settings import PORT
 from inhand_hub.site_folder import HUB, SiteFolder, create_site
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE
@@ -14,7 +21,6 @@ from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import require_name
 
 HOSTS = ("localhost", "127.0.0.1")
-PORT = 7448
 FOLDER = Path("site")
 TABLES = {
     "camera": '[capture.{name}]\nsource = "oak"',
@@ -90,7 +96,7 @@ def _hub_hears(folder: SiteFolder) -> str:
     return (
         f"A hub that runs with {folder.hub} itself sees it within a second and starts anew, which "
         "cuts everybody off for some seconds; to a hub on another host copy "
-        f"{folder.hub / 'members.json'}."
+        f"{folder.hub / MEMBERS_FILE}."
     )
 
 
@@ -106,8 +112,8 @@ def _settings(site: SiteMembers, member: Member, folder: SiteFolder) -> str:
     return (
         f'realm = "{site.realm}"\nrig = "{member.rig}"\n\n'
         f'[zenoh]\nmode = "client"\nconnect = ["tls/{host}:{PORT}"]\n'
-        f'certificate = "{given}/certificate.pem"\nkey = "{given}/key.pem"\n'
-        f'authority = "{given}/authority.pem"\n\n{table}'
+        f'certificate = "{given}/{CERTIFICATE_FILE}"\nkey = "{given}/{KEY_FILE}"\n'
+        f'authority = "{given}/{AUTHORITY_FILE}"\n\n{table}'
     ).rstrip()
 
 

@@ -194,11 +194,12 @@ class Supervisor:
             ):
                 started += waiting.pop()
                 deadline = time.monotonic() + UP_WITHIN_S
+            can_hear = self._can_hear()
             for child in started:
                 if child.tend() == WRONG_USAGE:
                     log.error("%s has wrong settings (see above): stopping everything", child.name)
                     return WRONG_USAGE
-                child.kill_if_it_hangs(self._reports(child.name), can_hear=self._can_hear())
+                child.kill_if_it_hangs(self._reports(child.name), can_hear=can_hear)
             if not waiting and all(child.done for child in started):
                 return DONE
             time.sleep(TICK_S)

@@ -36,9 +36,7 @@ class Site:
 
     def live_key(self, service: str, instance: str) -> str:
         """The key of an instance's liveliness token; raises KeyFormatError."""
-        require_name("service", service)
-        require_name("instance", instance)
-        return f"{self._root}/@live/{service}/{instance}"
+        return self._of_service("@live", service, "instance", instance)
 
     def live_pattern(self) -> str:
         """All liveliness tokens of this rig, as a Zenoh key expression."""
@@ -57,21 +55,15 @@ class Site:
         return f"{self._claims(service, instance)}/{phase}/*"
 
     def _claims(self, service: str, instance: str) -> str:
-        require_name("service", service)
-        require_name("instance", instance)
-        return f"{self._root}/@claim/{service}/{instance}"
+        return self._of_service("@claim", service, "instance", instance)
 
     def procedure_key(self, service: str, verb: str) -> str:
         """The key on which all instances of a service can be asked; raises KeyFormatError."""
-        require_name("service", service)
-        require_name("verb", verb)
-        return f"{self._root}/@rpc/{service}/{verb}"
+        return self._of_service("@rpc", service, "verb", verb)
 
     def access_key(self, service: str, instance: str) -> str:
         """The key on which a hub answers an instance that may be what it is."""
-        require_name("service", service)
-        require_name("instance", instance)
-        return f"{self._root}/@access/{service}/{instance}"
+        return self._of_service("@access", service, "instance", instance)
 
     def access_pattern(self) -> str:
         """The keys on which a hub answers all of this rig, as a Zenoh key expression."""
@@ -80,6 +72,11 @@ class Site:
     def pattern_of_version(self, version: int) -> str:
         """All that another version of Inhand publishes for this rig, as a Zenoh key expression."""
         return f"{self.realm}/@v{version}/{self.rig}/*/*"
+
+    def _of_service(self, kind: str, service: str, what: str, name: str) -> str:
+        require_name("service", service)
+        require_name(what, name)
+        return f"{self._root}/{kind}/{service}/{name}"
 
     @property
     def _root(self) -> str:

@@ -46,7 +46,7 @@ def from_now(days: float) -> Validity:
 
 def new_authority(common_name: str, validity: Validity | None = None) -> Issued:
     """Make an authority, which signs itself."""
-    key = ec.generate_private_key(ec.SECP256R1())
+    key = new_key()
     builder = _builder(common_name, key, validity or from_now(DEFAULT_HUB.authority_days))
     usage = _usage(signs=True)
     builder = builder.issuer_name(_name(common_name)).add_extension(usage, critical=True)

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import msgspec
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.hub_access import DAY_S
 from inhand_schemas.fields import Name, Text
 from msgspec import Meta, Struct
 
@@ -15,7 +16,6 @@ from inhand_hub.access import Member
 MEMBERS_FILE = "members.json"
 AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE = "authority.pem", "certificate.pem", "key.pem"
 """What the hub, and each member, has beside: whom it trusts, and what it shows."""
-DAY_S = 86_400.0
 
 
 class SiteMembers(Struct, frozen=True, kw_only=True):

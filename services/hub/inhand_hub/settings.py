@@ -6,10 +6,14 @@ from typing import Annotated
 from inhand_runtime.settings import Address, FilePath, Section
 from pydantic import AfterValidator, Field
 
+PORT = 7448
+"""The port of a hub, where none is named: the next one to that at which processes meet."""
+USUAL_ADDRESS = f"tls/127.0.0.1:{PORT}"
+
 
 def _encrypted(address: str) -> str:
     if not address.startswith("tls/"):
-        raise ValueError(f"{address!r} is not encrypted; write it as tls/127.0.0.1:7448")
+        raise ValueError(f"{address!r} is not encrypted; write it as {USUAL_ADDRESS}")
     return address
 
 
@@ -22,4 +26,4 @@ class HubSettings(Section):
     folder: FilePath = Field(default=Path("site/hub"), validate_default=True)
     listen: Annotated[
         tuple[Annotated[Address, AfterValidator(_encrypted)], ...], Field(min_length=1)
-    ] = ("tls/127.0.0.1:7448",)
+    ] = (USUAL_ADDRESS,)

@@ -14,6 +14,7 @@ from inhand_tracker.geometry.arrays import Array, Bytes, Singles
 from inhand_tracker.shape.shape import ObjectShape
 
 from inhand_studio.live_page.parameters import LiveParameters
+from inhand_studio.live_page.texts import named
 from inhand_studio.rig import Rig
 from inhand_studio.shapes import Shapes
 
@@ -60,23 +61,17 @@ class LiveHypotheses:
     def draw(self, camera: str) -> list[str]:
         """Draw what trackers of a camera said last; returns what is to be said of it."""
         replies = self._replies
+        told = [one for reply in replies if reply.camera == camera for one in reply.objects]
         if replies is not self._drawn_of:
             self._drawn_of = replies
             before = self._drawn
-            self._drawn = {
-                node.name: node
-                for reply in replies
-                if reply.camera == camera
-                for one in reply.objects
-                for node in self._nodes(one)
-            }
+            self._drawn = {node.name: node for one in told for node in self._nodes(one)}
             for name in before.keys() - self._drawn.keys():
                 before[name].remove()
         if self._stop is None:
             return []
         if self._problem is not None:
             return [self._problem]
-        told = [one for reply in replies if reply.camera == camera for one in reply.objects]
         return [line for one in told for line in said_of(one)] or [
             f"No tracker of {camera} has told hypotheses yet: it tells them of people in view."
         ]
@@ -143,9 +138,8 @@ def _arrays(poses: Sequence[Pose]) -> tuple[Array, Array]:
 
 def said_of(one: ObjectHypotheses) -> Iterator[str]:
     """Say how many hypotheses of an object are drawn, and where the body's parts take it to be."""
-    whose = one.object if one.person is None else f"{one.object} of person {one.person}"
     looked = f"{len(one.poses)} hypotheses" if one.poses else "no hypotheses, for lack of an image"
-    yield f"{whose}: {looked}, {len(one.predictions)} predictions."
+    yield f"{named(one)}: {looked}, {len(one.predictions)} predictions."
     if one.predictions:
         places = np.array([pose.translation for pose in one.predictions.values()])
         off = np.linalg.norm(places - np.median(places, axis=0), axis=1)

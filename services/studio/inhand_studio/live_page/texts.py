@@ -11,6 +11,7 @@ from inhand_runtime.health_lines import (
 )
 from inhand_runtime.roll import Heard, Instance, Roll
 from inhand_schemas.messages import ObjectPose
+from inhand_schemas.procedures import ObjectHypotheses
 
 from inhand_studio.live_page.conditions import age_text
 from inhand_studio.live_page.parameters import LiveParameters
@@ -24,7 +25,7 @@ def objects_html(objects: Sequence[ObjectPose], parameters: LiveParameters) -> s
     now_ns = time.time_ns()
     rows = [
         (
-            _named(pose),
+            named(pose),
             pose.state,
             f"{pose.confidence:.2f}",
             age_text(pose, now_ns, parameters),
@@ -48,8 +49,9 @@ def shown_html(shown_hz: float, pictures_hz: float) -> str:
     return lines_html([f"{shown_hz:.0f} of {pictures_hz:.0f} pictures a second are shown."], "note")
 
 
-def _named(pose: ObjectPose) -> str:
-    return pose.object if pose.person is None else f"{pose.object} of person {pose.person}"
+def named(thing: ObjectPose | ObjectHypotheses) -> str:
+    """Name an object, and whose it is where that is known."""
+    return thing.object if thing.person is None else f"{thing.object} of person {thing.person}"
 
 
 def _row(instance: Instance, heard: Heard | None) -> tuple[str, ...]:

@@ -169,7 +169,7 @@ def predict_apart(
     (1, D); how sure they are is not told: their covariances are 0."""
     regression = prior.regressions[0]
     kernel = regression.kernel_of(description[0])
-    stretch = max(parameters.farthest_kernel / max(float(kernel.max()), TINY), 1.0)
+    stretch = _stretch(float(kernel.max()), parameters)
     predicted = regression.predict_by(stretch * kernel).reshape(-1, TARGETS)
     return [
         Prediction(
@@ -218,7 +218,7 @@ def _regressed(
 ) -> Prediction:
     """Predict by the regressions, by their kernels (L,) at a body."""
     nearest = [float(kernel.max()) for kernel in kernels]
-    stretches = [max(parameters.farthest_kernel / max(one, TINY), 1.0) for one in nearest]
+    stretches = [_stretch(one, parameters) for one in nearest]
     here = _Predictions(
         _predicted(prior, kernels, stretches),
         anchors,
@@ -238,6 +238,11 @@ def _regressed(
     taken = here.taken_along(novelty, at_nearest)
     moved = Prediction(*taken.fused(prior.spread, parameters.distrust), usual.covariance)
     return between(usual, moved, 1.0, around=1.0)
+
+
+def _stretch(nearest: float, parameters: PriorParameters) -> float:
+    """The factor on kernels where the ``nearest`` landmark's is small, as all are far away."""
+    return max(parameters.farthest_kernel / max(nearest, TINY), 1.0)
 
 
 @dataclass(frozen=True)

@@ -145,11 +145,7 @@ def carry_over(
     """
     elapsed_s = (time_ns - before.time_ns) / 1e9
     was, now = before.expected.whole, expected.whole
-    if (
-        expected.strange
-        and before.expected.alternatives is not None
-        and expected.alternatives is not None
-    ):
+    if before.expected.alternatives is not None and expected.alternatives is not None:
         was, now = before.expected.alternatives[0], expected.alternatives[0]
     stays = _stays(was, before.believed, now, elapsed_s, persistence_s, parameters.forgetting_s)
     afresh = expect_afresh(expected)
