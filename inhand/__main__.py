@@ -45,6 +45,7 @@ VERBS = {
     "topics": "list what a running site publishes",
     "echo": "print messages",
     "rate": "measure rates, gaps and sizes",
+    "chaos": "inflict faults on a rig of this machine, and say what each costs",
     "doctor": "say what must be mended on this host before a rig runs",
     "status": "list the live instances and their health",
 }

@@ -37,31 +37,33 @@ def write_rig_file(folder: Path, interaction: str, model: Path, skeletons: str =
     """Write the settings of a rig with a simulated camera, on a free port of this machine; its
     ``skeletons`` are the source's, or estimated from its pictures."""
     path = folder / "rig.toml"
-    lines = [
-        'rig = "demo"',
-        "[zenoh]",
-        f'meeting = "tcp/127.0.0.1:{_free_port()}"',
-        "[log]",
-        'level = "warning"',
-        "[capture.camera]",
-        'source = "simulator"',
-        f'skeletons = "{skeletons}"',
-        "wait_for_reader_s = 30",
-        "[capture.camera.options]",
-        f'interaction = "{interaction}"',
-        f"participant = {DEFAULT_DEMONSTRATION.unseen_participant}",
-        f"seed = {DEFAULT_DEMONSTRATION.seed}",
-        "[tracker.follower]",
-        'camera = "camera"',
-        f'model = "{model}"',
-        "[recorder.disk]",
-        f'folder = "{folder / "recordings"}"',
-    ]
+    meeting = f'[zenoh]\nmeeting = "tcp/127.0.0.1:{free_port()}"'
+    tables = rig_tables(folder, interaction, model, skeletons).values()
+    lines = ['rig = "demo"', meeting, '[log]\nlevel = "warning"', *tables]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return path
 
 
-def _free_port() -> int:
+def rig_tables(
+    folder: Path, interaction: str, model: Path, skeletons: str = "source"
+) -> dict[str, str]:
+    """Return the tables of the settings by service: a simulated camera, which waits for a reader, a
+    tracker of its person, and a recorder into the folder."""
+    return {
+        "capture": (
+            f'[capture.camera]\nsource = "simulator"\nskeletons = "{skeletons}"\n'
+            "wait_for_reader_s = 30\n[capture.camera.options]\n"
+            f'interaction = "{interaction}"\n'
+            f"participant = {DEFAULT_DEMONSTRATION.unseen_participant}\n"
+            f"seed = {DEFAULT_DEMONSTRATION.seed}"
+        ),
+        "tracker": f'[tracker.follower]\ncamera = "camera"\nmodel = "{model}"',
+        "recorder": f'[recorder.disk]\nfolder = "{folder / "recordings"}"',
+    }
+
+
+def free_port() -> int:
+    """Return a port of this machine that nobody listens on."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])

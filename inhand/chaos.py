@@ -1,0 +1,155 @@
+"""``inhand chaos``: inflict faults on a rig of this machine, and say what each costs."""
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from inhand_lab.chaos.account import Unrecorded, recorded_skeletons, unrecorded
+from inhand_lab.chaos.faults import FAULTS
+from inhand_lab.chaos.parameters import DEFAULT_CHAOS
+from inhand_lab.chaos.rig import INHAND, ChaosRig, one_host, two_hosts
+from inhand_lab.chaos.trials import Trial, inflict
+from inhand_lab.demonstration.parameters import DEFAULT_DEMONSTRATION
+from inhand_lab.demonstration.preparation import train_demonstration
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.exit_codes import DONE, FAILED
+
+from inhand.looking import output
+from inhand.progress import progress_bar
+from inhand.results import listing, write_json
+
+MOST_LOST_BEFORE_S = 1.0
+"""Seconds of what was captured before a fault that may be in no recording."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The verb's arguments."""
+    parser.add_argument(
+        "--faults",
+        nargs="+",
+        metavar="FAULT",
+        default=list(FAULTS),
+        help=f"which, in this order, of: {', '.join(FAULTS)} (default: all)",
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Exit code 1 where a promise is broken."""
+    if unknown := [name for name in arguments.faults if name not in FAULTS]:
+        raise SettingsError(f"there is no fault {unknown[0]!r}; there are: {', '.join(FAULTS)}")
+    with tempfile.TemporaryDirectory(prefix="inhand_chaos_") as name:
+        folder = Path(name)
+        people = DEFAULT_DEMONSTRATION.trained_participants
+        with progress_bar("simulating people to learn from", people) as advance:
+            _, model = train_demonstration(folder, DEFAULT_CHAOS.interaction, advance)
+        rows = [
+            row
+            for name, rig, of_site in (("peers", one_host, False), ("site", two_hosts, True))
+            for row in _inflict_on(
+                rig(_made(folder / name), model),
+                [one for one in arguments.faults if FAULTS[one].of_site == of_site],
+            )
+        ]
+    output().print(_table(rows))
+    broken = [(trial, lines) for trial, kept in rows if (lines := _broken(trial, kept))]
+    for trial, lines in broken:
+        for line in lines:
+            print(f"inhand chaos: {trial.name}: {line}", file=sys.stderr)
+    if arguments.json is not None:
+        write_json(arguments.json, {"faults": {t.name: _result(t, kept) for t, kept in rows}})
+    return FAILED if broken else DONE
+
+
+def _inflict_on(
+    running: AbstractContextManager[ChaosRig], names: Sequence[str]
+) -> list[tuple[Trial, Unrecorded]]:
+    """Inflict faults on a rig, one after the other, and look into its recordings."""
+    if not names:
+        return []
+    trials = []
+    with running as rig, progress_bar("inflicting faults", len(names)) as advance:
+        for name in names:
+            trials.append(inflict(name, FAULTS[name], rig, lambda: _told(rig)))
+            advance()
+    recorded = recorded_skeletons(rig.recordings)
+    return [(trial, unrecorded(trial, recorded)) for trial in trials]
+
+
+def _made(folder: Path) -> Path:
+    folder.mkdir()
+    return folder
+
+
+def _told(rig: ChaosRig) -> list[str]:
+    """What ``inhand status`` calls wrong now."""
+    path = rig.folder / "status.json"
+    command = [*INHAND, "status", "--config", str(rig.config), "--json", str(path)]
+    path.unlink(missing_ok=True)
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if not path.exists():  # it could not look, and says why
+        return [done.stderr.strip()]
+    told: list[str] = json.loads(path.read_text(encoding="utf-8"))["problems"]
+    return told
+
+
+def _broken(trial: Trial, kept: Unrecorded) -> list[str]:
+    """The promises that a trial broke, a line each."""
+    lines = [f"the {service} ended, which was not its fault" for service in trial.died]
+    poses, promised = trial.poses, DEFAULT_CHAOS
+    if poses.back_s is None or poses.back_s > promised.back_within_s:
+        lines.append(f"poses were back after {_seconds(poses.back_s)}")
+    if poses.normal_s is None or poses.normal_s > promised.age_normal_within_s:
+        lines.append(f"poses were as old as usual after {_seconds(poses.normal_s)}")
+    if kept.before_s > MOST_LOST_BEFORE_S:
+        lines.append(f"of the {kept.before_s:.1f} s before, something was not recorded")
+    return lines
+
+
+def _table(rows: Sequence[tuple[Trial, Unrecorded]]) -> Any:
+    table = listing(
+        ("fault", "`inhand status` meanwhile"),
+        ("silent, s", "back, s", "age usual, s", "frames", "without pose", "unrecorded"),
+    )
+    for trial, kept in rows:
+        table.add_row(
+            FAULTS[trial.name].what,
+            _summary(trial.told),
+            f"{trial.poses.silent_s:.1f}",
+            _seconds(trial.poses.back_s),
+            _seconds(trial.poses.normal_s),
+            str(len(trial.captured)),
+            str(trial.without_pose),
+            str(kept.skeletons),
+        )
+    return table
+
+
+def _summary(told: Sequence[str]) -> str:
+    """The first thing that was told, and how many more."""
+    if not told:
+        return "nothing"
+    return told[0] if len(told) == 1 else f"{told[0]}; and {len(told) - 1} more"
+
+
+def _seconds(value: float | None) -> str:
+    return "never" if value is None else f"{value:.1f}"
+
+
+def _result(trial: Trial, kept: Unrecorded) -> dict[str, Any]:
+    return {
+        **asdict(trial.poses),
+        "frames": len(trial.captured),
+        "without_pose": trial.without_pose,
+        "unrecorded": kept.skeletons,
+        "unrecorded_before_s": kept.before_s,
+        "told": trial.told,
+        "died": trial.died,
+    }

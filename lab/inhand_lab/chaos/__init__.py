@@ -1,0 +1,1 @@
+"""Faults that are inflicted on a running rig, and what they cost it."""

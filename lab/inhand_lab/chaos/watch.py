@@ -1,0 +1,135 @@
+"""Watches what a rig publishes, and says how it comes back after a fault."""
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import numpy as np
+from inhand_runtime.inbox import Received
+from inhand_runtime.session import Session, Subscription, end_subscription, subscribe
+from inhand_schemas.errors import MessageError
+from inhand_schemas.keys import Site
+from inhand_schemas.topics import POSE, SKELETONS, AnyTopic
+from inhand_tracker.geometry.arrays import Array
+
+from inhand_lab.chaos.parameters import DEFAULT_CHAOS, ChaosParameters
+
+
+@dataclass(frozen=True)
+class Arrivals:
+    """Messages of a stream in the order in which they came: when they were ``captured`` (N,) and
+    when they ``came`` (N,), both in seconds since the epoch."""
+
+    captured: Array
+    came: Array
+
+    @property
+    def ages(self) -> Array:
+        """How old each was when it came (N,), in seconds."""
+        return self.came - self.captured
+
+    def between(self, start: float, end: float) -> "Arrivals":
+        """Those that came in a span of time."""
+        chosen = (self.came >= start) & (self.came < end)
+        return Arrivals(self.captured[chosen], self.came[chosen])
+
+
+class Watch:
+    """Takes note of each skeleton and each pose of a rig as it comes."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._rows: dict[str, list[tuple[float, float]]] = {
+            SKELETONS.stream: [],
+            POSE.stream: [],
+        }
+
+    @contextmanager
+    def listening(self, session: Session, site: Site) -> Iterator[None]:
+        """Listen until the block ends."""
+        handles = [self._subscribe(session, site, topic) for topic in (SKELETONS, POSE)]
+        try:
+            yield
+        finally:
+            for handle in handles:
+                end_subscription(handle)
+
+    def of(self, topic: AnyTopic) -> Arrivals:
+        """All that came of a topic so far."""
+        with self._lock:
+            rows = np.array(self._rows[topic.stream]).reshape(-1, 2)
+        return Arrivals(rows[:, 0], rows[:, 1])
+
+    def _subscribe(self, session: Session, site: Site, topic: AnyTopic) -> Subscription:
+        rows = self._rows[topic.stream]
+
+        def note(sample: Received) -> None:
+            try:
+                message = topic.decode(sample.payload, sample.encoding)
+            except MessageError:
+                return  # one of ours: a fault sends such
+            with self._lock:
+                rows.append((message.time_ns / 1e9, sample.received_ns / 1e9))
+
+        return subscribe(session, topic.pattern(site), topic.delivery, note)
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """How a stream came through a fault, in seconds.
+
+    ``silent_s`` is the longest time in which nothing came, from the fault's begin on. Of the time
+    after the cause's end, ``back_s`` is when something new came, and ``normal_s`` from when on all
+    were as old as usual; None where that was not seen.
+    """
+
+    silent_s: float
+    back_s: float | None
+    normal_s: float | None
+
+    def promised(self, parameters: ChaosParameters = DEFAULT_CHAOS) -> bool:
+        """Whether it came back as soon as is promised."""
+        return (
+            self.back_s is not None
+            and self.back_s <= parameters.back_within_s
+            and self.normal_s is not None
+            and self.normal_s <= parameters.age_normal_within_s
+        )
+
+
+def recovery_of(
+    arrivals: Arrivals,
+    begin: float,
+    end: float,
+    until: float,
+    parameters: ChaosParameters = DEFAULT_CHAOS,
+) -> Recovery:
+    """Say how a stream came through a fault whose cause lasted from ``begin`` to ``end`` and that
+    was watched ``until`` then, all in seconds since the epoch."""
+    before = arrivals.between(begin - parameters.well_s, begin)
+    during = arrivals.between(begin, until)
+    edges = np.concatenate(([begin], during.came, [until]))
+    new = during.came[(during.came >= end) & (during.captured >= end)]
+    back_s = float(new[0] - end) if len(new) > 0 else None
+    normal_s = None
+    if len(before.came) > 0 and back_s is not None:
+        usual = 1e3 * float(np.median(before.ages))
+        limit_ms = parameters.usual_age_ratio * usual + parameters.usual_age_more_ms
+        normal_s = _normal_after(during, end, until, limit_ms / 1e3, parameters.window_s)
+        normal_s = None if normal_s is None else max(normal_s, back_s)
+    return Recovery(float(np.diff(edges).max()), back_s, normal_s)
+
+
+def _normal_after(
+    arrivals: Arrivals, end: float, until: float, limit: float, window_s: float
+) -> float | None:
+    """Seconds after ``end`` at which those windows begin that are all normal up to the last."""
+    normal = None
+    starts = np.arange(end, until - window_s + 1e-9, window_s)
+    for start in starts[::-1]:
+        ages = arrivals.between(start, start + window_s).ages
+        if len(ages) == 0 or float(np.median(ages)) > limit:
+            break
+        normal = float(start - end)
+    return normal

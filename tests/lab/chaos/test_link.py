@@ -1,0 +1,107 @@
+"""A link between two sockets that is cut, late, slow, lossy, or whole."""
+
+import socket
+import time
+from collections.abc import Iterator
+
+import pytest
+from inhand_lab.chaos.link import Condition, Link
+
+
+@pytest.fixture
+def ends() -> Iterator[tuple[Link, socket.socket, socket.socket]]:
+    """A link, and the sockets at both of its ends."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        with Link(server.getsockname()[1]).open() as link:
+            with socket.create_connection(("127.0.0.1", link.port)) as near:
+                far, _ = server.accept()
+                with far:
+                    near.settimeout(5.0)
+                    far.settimeout(5.0)
+                    yield link, near, far
+
+
+def received(end: socket.socket, count: int) -> bytes:
+    """So many bytes that come at an end."""
+    data = b""
+    while len(data) < count:
+        data += end.recv(65536)
+    return data
+
+
+def test_a_whole_link_passes_bytes_on_in_both_directions(
+    ends: tuple[Link, socket.socket, socket.socket],
+) -> None:
+    _, near, far = ends
+    sent = bytes(range(256)) * 2000
+    near.sendall(sent)
+    assert received(far, len(sent)) == sent
+    far.sendall(b"back")
+    assert received(near, 4) == b"back"
+
+
+def test_nothing_passes_a_cut_link_and_everything_comes_once_it_is_mended(
+    ends: tuple[Link, socket.socket, socket.socket],
+) -> None:
+    link, near, far = ends
+    far.settimeout(0.3)
+    with link.being(Condition(cut=True)):
+        near.sendall(b"held")
+        with pytest.raises(TimeoutError):
+            far.recv(1)
+    far.settimeout(5.0)
+    assert received(far, 4) == b"held"
+
+
+def test_bytes_are_under_way_as_long_as_the_link_is_late(
+    ends: tuple[Link, socket.socket, socket.socket],
+) -> None:
+    link, near, far = ends
+    with link.being(Condition(delay_s=0.25)):
+        begin = time.monotonic()
+        near.sendall(b"late")
+        assert received(far, 4) == b"late"
+        assert time.monotonic() - begin >= 0.25
+
+
+def test_a_slow_link_passes_so_many_bytes_a_second(
+    ends: tuple[Link, socket.socket, socket.socket],
+) -> None:
+    link, near, far = ends
+    with link.being(Condition(bytes_per_s=100_000.0)):
+        begin = time.monotonic()
+        near.sendall(bytes(50_000))
+        received(far, 50_000)
+        assert time.monotonic() - begin >= 0.5
+
+
+def test_what_is_lost_on_a_link_comes_a_retransmission_later(
+    ends: tuple[Link, socket.socket, socket.socket],
+) -> None:
+    link, near, far = ends
+    with link.being(Condition(lost=1.0)):
+        begin = time.monotonic()
+        near.sendall(b"again")
+        assert received(far, 5) == b"again"
+        assert time.monotonic() - begin >= 0.3
+
+
+def test_the_end_of_a_connection_reaches_the_other_end(
+    ends: tuple[Link, socket.socket, socket.socket],
+) -> None:
+    _, near, far = ends
+    near.sendall(b"last")
+    near.shutdown(socket.SHUT_WR)
+    assert received(far, 4) == b"last"
+    assert far.recv(1) == b""
+
+
+def test_who_cannot_be_reached_ends_a_connection_at_once() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        nobody = server.getsockname()[1]
+    with (
+        Link(nobody).open() as link,
+        socket.create_connection(("127.0.0.1", link.port)) as near,
+    ):
+        near.settimeout(5.0)
+        assert near.recv(1) == b""
