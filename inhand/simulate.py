@@ -7,6 +7,7 @@ from pathlib import Path
 from inhand_lab.datasets.dataset import Dataset, load_dataset
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.driven.dataset import DrivenSettings, generate_driven, pairs_for
+from inhand_lab.people.person import PEOPLE, USUAL_PEOPLE
 from inhand_lab.sensing.cameras import CAMERAS, KINECT
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.parameters import CAMERA_PLACINGS, USUAL_VIEWS
@@ -41,6 +42,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=list(CAMERA_PLACINGS),
         default=USUAL_VIEWS,
         help=f"where cameras stand: before people, or anywhere round them (default: {USUAL_VIEWS})",
+    )
+    parser.add_argument(
+        "--people",
+        choices=PEOPLE,
+        default=USUAL_PEOPLE,
+        help="who does it: people alike in manner, or such as stand, sit, find things, are "
+        f"interrupted and gesture in ways of their own (default: {USUAL_PEOPLE})",
     )
     parser.add_argument(
         "--camera", choices=CAMERAS, default=KINECT.name, help=f"(default: {KINECT.name})"
@@ -83,8 +91,10 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.participants < 1 or arguments.frames < 1 or arguments.seed < 0:
         raise SettingsError("participants and frames are 1 or more, and the seed is 0 or more")
     people = arguments.bodies is None and arguments.out is not None
-    if not people and arguments.views != USUAL_VIEWS:
-        raise SettingsError("--views is for a dataset of simulated people: leave it out")
+    if not people and (arguments.views, arguments.people) != (USUAL_VIEWS, USUAL_PEOPLE):
+        raise SettingsError(
+            "--views and --people are for a dataset of simulated people: leave them out"
+        )
     if arguments.out is None and arguments.sheet is None:
         raise SettingsError("name the new dataset's folder, or a picture with --sheet")
     if arguments.sheet is not None:
@@ -115,6 +125,7 @@ def _generate(arguments: argparse.Namespace) -> Dataset:
                 images=not arguments.no_images,
                 camera=CAMERAS[arguments.camera],
                 views=arguments.views,
+                people=arguments.people,
             ),
             advance,
         )

@@ -7,7 +7,7 @@ from inhand_lab.geometry.transforms import Transform
 from inhand_lab.motions.performance import Performance
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.kinematics import place_body
-from inhand_lab.people.person import SimulatedPerson, sample_person
+from inhand_lab.people.person import USUAL_PEOPLE, People, SimulatedPerson, sample_person
 from inhand_lab.people.solids import head_radii
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_tracker.geometry.arrays import Array
@@ -26,10 +26,14 @@ def performed(
 
 
 def perform(
-    interaction: str, participant: int, seed: int, frame_rate: float
+    interaction: str,
+    participant: int,
+    seed: int,
+    frame_rate: float,
+    people: People = USUAL_PEOPLE,
 ) -> tuple[SimulatedPerson, Performance, BodyMotion]:
     """12 s of an interaction at some frame rate, in the world of a seed's person."""
-    person = sample_person(seed, participant)
+    person = sample_person(seed, participant, people)
     times = np.arange(0.0, 12.0, 1.0 / frame_rate)
     random = np.random.default_rng([seed, participant])
     performance = INTERACTIONS[interaction].perform(person, times, random)

@@ -9,6 +9,7 @@ from inhand_schemas.messages import Message, Skeletons
 
 from inhand_lab.datasets.dataset import CAMERA, START_NS, Dataset, DatasetEntry
 from inhand_lab.datasets.dataset_writer import DatasetWriter
+from inhand_lab.people.person import USUAL_PEOPLE, People
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.world.messages import (
     camera_info,
@@ -30,7 +31,7 @@ class GenerationSettings:
     """Settings of a dataset in which every participant does every interaction.
 
     ``images`` leaves nothing out but pictures if it is false. ``views`` names
-    one of CAMERA_PLACINGS.
+    one of CAMERA_PLACINGS, and ``people`` who lives there.
     """
 
     interactions: Sequence[str]
@@ -40,6 +41,7 @@ class GenerationSettings:
     images: bool = True
     camera: Camera = KINECT
     views: str = USUAL_VIEWS
+    people: People = USUAL_PEOPLE
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ def generate(
                     participant,
                     settings.seed,
                     views=settings.views,
+                    people=settings.people,
                 ),
                 settings.frames,
                 camera,
@@ -89,6 +92,7 @@ def generate(
             "camera": settings.camera.name,
             "images": settings.images,
             "views": settings.views,
+            "people": settings.people,
         },
         images=settings.images,
         on_progress=on_progress,

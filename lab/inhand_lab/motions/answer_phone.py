@@ -25,6 +25,7 @@ PLAN = Plan(
     opening=(*TAKE, Move("fetch", 0.9), Pause("read", 0.6)),
     use=(Move("raise", 0.9), Pause("talk", 2.0), Move("lower", 0.9), Move("look", 0.8)),
     closing=PUT_BACK,
+    on_stool=True,
 )
 
 CHANGE_SHARE = 0.5
@@ -91,7 +92,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_rest, left_rest = hanging_hands(person, trunk, random)
     right_hand = _right_hand(script, changes, right_rest, right_held)
     left_keys = [Key(0.0, left_rest), *_pass(changes, left_rest, left_held, side=-1)]
-    left_hand = move_through(times, left_keys)
+    left_hand = move_through(script.times, left_keys)
     contact = carried_by(script, *_contacts(changes))
     return Performance(posture, right_hand, left_hand, carried, contact, furniture)
 
@@ -138,7 +139,7 @@ def _dock(script: Script) -> tuple[Furniture, Transform]:
     rotation = rotation_from_axes(screen, [0.0, 0.0, 1.0])
     foot = np.array([x, y, top + DOCK_SIZE[2] - PLUGGED])
     docked = Transform(foot + rotation[:, 2] * (PHONE_LENGTH / 2.0), rotation)
-    return (*side_table(x + 0.10, y + 0.12, top), dock), docked
+    return (*side_table(x + 0.10, y + 0.12, top), dock, *script.seat), docked
 
 
 def _slant(script: Script) -> Array:

@@ -8,6 +8,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.furniture import Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
+from inhand_lab.motions.idle_hand import idle_left_hand
 from inhand_lab.motions.performance import (
     Performance,
     Stance,
@@ -27,6 +28,7 @@ PLAN = Plan(
     opening=(*TAKE, Move("lift", 0.9)),
     use=(Pause("hold", 0.6), Move("raise", 0.9), Move("sip", 1.3), Move("lower", 0.9)),
     closing=(Pause("hold", 0.6), *PUT_BACK),
+    on_stool=True,
 )
 
 FIST_TURN = np.radians(135.0)
@@ -43,9 +45,10 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     table, spot = _table(script)
     grip = _grip(script)
     carried = _carry(script, trunk, spot)
-    rest, left_hand = hanging_hands(person, trunk, random)
+    rest, left_rest = hanging_hands(person, trunk, random)
     reach = To(carried @ grip, bow=(0.06, -0.05, 0.10))
     right_hand = script.way(rest, {"reach": reach, "withdraw": To(rest, bow=(0.06, -0.05, 0.08))})
+    left_hand = idle_left_hand(script, trunk, left_rest)
     return Performance(posture, right_hand, left_hand, carried, carried_by(script), table)
 
 
@@ -63,7 +66,8 @@ def _table(script: Script) -> tuple[Furniture, Array]:
     """A small table at the right hand, of a height that suits, and the mug's place on it (3,)."""
     x, y = script.place(0.31, 0.30)
     top = script.table_top(0.525)
-    return side_table(x + 0.08, y + 0.10, top), np.array([x, y, top + MUG_HEIGHT / 2.0])
+    table = side_table(x + 0.08, y + 0.10, top)
+    return (*table, *script.seat), np.array([x, y, top + MUG_HEIGHT / 2.0])
 
 
 def _grip(script: Script) -> Transform:

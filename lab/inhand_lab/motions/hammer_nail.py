@@ -20,8 +20,8 @@ from inhand_lab.people.kinematics import Trunk
 from inhand_lab.people.person import SimulatedPerson
 
 PLAN = Plan(
-    opening=(*TAKE, Move("lift", 0.85), Move("tap", 1.2), Move("let go", 0.5)),
-    use=(Move("strike", 1.75), Pause("look", 0.4)),
+    opening=(*TAKE, Move("lift", 0.85), Move("tap", 1.2, swift=True), Move("let go", 0.5)),
+    use=(Move("strike", 1.75, swift=True), Pause("look", 0.4)),
     closing=PUT_BACK,
 )
 

@@ -12,8 +12,8 @@ from inhand_lab.geometry.transforms import Transform, normalised, rotation_about
 from inhand_lab.motions.arms import within_both_reaches
 from inhand_lab.motions.furniture import WOOD, Cuboid, Furniture
 from inhand_lab.motions.golf_swing import Swing, plan_swings
-from inhand_lab.motions.grips import hold_bar
-from inhand_lab.motions.performance import TOES_OUT, ContactKind, Performance, hanging_hands
+from inhand_lab.motions.grips import BAR_IN_PALM, hold_bar
+from inhand_lab.motions.performance import ContactKind, Performance, hanging_hands
 from inhand_lab.motions.reaching import carried_by, reaching_hand
 from inhand_lab.motions.script import Script, To, write_script
 from inhand_lab.motions.timeline import Move, Pause, Plan
@@ -26,7 +26,7 @@ PLAN = Plan(
     use=(
         Move("waggle", 0.65),
         Pause("settle", 0.35),
-        Move("swing", 1.65),
+        Move("swing", 1.65, swift=True),
         Pause("finish", 0.5),
         Move("recover", 0.80),
     ),
@@ -43,6 +43,9 @@ ARM_PLANE = np.radians(17.0)
 STEEPEST = np.radians(68.0)
 OBLIQUE = (np.radians(40.0), np.radians(40.0))
 """Of the grip across the right and the left palm; the right one is more in the fingers."""
+IN_FINGERS = BAR_IN_PALM + np.array([0.0, 0.010, 0.0])
+"""Where the shaft passes through a varied person's right hand, further in the fingers: some hold it
+so obliquely that it would lie in the wrist."""
 HANDS_APART = 0.09
 NECK_TURN = np.radians(65.0)
 SQUARE = 0.3
@@ -56,6 +59,8 @@ AROUND_CLUB = (-0.05, 0.12, 0.0)
 
 RACK_PLACE = np.array([0.35, 0.46])
 """Where the sole of the club is, metres."""
+CLEAR_OF_ARM = 0.16
+"""Least distance of it from the right shoulder, to the right, metres: an arm hangs there."""
 LEAN, ROLL = np.radians((30.0, -45.0))
 """Of the club on the rack."""
 RACK_HEIGHT, RACK_DEPTH = 0.45, 0.11
@@ -67,9 +72,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     swing = plan_swings(script)
     posture = _posture(script, swing)
     trunk = place_trunk(person, posture)
-    rack, leaning = _lean_on_rack(random)
+    rack, leaning = _lean_on_rack(person, trunk, random)
     grips = _grips(script)
-    waggle = int(np.searchsorted(times, script.stage("waggle").start))
+    waggle = int(np.argmax(script.times >= script.stage("waggle").start))
     swung = _swing_club(person, trunk, swing, address=waggle)
     swung = _above_floor(within_both_reaches(person, trunk, swung, grips))
     rest = script.still(leaning)
@@ -123,14 +128,21 @@ def _angles(world_from_one: Array, world_from_other: Array) -> Array:
 def _pivot(person: SimulatedPerson, sole: Array, heel: Array) -> Transform:
     """The right foot, world_from_foot (T), its heel lifted by an angle (T,) over the ball."""
     ball = np.array([0.0, person.proportions.foot, BALL_HEIGHT])
-    flat = rotation_about("z", -TOES_OUT)
-    turned = rotation_about("xz", -heel, FOOT_TURN * heel - TOES_OUT)
+    flat = rotation_about("z", -person.carriage.toes_out)
+    turned = rotation_about("xz", -heel, FOOT_TURN * heel - person.carriage.toes_out)
     return Transform(sole + flat @ ball - turned @ ball, turned)
 
 
-def _lean_on_rack(random: np.random.Generator) -> tuple[Furniture, Transform]:
-    """A low rack at the right, and the club leaning on its front edge, world_from_object."""
+def _lean_on_rack(
+    person: SimulatedPerson, trunk: Trunk, random: np.random.Generator
+) -> tuple[Furniture, Transform]:
+    """A low rack at the right, and the club leaning on its front edge, world_from_object.
+
+    Varied people, whose weight may be on the right foot, have it clear of the arm that hangs there.
+    """
     x, head = RACK_PLACE + random.normal(0.0, 0.015, 2)
+    if person.varied:
+        x = max(x, float(trunk.right_shoulder[[0, -1], 0].max()) + CLEAR_OF_ARM)
     rotation = rotation_about("x", LEAN) @ rotation_about("z", ROLL)
     lowest = (golf_club().vertices @ rotation.T)[:, 2].min()
     place = np.array([x, head, 0.0]) - rotation @ [0.0, 0.0, SOLE]
@@ -146,9 +158,12 @@ def _lean_on_rack(random: np.random.Generator) -> tuple[Furniture, Transform]:
 def _grips(script: Script) -> tuple[Transform, Transform]:
     """The right and the left hand, object_from_hand (T): thumbs down the shaft, left hand above."""
     down = np.diag([1.0, -1.0, -1.0])
+    in_hands = IN_FINGERS if script.person.varied else BAR_IN_PALM, BAR_IN_PALM
     right, left = (
-        hold_bar(script, np.array([0.0, 0.0, along]), down @ rotation_about("x", oblique))
-        for along, oblique in zip((-0.5 * HANDS_APART, 0.5 * HANDS_APART), OBLIQUE, strict=True)
+        hold_bar(script, np.array([0.0, 0.0, along]), down @ rotation_about("x", oblique), in_hand)
+        for along, oblique, in_hand in zip(
+            (-0.5 * HANDS_APART, 0.5 * HANDS_APART), OBLIQUE, in_hands, strict=True
+        )
     )
     return right, left.mirrored()
 

@@ -23,7 +23,7 @@ from inhand_lab.people.person import SimulatedPerson
 
 PLAN = Plan(
     opening=(*TAKE, Move("lift", 0.9)),
-    use=(Pause("ready", 0.4), Move("stroke", 1.35), Move("recover", 0.7)),
+    use=(Pause("ready", 0.4), Move("stroke", 1.35, swift=True), Move("recover", 0.7)),
     closing=(Pause("ready", 0.3), *PUT_BACK),
 )
 
@@ -107,7 +107,7 @@ def _stance(script: Script, figures: Array) -> Stance:
     """Knees bent, eyes ahead, the left foot stepping into some of the balls and back."""
     height, times, random = script.person.height, script.times, script.random
     play, looked = script.level(0.0, {"lift": 1.0, "return": 0.0}), attention(script)
-    right_foot, left_foot = feet_apart(len(times), half_width=0.085 * height)
+    right_foot, left_foot = feet_apart(script.person, len(times), 0.085 * height)
     stepping = random.random() < 0.8
     for stage in script.every("stroke", "recover"):
         if stage.name == "stroke":

@@ -165,7 +165,7 @@ def _stance(script: Script, stool: Stool, curled: Array) -> Stance:
 
 def _knees_bent(person: SimulatedPerson, stool: Stool) -> float:
     """How far the hips go down, metres, until the arms reach the bar from a stooping trunk."""
-    right_foot, left_foot = feet_apart(1, FEET_HALF_APART)
+    right_foot, left_foot = feet_apart(person, 1, FEET_HALF_APART)
     back, stooped = np.array([[0.0, -HIPS_BACK, 0.0]]), np.array([[LEAN, 0.0, 0.0]])
     stance = Stance(right_foot, left_foot, np.zeros(1), back, stooped, np.zeros((1, 3)))
     trunk = place_trunk(person, stand(person, np.zeros(1), np.random.default_rng(0), stance))

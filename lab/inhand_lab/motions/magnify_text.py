@@ -26,6 +26,7 @@ PLAN = Plan(
     opening=(*TAKE, Move("lift", 1.0), Pause("focus", 0.4)),
     use=(Move("line", 1.5), Pause("study", 0.4), Move("next line", 0.8), Pause("focus", 0.3)),
     closing=PUT_BACK,
+    on_stool=True,
 )
 
 FIST_TURN = np.radians(90.0)
@@ -113,7 +114,7 @@ def _desk(script: Script) -> tuple[Furniture, Array]:
         for row in range(PRINTED_LINES)
     ]
     table = side_table(across + width / 2.0 - 0.19, ahead + 0.07, top)
-    return (*table, book, *lines), page
+    return (*table, book, *lines, *script.seat), page
 
 
 def _carry(script: Script, page: Array, lens: Array) -> Transform:

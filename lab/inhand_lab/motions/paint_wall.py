@@ -14,6 +14,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import DRIFT_PERIOD, pinch
+from inhand_lab.motions.idle_hand import idle_left_hand
 from inhand_lab.motions.performance import Performance, Stance, feet_apart, hanging_hands
 from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, carried_by, reaching_hand
 from inhand_lab.motions.script import Script, To, write_script
@@ -74,7 +75,8 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     table, standing, pot = _table(script)
     carried = _carry(script, _on_board(path, board), standing, pot)
     held = carried @ _grip(script)
-    right_rest, left_hand = hanging_hands(person, trunk, random)
+    right_rest, left_rest = hanging_hands(person, trunk, random)
+    left_hand = idle_left_hand(script, trunk, left_rest)
     right_hand = reaching_hand(script, right_rest, held, bow=(0.05, -0.05, 0.10))
     furniture = (*table, _board(board))
     return Performance(posture, right_hand, left_hand, carried, carried_by(script), furniture)
@@ -117,7 +119,7 @@ def _stance(script: Script, path: Array) -> Stance:
     head += np.outer(looked, [-0.15, 0.0, 0.15])
     shift = np.outer(painting, [0.03 * script.size, 0.0, 0.0])
     turned = rotation_about("z", HEADING)
-    right_foot, left_foot = (foot @ turned.T for foot in feet_apart(count, 0.12))
+    right_foot, left_foot = (foot @ turned.T for foot in feet_apart(script.person, count, 0.12))
     return Stance(right_foot, left_foot, np.full(count, HEADING), shift, trunk, head)
 
 

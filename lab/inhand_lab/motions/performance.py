@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
@@ -15,7 +15,8 @@ from inhand_lab.geometry.transforms import (
     rotation_about,
     rotation_from_axes,
 )
-from inhand_lab.motions.furniture import Furniture
+from inhand_lab.motions.furniture import WOOD, Cuboid, Furniture
+from inhand_lab.motions.parameters import DEFAULT_VARIETY
 from inhand_lab.motions.timeline import drift, minimum_jerk
 from inhand_lab.people.kinematics import Posture, Trunk
 from inhand_lab.people.person import SimulatedPerson, hip_height
@@ -66,15 +67,25 @@ class Stance:
 
 
 STANCE_HALF_WIDTH = 0.09
-TOES_OUT = 0.15
+LEAST_ASIDE = 0.12
+"""Least slope of a hanging arm outwards, so that its hand is beside a hip that is shifted to it."""
 EASY_KNEES = 0.985
 """Straightness of the legs in easy standing, as a share of their length."""
+SEAT, SEAT_BACK = 0.30, -0.09
+"""Breadth of a stool's seat, and its middle ahead of the hips, metres."""
 
 
-def feet_apart(count: int, half_width: float = STANCE_HALF_WIDTH) -> tuple[Array, Array]:
-    """Right and left soles (T, 3) side by side on the floor."""
-    right = np.tile([half_width, 0.0, 0.0], (count, 1))
-    return right, right * MIRROR
+def feet_apart(
+    person: SimulatedPerson, count: int, half_width: float = STANCE_HALF_WIDTH
+) -> tuple[Array, Array]:
+    """Right and left soles (T, 3) on the floor, as far apart as the task and the person have it.
+
+    ``half_width`` is the task's, in metres; people differ as much in wide stances as in others.
+    """
+    own = half_width + (person.carriage.stance_width - 1.0) * STANCE_HALF_WIDTH
+    ahead = 0.5 * person.carriage.foot_ahead * person.height
+    right = np.tile([own, ahead, 0.0], (count, 1))
+    return right, -right
 
 
 def step(times: Array, start: float, end: float, way: Array) -> Array:
@@ -103,10 +114,12 @@ def stand(
     wander = np.stack([drift(times, random, 0.02, 5.0) for _ in range(3)], axis=1)
     glances = np.stack([drift(times, random, 0.05, 3.0) for _ in range(3)], axis=1)
     trunk = stance.trunk_angles + wander + np.array([manner.stoop, 0.0, 0.0])
-    head = stance.head_angles + glances + np.array([manner.head_pitch, 0.0, 0.0])
+    head = stance.head_angles + glances
+    head += np.array([manner.head_pitch, person.carriage.head_aside, 0.0])
     heading = rotation_about("z", stance.heading)
     hips = 0.5 * (stance.right_foot + stance.left_foot) + stance.shift
     hips[:, :2] += sway
+    hips += heading[:, :, 0] * (person.carriage.weight_aside * person.height)
     hips -= heading[:, :, 1] * (0.30 * body.chest * np.sin(0.5 * trunk[:, :1]))
     hips[:, 2] = stance.shift[:, 2] + _hip_reach(person, hips, heading, stance) + body.hip_drop
     pelvis = heading @ rotation_about("xz", -0.5 * trunk[:, 0], 0.3 * trunk[:, 2])
@@ -116,15 +129,45 @@ def stand(
         Transform(hips, pelvis),
         trunk,
         head,
-        Transform(stance.right_foot, rotation_about("z", feet[:, 0] - TOES_OUT)),
-        Transform(stance.left_foot, rotation_about("z", feet[:, -1] + TOES_OUT)),
+        Transform(stance.right_foot, rotation_about("z", feet[:, 0] - person.carriage.toes_out)),
+        Transform(stance.left_foot, rotation_about("z", feet[:, -1] + person.carriage.toes_out)),
     )
+
+
+def sit(person: SimulatedPerson, stance: Stance) -> Stance:
+    """The stance on a bar stool: the hips lower where they were, the feet on the floor ahead."""
+    ahead, drop = DEFAULT_VARIETY.feet_ahead * person.height, DEFAULT_VARIETY.seat_drop
+    legs = _easy_legs(person)
+    lowered = legs - float(np.sqrt(legs**2 - ahead**2))
+    forward = np.array([0.0, ahead, 0.0])
+    return replace(
+        stance,
+        right_foot=stance.right_foot + forward,
+        left_foot=stance.left_foot + forward,
+        shift=stance.shift - forward - [0.0, 0.0, drop * person.height - lowered],
+    )
+
+
+def stool(person: SimulatedPerson) -> Furniture:
+    """The bar stool of who sits: seat, leg and foot, metres."""
+    hips = person.proportions.ankle + _easy_legs(person) - DEFAULT_VARIETY.seat_drop * person.height
+    top = hips - 0.05 * person.height * person.girth - 0.02
+    return (
+        Cuboid((0.0, SEAT_BACK, top - 0.02), (SEAT, SEAT, 0.04), WOOD),
+        Cuboid((0.0, SEAT_BACK, 0.5 * top), (0.05, 0.05, top - 0.06), WOOD),
+        Cuboid((0.0, SEAT_BACK, 0.015), (0.36, 0.36, 0.03), WOOD),
+    )
+
+
+def _easy_legs(person: SimulatedPerson) -> float:
+    """Distance of hip joint and ankle in easy standing, metres."""
+    return EASY_KNEES * (hip_height(person.proportions) - person.proportions.ankle)
 
 
 def _hip_reach(person: SimulatedPerson, hips: Array, heading: Array, stance: Stance) -> Array:
     """Height (T,) of the hip joints above the floor at which the first leg is nearly straight."""
     body = person.proportions
-    length = EASY_KNEES * (hip_height(body) - body.ankle)
+    length = _easy_legs(person)
     aside = heading[:, :, 0] * body.hip_half_width
     heights = []
     for side, foot in ((1.0, stance.right_foot), (-1.0, stance.left_foot)):
@@ -149,6 +192,8 @@ def _hang(
     body = person.proportions
     reach = 0.965 * (body.upper_arm + body.forearm) + body.palm
     ahead, aside = random.normal(0.10, 0.03), random.normal(0.12, 0.02)
+    if person.varied:
+        aside = max(aside, LEAST_ASIDE) * max(person.girth, 1.0)
     downwards = normalised([aside, ahead, -1.0])
     hand = rotation_from_axes([-0.05, 0.15 + ahead, -1.0], [-0.35, 1.0, 0.0])
     upright = rotation_about("z", heading)

@@ -32,6 +32,7 @@ PLAN = Plan(
     opening=(*TAKE, Move("fetch", 1.0)),
     use=(Move("raise", 0.8), Pause("play", 1.3), Move("lower", 0.75), Pause("rest", 0.4)),
     closing=PUT_BACK,
+    on_stool=True,
 )
 
 RIGHT_HAND, LEFT_HAND = 0.125, -0.095
@@ -99,7 +100,8 @@ def _table(script: Script) -> tuple[Furniture, Array]:
     """A table ahead, and where the flute's middle is as it lies on it (3,)."""
     x, y = script.place(0.14, 0.42)
     top = script.table_top(0.53)
-    return side_table(0.14, y + 0.09, top, width=0.80), np.array([x, y, top + TUBE_RADIUS + 0.003])
+    table = side_table(0.14, y + 0.09, top, width=0.80)
+    return (*table, *script.seat), np.array([x, y, top + TUBE_RADIUS + 0.003])
 
 
 def _right_grip(script: Script) -> Transform:

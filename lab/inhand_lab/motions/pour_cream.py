@@ -26,6 +26,7 @@ PLAN = Plan(
     opening=(*TAKE, Move("lift", 1.0)),
     use=(Pause("hold", 0.4), Move("tip", 0.8), Pause("pour", 1.0), Move("right", 0.7)),
     closing=(Pause("hold", 0.4), *PUT_BACK),
+    on_stool=True,
 )
 
 FIST_TURN = np.radians(-60.0)
@@ -73,7 +74,7 @@ def _table(script: Script) -> tuple[Furniture, Array, Array]:
     spot = np.array([*script.place(0.20, 0.36), top + JUG_HEIGHT / 2.0])
     x, y = script.place(-0.03, 0.41)
     table = side_table(0.08, 0.24 * script.size + 0.20, top)
-    return (*table, *_cup(x, y, top)), spot, np.array([x, y, top + CUP_HEIGHT])
+    return (*table, *_cup(x, y, top), *script.seat), spot, np.array([x, y, top + CUP_HEIGHT])
 
 
 def _cup(x: float, y: float, top: float) -> Furniture:

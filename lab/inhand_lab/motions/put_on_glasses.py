@@ -38,6 +38,7 @@ PLAN = Plan(
         Move("withdraw", 0.9),
         Pause("wait", 0.4),
     ),
+    on_stool=True,
 )
 
 FACE_GRIP = rotation_from_axes([-0.20, -0.60, 0.75], [-0.2, -0.75, -0.6])
@@ -118,7 +119,8 @@ def _table(script: Script) -> tuple[Furniture, Array]:
     """A small table at the right hand, and where the glasses' bridge is as they lie on it (3,)."""
     x, y = script.place(0.24, 0.37)
     top = script.table_top(0.53)
-    return side_table(x + 0.15, y + 0.09, top), np.array([x, y, top + EAR_DROP + 0.004])
+    table = side_table(x + 0.15, y + 0.09, top)
+    return (*table, *script.seat), np.array([x, y, top + EAR_DROP + 0.004])
 
 
 def _grip(script: Script) -> Transform:

@@ -12,7 +12,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_lab.geometry.transforms import Transform, rotation_about, rotation_from_axes
 from inhand_lab.motions.furniture import WOOD, Cuboid
 from inhand_lab.motions.grips import pinch
-from inhand_lab.motions.performance import STANCE_HALF_WIDTH, TOES_OUT, ContactKind, Performance
+from inhand_lab.motions.performance import STANCE_HALF_WIDTH, ContactKind, Performance
 from inhand_lab.motions.reaching import carried_by
 from inhand_lab.motions.script import Script, To, write_script
 from inhand_lab.motions.timeline import Move, Pause, Plan
@@ -101,8 +101,8 @@ def _right_foot(script: Script) -> Transform:
     up = script.flow(raised)[:, 0]
     on_floor = np.array([STANCE_HALF_WIDTH, _feet_ahead(person), 0.0])
     heel = np.array([0.0, -HEEL_BEHIND, 0.0])
-    flat = rotation_about("z", -TOES_OUT)
-    rotation = rotation_about("xz", TOES_UP * up + tapped, -TOES_OUT)
+    flat = rotation_about("z", -person.carriage.toes_out)
+    rotation = rotation_about("xz", TOES_UP * up + tapped, -person.carriage.toes_out)
     place = on_floor + flat @ heel - rotation @ heel + up[:, None] * RAISED * person.height
     return Transform(place, rotation)
 
@@ -118,14 +118,14 @@ def _sit(script: Script, right_foot: Transform) -> Posture:
     pelvis = rotation_about("x", -0.35 * trunk[:, 0])
     hips = np.array([0.0, -BEHIND, SEAT]) * person.height
     head = script.drifts(0.05, 3.0) + trunk[:, :1] / BENT_TO_FOOT * [0.25, 0.0, -0.05]
-    head[:, 0] += manner.head_pitch
+    head[:, :2] += [manner.head_pitch, person.carriage.head_aside]
     left_foot = np.array([-STANCE_HALF_WIDTH, _feet_ahead(person), 0.0])
     return Posture(
         Transform(hips + pelvis[:, :, 2] * person.proportions.hip_drop, pelvis),
         trunk * (0.65, 1.0, 1.0),
         head,
         right_foot,
-        script.still(Transform(left_foot, rotation_about("z", TOES_OUT))),
+        script.still(Transform(left_foot, rotation_about("z", person.carriage.toes_out))),
     )
 
 

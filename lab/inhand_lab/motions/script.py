@@ -10,8 +10,26 @@ from inhand_tracker.geometry.arrays import Array
 from numpy.typing import ArrayLike
 
 from inhand_lab.geometry.transforms import Transform
-from inhand_lab.motions.performance import STANCE_HALF_WIDTH, Stance, feet_apart, stand
-from inhand_lab.motions.timeline import Key, Plan, Stage, drift, flow, move_through, schedule, track
+from inhand_lab.motions.furniture import Furniture
+from inhand_lab.motions.interruptions import (
+    draw_interruptions,
+    given_up_times,
+    interrupted_times,
+    place_interruptions,
+)
+from inhand_lab.motions.parameters import DEFAULT_VARIETY
+from inhand_lab.motions.performance import STANCE_HALF_WIDTH, Stance, feet_apart, sit, stand, stool
+from inhand_lab.motions.timeline import (
+    Key,
+    Plan,
+    Stage,
+    drift,
+    flow,
+    move_through,
+    schedule,
+    spare_time,
+    track,
+)
 from inhand_lab.people.kinematics import Posture, Trunk, place_trunk
 from inhand_lab.people.person import SimulatedPerson
 
@@ -48,13 +66,18 @@ class To:
 class Script:
     """What every part of a performance is made from; times (T,) are seconds from the start.
 
-    The parts draw what is by chance from random, so their order belongs to the performance.
+    They stand still or go back where somebody stops; ``clock`` (T,) does not: sway goes on.
+    The parts draw what is by chance from random, so their order belongs to the performance; what
+    varied people draw beside it comes from ``apart``, so that the rest is the same without.
     """
 
     person: SimulatedPerson
     times: Array
     random: np.random.Generator
     stages: list[Stage]
+    clock: Array
+    apart: np.random.Generator
+    seated: bool = False
 
     @property
     def size(self) -> float:
@@ -112,7 +135,7 @@ class Script:
 
     def drift(self, deviation: float, period: float) -> Array:
         """A slow wander (T,) about zero; the period is in seconds."""
-        return drift(self.times, self.random, deviation, period)
+        return drift(self.clock, self.random, deviation, period)
 
     def drifts(self, deviation: float, period: float, count: int = 3) -> Array:
         """Slow wanders (T, count), independent of each other."""
@@ -125,11 +148,14 @@ class Script:
     def place(self, across: float, ahead: float, spread: float = 0.015) -> Array:
         """A place (2,) to the right and ahead, metres of the usual stature; it varies by spread."""
         usual = np.array([across, ahead]) * self.size
-        return np.asarray(usual + self.random.normal(0.0, spread, 2))
+        factor = DEFAULT_VARIETY.places if self.person.varied else 1.0
+        return np.asarray(usual + self.random.normal(0.0, factor * spread, 2))
 
     def table_top(self, share: float, spread: float = 0.015) -> float:
         """Height of a table, metres, by a share of the stature; it varies by spread."""
-        return share * self.person.height + float(self.random.normal(0.0, spread))
+        factor = DEFAULT_VARIETY.heights if self.person.varied else 1.0
+        standing = share * self.person.height + float(self.random.normal(0.0, factor * spread))
+        return standing - self.seated * DEFAULT_VARIETY.seat_drop * self.person.height
 
     def upright_stance(
         self,
@@ -141,17 +167,40 @@ class Script:
         """Feet side by side that stay where they are, and what the rest of the body does."""
         count = len(self.times)
         still = np.zeros((count, 3)) if shift is None else shift
-        feet = feet_apart(count, half_width)
-        return Stance(*feet, np.zeros(count), still, trunk_angles, head_angles)
+        feet = feet_apart(self.person, count, half_width)
+        stance = Stance(*feet, np.zeros(count), still, trunk_angles, head_angles)
+        return sit(self.person, stance) if self.seated else stance
+
+    @property
+    def seat(self) -> Furniture:
+        """The stool under who sits."""
+        return stool(self.person) if self.seated else ()
 
     def stand(self, stance: Stance) -> tuple[Posture, Trunk]:
         """The body on its feet, and the frames that hands are placed by."""
-        posture = stand(self.person, self.times, self.random, stance)
+        posture = stand(self.person, self.clock, self.random, stance)
         return posture, place_trunk(self.person, posture)
 
 
 def write_script(
     person: SimulatedPerson, times: Array, random: np.random.Generator, plan: Plan
 ) -> Script:
-    """The plan's stages at these times, as the person's tempo and chance have them."""
-    return Script(person, times, random, schedule(person, random, float(times[-1]), plan))
+    """The plan's stages at these times, as the person's tempo and chance have them.
+
+    Varied people may sit, stop in between, break off a movement if that leaves time for all of the
+    plan, or give up.
+    """
+    duration = float(times[-1])
+    (apart,) = random.spawn(1)
+    if not person.varied:
+        stages = schedule(person, random, duration, plan)
+        return Script(person, times, random, stages, times, apart)
+    variety = DEFAULT_VARIETY
+    seated = apart.random() < variety.seated and plan.on_stool
+    interruptions = draw_interruptions(apart, spare_time(person, duration, plan))
+    cost = sum(interruption.cost() for interruption in interruptions)
+    stages = schedule(person, random, duration - cost, plan)
+    placed = place_interruptions(apart, interruptions, stages)
+    gives_up = apart.random() < variety.unfinished
+    bent = given_up_times(times, apart, stages) if gives_up else interrupted_times(times, placed)
+    return Script(person, bent, random, stages, times, apart, seated)

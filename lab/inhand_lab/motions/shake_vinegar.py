@@ -8,6 +8,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_lab.geometry.transforms import Transform, rotation_about
 from inhand_lab.motions.furniture import Cuboid, Furniture, side_table
 from inhand_lab.motions.grips import hold_bar
+from inhand_lab.motions.idle_hand import idle_left_hand
 from inhand_lab.motions.performance import Performance, Stance, hanging_hands
 from inhand_lab.motions.reaching import PUT_BACK, TAKE, attention, carried_by, reaching_hand
 from inhand_lab.motions.script import Script, To, write_script
@@ -17,8 +18,14 @@ from inhand_lab.people.person import SimulatedPerson
 
 PLAN = Plan(
     opening=(*TAKE, Move("lift", 0.85)),
-    use=(Move("tip", 0.55), Move("shake", 1.05), Move("right", 0.45), Pause("look", 0.5)),
+    use=(
+        Move("tip", 0.55),
+        Move("shake", 1.05, swift=True),
+        Move("right", 0.45),
+        Pause("look", 0.5),
+    ),
     closing=PUT_BACK,
+    on_stool=True,
 )
 
 IN_FIST = np.array([-0.015 - BOTTLE_RADIUS, 0.022, 0.0])
@@ -46,7 +53,8 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     held = carried @ _grip(script)
     right_rest, left_rest = hanging_hands(person, trunk, random)
     right_hand = reaching_hand(script, right_rest, held, bow=(0.07, -0.05, 0.08))
-    return Performance(posture, right_hand, left_rest, carried, carried_by(script), furniture)
+    left_hand = idle_left_hand(script, trunk, left_rest)
+    return Performance(posture, right_hand, left_hand, carried, carried_by(script), furniture)
 
 
 def _stance(script: Script) -> Stance:
@@ -70,7 +78,7 @@ def _table(script: Script) -> tuple[Furniture, Array, Array]:
         Cuboid((x, y, height + 0.010), (0.13, 0.11, 0.020), CHIPS),
     )
     table = side_table(0.10, 0.24 * script.size + 0.20, top, width=0.75)
-    return (*table, *served), spot, np.array([x, y, height])
+    return (*table, *served, *script.seat), spot, np.array([x, y, height])
 
 
 def _grip(script: Script) -> Transform:

@@ -26,10 +26,14 @@ SHORTEST_PAUSE = 0.4
 
 @dataclass(frozen=True)
 class Move:
-    """A stage in which something moves; its duration is for a person of average tempo."""
+    """A stage in which something moves; its duration is for a person of average tempo.
+
+    Nobody stops in the middle of a ``swift`` one.
+    """
 
     name: str
     seconds: float
+    swift: bool = False
 
 
 @dataclass(frozen=True)
@@ -45,21 +49,30 @@ Step = Move | Pause
 
 @dataclass(frozen=True)
 class Plan:
-    """The steps of an interaction: how a thing is taken, each round of its use, the way back."""
+    """The steps of an interaction: how a thing is taken, each round of its use, the way back.
+
+    ``on_stool`` says whether it can as well be done on a stool.
+    """
 
     opening: Sequence[Step]
     use: Sequence[Step]
     closing: Sequence[Step]
+    on_stool: bool = False
 
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage with its place in time, in seconds; repetition counts the rounds of use from 0."""
+    """A stage with its place in time, in seconds; repetition counts the rounds of use from 0.
+
+    A ``breakable`` one may be interrupted or broken off; a ``swift`` one is done to its end.
+    """
 
     name: str
     repetition: int
     start: float
     end: float
+    breakable: bool = False
+    swift: bool = False
 
     @property
     def seconds(self) -> float:
@@ -95,16 +108,36 @@ def schedule(
     ]
     bounds = np.cumsum([0.0, *_fill([step for _, step in steps], duration)])
     return [
-        Stage(step.name, repetition, float(start), float(end))
+        Stage(
+            step.name,
+            repetition,
+            float(start),
+            float(end),
+            breakable=isinstance(step, Move) and not step.swift,
+            swift=isinstance(step, Move) and step.swift,
+        )
         for (repetition, step), (start, end) in zip(steps, pairwise(bounds), strict=True)
     ]
+
+
+def spare_time(person: SimulatedPerson, duration: float, plan: Plan) -> float:
+    """Seconds of the duration that a plan with two rounds of use leaves, at the person's tempo."""
+    steps = [*plan.opening, *plan.use, *plan.use, *plan.closing]
+    pace = _pace(person)
+    usual = [replace(step, seconds=step.seconds * pace[type(step)]) for step in steps]
+    return max(duration - _least(usual), 0.0)
+
+
+def _pace(person: SimulatedPerson) -> dict[type[Step], float]:
+    """Factors on the durations of pauses and moves."""
+    return {Pause: person.manner.restlessness, Move: 1 / person.manner.tempo}
 
 
 def _timed(
     person: SimulatedPerson, random: np.random.Generator, steps: Sequence[Step]
 ) -> list[Step]:
     """The steps with the durations they have this time for this person."""
-    pace = {Pause: person.manner.restlessness, Move: 1 / person.manner.tempo}
+    pace = _pace(person)
     variation = np.exp(JITTER * random.normal(size=len(steps)))
     return [
         replace(step, seconds=step.seconds * float(factor) * pace[type(step)])

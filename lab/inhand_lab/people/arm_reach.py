@@ -15,12 +15,20 @@ from inhand_lab.geometry.transforms import (
     normalised,
     rotation_about,
     rotation_from_vector,
+    turn_points,
 )
-from inhand_lab.people.parameters import DEFAULT_COMFORT, DEFAULT_LIMITS, ArmComfort
+from inhand_lab.people.parameters import (
+    DEFAULT_LIMITS,
+    USUAL_COMFORT,
+    VARIED_COMFORT,
+    ArmComfort,
+)
 from inhand_lab.people.person import Proportions, SimulatedPerson
 from inhand_lab.people.solids import belly, rib_cage
-from inhand_lab.people.two_bones import JointCircle, bend_towards
+from inhand_lab.people.two_bones import JointCircle, bend_towards, span
 
+LEAST_SINE = 0.2
+"""Sine of the angle between collar bone and arm below which turning the bone hardly helps."""
 UPPER_ARM = ((0.35, 0.0275), (0.6, 0.0265), (0.9, 0.0254))
 """Places along the upper arm that press into the trunk, and its radii there in statures."""
 
@@ -47,9 +55,14 @@ def reach_with_arm(
     body = person.proportions
     wanted = hand.translation - hand.rotation[:, :, 1] * body.palm
     shoulder = _protract(body, from_chest, shoulder, wanted)
+    if person.varied:
+        shoulder = _follow(body, from_chest, shoulder, wanted)
     bones = body.upper_arm, body.forearm
     circle, wrist = bend_towards(shoulder, wanted, bones, DEFAULT_LIMITS.elbow_extension)
-    elbow = choose_elbow(ArmReach(person, from_chest, shoulder, wrist, circle, hand))
+    elbow = choose_elbow(
+        ArmReach(person, from_chest, shoulder, wrist, circle, hand),
+        VARIED_COMFORT if person.varied else USUAL_COMFORT,
+    )
     rotation = _relieve_wrist(normalised(wrist - elbow), hand.rotation)
     reached = Transform(wrist + rotation[:, :, 1] * body.palm, rotation)
     return [shoulder, elbow, wrist, reached.translation], reached
@@ -66,7 +79,22 @@ def _protract(body: Proportions, from_chest: Transform, shoulder: Array, wrist: 
     return from_chest.apply(np.einsum("tij,tj->ti", turned, local))
 
 
-def choose_elbow(reach: ArmReach, comfort: ArmComfort = DEFAULT_COMFORT) -> Array:
+def _follow(body: Proportions, from_chest: Transform, shoulder: Array, wrist: Array) -> Array:
+    """A shoulder (T, 3) that goes with a wrist beyond the arm's easy reach, or back from one too
+    near, as far as a collar bone turns."""
+    angles = DEFAULT_LIMITS.flexion, VARIED_COMFORT.extension
+    nearest, furthest = (span(body.upper_arm, body.forearm, angle) for angle in angles)
+    bone, way = shoulder - from_chest.translation, wrist - shoulder
+    length, distance = (np.linalg.norm(one, axis=1, keepdims=True) for one in (bone, way))
+    axis = np.cross(bone, way) / (length * distance)
+    sine = np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), LEAST_SINE)
+    lacking = distance - np.clip(distance, nearest, furthest)
+    most = DEFAULT_LIMITS.follow
+    turn = np.clip(lacking / (length * sine), -most, most)
+    return from_chest.translation + turn_points(bone, axis / sine * turn)
+
+
+def choose_elbow(reach: ArmReach, comfort: ArmComfort = USUAL_COMFORT) -> Array:
     """The elbow (T, 3) on its circle that is most comfortable: softly the cheapest swivel."""
     aside, circle = reach.from_chest.rotation[:, :, 0], reach.circle
     outward = normalised(aside - circle.axis * np.sum(aside * circle.axis, axis=1, keepdims=True))
@@ -82,6 +110,7 @@ def choose_elbow(reach: ArmReach, comfort: ArmComfort = DEFAULT_COMFORT) -> Arra
         _squeeze(reach, elbows, comfort)
         + ((swivels - reach.person.manner.elbow_flare) / comfort.swivel) ** 2
         + (bend / comfort.bend) ** 2
+        + (np.clip(bend - DEFAULT_LIMITS.wrist_bend, 0.0, None) / comfort.strained) ** 2
         + (twist / comfort.twist) ** 2
         + (_pressed(reach, elbows, comfort) / comfort.pressed) ** 2
     )
@@ -117,17 +146,20 @@ def _pressed(reach: ArmReach, elbows: Array, comfort: ArmComfort) -> Array:
 
 
 def _squeeze(reach: ArmReach, elbows: Array, comfort: ArmComfort) -> Array:
-    """Cost (T, K) of elbows (T, K, 3) whose upper arms press into ribs or belly."""
-    person, from_chest, shoulder = reach.person, reach.from_chest, reach.shoulder
+    """Cost (T, K) of elbows (T, K, 3) whose arms press into ribs or belly."""
+    person, from_chest = reach.person, reach.from_chest
     cost = np.zeros(elbows.shape[:2])
-    for share, thickness in UPPER_ARM:
-        points = shoulder[:, None] + share * (elbows - shoulder[:, None])
-        offset = points - from_chest.translation[:, None]
-        local = np.einsum("tji,tkj->tki", from_chest.rotation, offset)
-        for centre, radii in (rib_cage(person), belly(person)):
-            around = radii + thickness * person.height * person.girth
-            level = np.linalg.norm((local - centre) / around, axis=2)
-            cost += (np.clip(1.0 - level, 0.0, None) / comfort.squeeze) ** 2
+    for start, end, places in (
+        (reach.shoulder[:, None], elbows, UPPER_ARM),
+        (elbows, reach.wrist[:, None], comfort.forearm),
+    ):
+        for share, thickness in places:
+            offset = start + share * (end - start) - from_chest.translation[:, None]
+            local = np.einsum("tji,tkj->tki", from_chest.rotation, offset)
+            for centre, radii in (rib_cage(person), belly(person)):
+                around = radii + thickness * person.height * person.girth
+                level = np.linalg.norm((local - centre) / around, axis=2)
+                cost += (np.clip(1.0 - level, 0.0, None) / comfort.squeeze) ** 2
     return cost
 
 

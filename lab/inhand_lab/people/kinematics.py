@@ -67,9 +67,13 @@ def place_trunk(person: SimulatedPerson, posture: Posture) -> Trunk:
     up, tilt, turn = posture.head_angles.T
     chest_from_head = rotation_about("yxz", tilt, up, turn)
     head_rotation = chest_rotation @ chest_from_head
-    neck_direction = normalised(chest_rotation[:, :, 2] + head_rotation[:, :, 2])
-    head = Transform(chest.translation + neck_direction * body.neck, head_rotation)
+    neck = chest_rotation[:, :, 2] + head_rotation[:, :, 2]
+    length = np.linalg.norm(neck, axis=1, keepdims=True)
+    neck += np.tan(person.carriage.head_forward) * length * chest_rotation[:, :, 1]
+    head = Transform(chest.translation + normalised(neck) * body.neck, head_rotation)
     shoulder = np.array([body.shoulder_half_width, 0.0, -body.shoulder_drop])
+    carried = [0.0, person.carriage.shoulders_forward, person.carriage.shoulders_up]
+    shoulder += person.height * np.array(carried)
     return Trunk(pelvis, chest, head, chest.apply(shoulder), chest.apply(shoulder * MIRROR), spine)
 
 

@@ -22,6 +22,9 @@ class JointLimits:
     protraction: float = float(np.radians(25.0))
     """Turn of a collar bone forward for an arm that reaches straight across the chest; it can by 15
     to 30 degrees (Neumann, *Kinesiology of the Musculoskeletal System*)."""
+    follow: float = float(np.radians(30.0))
+    """Turn of a varied person's collar bone after a hand that is out of reach or too near, at the
+    most; it can be raised by 35 to 45 degrees and protracted by 15 to 30 (the same source)."""
 
 
 @dataclass(frozen=True)
@@ -36,12 +39,20 @@ class ArmComfort:
     """Deviation of the elbow's swivel from the person's habit, radians."""
     bend: float = 0.9
     """Bend of the wrist, radians."""
+    strained: float = np.inf
+    """Bend of the wrist beyond its limit, radians: an elbow gives way before the hand lets go."""
     twist: float = 1.2
     """Twist of the wrist, radians."""
     pressed: float = 0.03
     """Depth to which an elbow presses into the side of the chest, metres."""
     squeeze: float = 0.015
-    """Depth to which an upper arm is pressed into ribs or belly, as a share of their radius."""
+    """Depth to which an arm is pressed into ribs or belly, as a share of their radius."""
+    extension: float = np.inf
+    """Angle between the bones of an arm beyond which the shoulder goes after the hand, radians: an
+    arm that is not quite straight can carry its elbow clear of the trunk."""
+    forearm: tuple[tuple[float, float], ...] = ()
+    """Places along a forearm that keep clear of ribs and belly too, and its radii there in
+    statures."""
     elbow_gap: float = 0.03
     """Distance of the elbow from the shoulder's breadth within which the chest is, metres."""
     chest_depth: float = 0.05
@@ -91,9 +102,56 @@ class MannerSpread:
     """Spread of the angle of a handle across the palm, radians."""
 
 
-DEFAULT_MANNERS = MannerSpread()
-"""How participants differ."""
+@dataclass(frozen=True)
+class CarriageSpread:
+    """How varied people differ in carriage: the spreads of Carriage's fields, in its units."""
+
+    head_aside: Spread = (0.0, 0.04)
+    """Spread of the tilt of the head to the right, radians (assumed)."""
+    head_forward: Spread = (0.0, 0.07)
+    """Spread of how far the neck leans forward beyond the usual, radians; the angle from the neck's
+    root to the ear differs by about five degrees between adults (Raine and Twomey, *Head and
+    shoulder posture variations*, 1997)."""
+    shoulders_up: Spread = (0.0, 0.007)
+    """Spread of the shoulders' height, in statures: a slope of shoulders that differs by four
+    degrees, as in ANSUR II's, lifts them by so much."""
+    shoulders_forward: Spread = (0.0, 0.006)
+    """Spread of how far round the shoulders are carried forward, in statures (assumed)."""
+    stance_width: Spread = (0.0, 0.24)
+    """Spread of the logarithm of the feet's distance, over that of the task; heels are 0.17 m apart
+    with a deviation of 0.04 m in quiet stance (McIlroy and Maki, *Preferred placement of the feet
+    during quiet stance*, 1997)."""
+    toes_out: Spread = (0.15, 0.08)
+    """Spread of the turn of each foot outwards, radians (the same source)."""
+    foot_ahead: Spread = (0.0, 0.02)
+    """Spread of how far the right foot is ahead of the left, in statures (assumed)."""
+    weight_aside: Spread = (0.0, 0.012)
+    """Spread of how far the weight is on the right foot, in statures (assumed)."""
+
+
+USUAL_MANNERS = MannerSpread()
+"""How usual people differ in manner."""
+VARIED_MANNERS = MannerSpread(
+    tempo=(0.0, 0.14),
+    head_pitch=(-0.05, 0.08),
+    elbow_flare=(0.45, 0.25),
+    restlessness=(0.0, 0.35),
+    amplitude=(0.0, 0.16),
+    grip_turn=(0.0, 0.35),
+    grip_tilt=(0.12, 0.10),
+)
+"""How varied people do. More lean and turn of trunks would be worse: fusion taught by six people
+erred more on real bodies with it (docs/simulator.md)."""
+DEFAULT_CARRIAGES = CarriageSpread()
+"""How varied people differ in carriage; usual people do not."""
 DEFAULT_LIMITS = JointLimits()
 """Limits of every simulated person."""
-DEFAULT_COMFORT = ArmComfort()
-"""Comfort of every simulated person."""
+USUAL_COMFORT = ArmComfort()
+"""Comfort of usual people."""
+VARIED_COMFORT = ArmComfort(
+    strained=0.25,
+    extension=float(np.radians(160.0)),
+    forearm=((0.3, 0.0216), (0.55, 0.0196), (0.8, 0.0176)),
+)
+"""Comfort of varied people, whose arms hang in more ways: some of these have no swivel that frees
+them from ribs and belly unless the shoulder follows the hand."""

@@ -11,11 +11,26 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from functools import partial
+from typing import Literal, get_args
 
 import numpy as np
 
-from inhand_lab.people.parameters import DEFAULT_MANNERS, MannerSpread, Spread
+from inhand_lab.people.parameters import (
+    DEFAULT_CARRIAGES,
+    USUAL_MANNERS,
+    VARIED_MANNERS,
+    CarriageSpread,
+    MannerSpread,
+    Spread,
+)
+
+People = Literal["usual", "varied"]
+PEOPLE: tuple[People, ...] = get_args(People)
+"""Kinds of simulated people: those who carry themselves alike and use a thing without a break, and
+those who differ in that, too."""
+USUAL_PEOPLE: People = "usual"
+"""People of a world that names none."""
 
 HEIGHT_MEAN_AND_DEVIATION = {"female": (1.628, 0.064), "male": (1.756, 0.069)}
 """Mean and deviation of statures, metres."""
@@ -87,6 +102,28 @@ class Manner:
 
 
 @dataclass(frozen=True)
+class Carriage:
+    """How somebody holds the body, constant within a person; the defaults are usual people's."""
+
+    head_aside: float = 0.0
+    """Habitual tilt of the head to the right, radians."""
+    head_forward: float = 0.0
+    """Habitual lean of the neck forward, beyond the usual, radians."""
+    shoulders_up: float = 0.0
+    """Height at which shoulders are carried above the usual, in statures."""
+    shoulders_forward: float = 0.0
+    """Distance by which shoulders are carried forward, in statures."""
+    stance_width: float = 1.0
+    """Distance of the feet over what is usual for the task."""
+    toes_out: float = 0.15
+    """Turn of each foot outwards, radians."""
+    foot_ahead: float = 0.0
+    """Distance by which the right foot is ahead of the left, in statures."""
+    weight_aside: float = 0.0
+    """Distance by which the hips are nearer to the right foot, in statures."""
+
+
+@dataclass(frozen=True)
 class SimulatedPerson:
     """One participant: body, handedness and manner; girth scales every thickness, 1 is average."""
 
@@ -98,10 +135,17 @@ class SimulatedPerson:
     manner: Manner
     appearance: int
     """Seed of skin, hair and clothes."""
+    carriage: Carriage = Carriage()
+    varied: bool = False
+    """Whether they are of the varied people."""
 
 
-def sample_person(seed: int, participant: int) -> SimulatedPerson:
-    """The participant of that number in the world of that seed: always the same person."""
+def sample_person(seed: int, participant: int, people: People = USUAL_PEOPLE) -> SimulatedPerson:
+    """The participant of that number in the world of that seed: always the same person.
+
+    The body is the same in all kinds of people.
+    """
+    varied = people == "varied"
     random = np.random.default_rng([seed, participant, 0x9E12])
     sex: Literal["female", "male"] = "female" if random.random() < 0.5 else "male"
     mean, deviation = HEIGHT_MEAN_AND_DEVIATION[sex]
@@ -112,8 +156,12 @@ def sample_person(seed: int, participant: int) -> SimulatedPerson:
         handedness="left" if random.random() < LEFT_HANDED_SHARE else "right",
         proportions=_sample_proportions(height, random),
         girth=float(np.clip(random.normal(1.0, 0.1), 0.8, 1.25)),
-        manner=_sample_manner(random),
+        manner=_sample_manner(random, VARIED_MANNERS if varied else USUAL_MANNERS),
         appearance=int(random.integers(2**31)),
+        carriage=_sample_carriage(np.random.default_rng([seed, participant, 0x4AB17]))
+        if varied
+        else Carriage(),
+        varied=varied,
     )
 
 
@@ -130,10 +178,8 @@ def _sample_proportions(height: float, random: np.random.Generator) -> Proportio
     return Proportions(**{name: fraction * scale for name, fraction in varied.items()})
 
 
-def _sample_manner(random: np.random.Generator, spread: MannerSpread = DEFAULT_MANNERS) -> Manner:
-    def around(mean_and_deviation: Spread) -> float:
-        mean, deviation = mean_and_deviation
-        return mean + deviation * float(np.clip(random.normal(), -2.0, 2.0))
+def _sample_manner(random: np.random.Generator, spread: MannerSpread) -> Manner:
+    around = partial(_around, random)
 
     return Manner(
         tempo=math.exp(around(spread.tempo)),
@@ -147,6 +193,28 @@ def _sample_manner(random: np.random.Generator, spread: MannerSpread = DEFAULT_M
         grip_turn=around(spread.grip_turn),
         grip_tilt=around(spread.grip_tilt),
     )
+
+
+def _sample_carriage(
+    random: np.random.Generator, spread: CarriageSpread = DEFAULT_CARRIAGES
+) -> Carriage:
+    around = partial(_around, random)
+    return Carriage(
+        head_aside=around(spread.head_aside),
+        head_forward=around(spread.head_forward),
+        shoulders_up=around(spread.shoulders_up),
+        shoulders_forward=around(spread.shoulders_forward),
+        stance_width=math.exp(around(spread.stance_width)),
+        toes_out=around(spread.toes_out),
+        foot_ahead=around(spread.foot_ahead),
+        weight_aside=around(spread.weight_aside),
+    )
+
+
+def _around(random: np.random.Generator, spread: Spread) -> float:
+    """A habit drawn by its spread."""
+    mean, deviation = spread
+    return mean + deviation * float(np.clip(random.normal(), -2.0, 2.0))
 
 
 def stature_of(proportions: Proportions) -> float:

@@ -56,7 +56,7 @@ def stand_about(
     person: SimulatedPerson, times: Array, random: np.random.Generator, move: MoveHands
 ) -> BodyMotion:
     """Stand and shift about a little, with hands that move in some way."""
-    right, left = feet_apart(len(times))
+    right, left = feet_apart(person, len(times))
     still = np.zeros((len(times), 3))
     turn = drift(times, random, 0.08, 6.0)
     weight = np.stack(

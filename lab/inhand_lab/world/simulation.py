@@ -21,7 +21,7 @@ from inhand_lab.motions.furniture import Furniture
 from inhand_lab.objects.model import ObjectModel
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.kinematics import place_body
-from inhand_lab.people.person import SimulatedPerson, sample_person
+from inhand_lab.people.person import USUAL_PEOPLE, People, SimulatedPerson, sample_person
 from inhand_lab.people.person_surface import build_person_surface
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.sensing.motion_blur import blurred, surfaces_in_motion
@@ -194,7 +194,7 @@ class Simulation:
 class Casting:
     """Who does what in which world, for which time, seen from where.
 
-    ``views`` names one of CAMERA_PLACINGS.
+    ``views`` names one of CAMERA_PLACINGS, and ``people`` who lives there.
     """
 
     interaction: str
@@ -202,6 +202,7 @@ class Casting:
     seed: int
     performance: int = 0
     views: str = USUAL_VIEWS
+    people: People = USUAL_PEOPLE
 
     def random(self, purpose: str, *more: int) -> np.random.Generator:
         """A stream of its own for a purpose."""
@@ -230,7 +231,7 @@ def simulate_cast(cast: Casting, frames: int, camera: Camera) -> Simulation:
     interaction, performance = cast.interaction, cast.performance
     if interaction not in INTERACTIONS:
         raise ValueError(f"no interaction {interaction!r}; there are {', '.join(INTERACTIONS)}")
-    person = sample_person(cast.seed, cast.participant)
+    person = sample_person(cast.seed, cast.participant, cast.people)
     motion = cast.random("motion", performance)
     enacted = _enact(interaction, person, motion, frames, camera.frame_rate)
     facing, camera_from_world = place_camera(

@@ -5,13 +5,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import Dataset
+from inhand_lab.datasets.dataset import Dataset, load_dataset
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.recorded_frames import load_frames
-from inhand_lab.sensing.cameras import CAMERAS
+from inhand_lab.people.person import PEOPLE
+from inhand_lab.sensing.cameras import CAMERAS, KINECT
 from inhand_lab.world.sheet import HEIGHT, NAME_WIDTH, PICTURES, WIDTH, write_sheet
-from inhand_lab.world.simulation import simulate
+from inhand_lab.world.simulation import Casting, simulate, simulate_cast
 from inhand_runtime.errors import InhandError
 from inhand_schemas.joints import Joint
 
@@ -51,6 +52,26 @@ def test_cameras_of_a_dataset_stand_where_its_views_say(tmp_path: Path) -> None:
     )
     assert set(np.sign(left - right)) == {-1.0, 1.0}
     assert main(["simulate", "--sheet", str(tmp_path / "x.png"), "--views", "around"]) == 2
+
+
+def test_people_of_a_dataset_are_those_that_were_asked_for(tmp_path: Path) -> None:
+    folder = tmp_path / "people"
+    options = ("--interactions", "drinkFromMug", "--participants", "1", "--seed", "5")
+    more = ("--frames", str(FRAMES), "--no-images", "--people", "varied")
+    assert main(["simulate", str(folder), *options, *more]) == 0
+    assert 'people = "varied"' in (folder / "dataset.toml").read_text()
+    varied = load_dataset(folder)
+    label = load_frames(varied.path(varied.entries[0]), "mug")[0].label
+    assert label is not None
+    joints, usual = np.array(label.person_joints), simulate("drinkFromMug", 0, 5, FRAMES)
+    bodies = [
+        simulate_cast(Casting("drinkFromMug", 0, 5, people=people), FRAMES, KINECT)
+        for people in PEOPLE
+    ]
+    assert np.array_equal(bodies[0].true_joints_in_camera, usual.true_joints_in_camera[:FRAMES])
+    assert np.allclose(joints, bodies[1].true_joints_in_camera[0])
+    assert np.abs(joints - usual.true_joints_in_camera[0]).max() > 0.01
+    assert main(["simulate", "--sheet", str(tmp_path / "x.png"), "--people", "varied"]) == 2
 
 
 def test_every_label_tells_the_whole_truth(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from inhand_lab.people.person import HEIGHT_RANGE, sample_person, stature_of
+from inhand_lab.people.person import HEIGHT_RANGE, Carriage, sample_person, stature_of
 
 
 def test_the_same_seed_and_number_are_the_same_person() -> None:
@@ -37,3 +37,20 @@ def test_heads_differ_less_than_statures() -> None:
     heights = np.array([person.height for person in crowd])
     slope = np.polyfit(np.log(heights), np.log(heads), 1)[0]
     assert 0.0 < slope < 0.7
+
+
+def test_varied_people_have_the_usual_bodies_and_carry_them_each_in_a_way_of_their_own() -> None:
+    usual = [sample_person(6, number) for number in range(12)]
+    varied = [sample_person(6, number, "varied") for number in range(12)]
+    for one, other in zip(usual, varied, strict=True):
+        assert one.proportions == other.proportions
+        assert (one.handedness, one.appearance) == (other.handedness, other.appearance)
+    assert {person.carriage for person in usual} == {Carriage()}
+    for habit in vars(Carriage()):
+        assert len({getattr(person.carriage, habit) for person in varied}) == 12
+    for habit in ("tempo", "amplitude", "elbow_flare", "restlessness", "grip_turn", "grip_tilt"):
+        differing, alike = (
+            np.ptp([getattr(person.manner, habit) for person in people])
+            for people in (varied, usual)
+        )
+        assert differing > alike

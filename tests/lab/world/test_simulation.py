@@ -4,16 +4,37 @@ import numpy as np
 import pytest
 from inhand_lab.geometry.transforms import MIRROR
 from inhand_lab.motions.performance import ContactKind
-from inhand_lab.people.person import SimulatedPerson, sample_person
+from inhand_lab.people.person import People, SimulatedPerson, sample_person
 from inhand_lab.sensing.cameras import CAMERAS
 from inhand_lab.sensing.skeleton_noise import INFERRED, MISSING, TRACKED
 from inhand_lab.world import simulation as world
 from inhand_lab.world.interactions import INTERACTIONS
-from inhand_lab.world.simulation import Simulation, simulate
+from inhand_lab.world.random_streams import GENERATOR_VERSION
+from inhand_lab.world.simulation import Casting, Simulation, simulate, simulate_cast
 from inhand_schemas.joints import Joint
 from numpy.typing import NDArray
 
 KINECT = CAMERAS["kinect"].intrinsics
+
+
+OBJECTS_OF_VERSION_6 = {
+    "pourCream": (-0.070513, -0.227570, 2.362408),
+    "answerPhone": (-0.128455, -0.817747, 2.555554),
+    "drinkFromMug": (-0.107820, -0.540381, 2.637531),
+    "recordVideo": (0.024588, -0.911290, 2.283338),
+    "liftWeights": (0.143508, -0.483440, 2.282507),
+    "playFlute": (-0.096160, -0.648916, 2.300939),
+    "hitTennisBall": (-0.039653, -0.319234, 2.163108),
+    "hammerNail": (-0.024494, -0.452742, 2.242067),
+    "paintWall": (-0.700926, -0.256037, 2.841682),
+    "putOnGlasses": (-0.019145, -0.927413, 2.467883),
+    "shakeVinegar": (-0.161822, -0.224084, 2.305311),
+    "magnifyText": (-0.077404, -0.235941, 2.135473),
+    "putOnShoe": (0.011141, 0.836784, 2.525474),
+    "sweepFloor": (-0.135138, 0.218178, 2.088186),
+    "hitGolfBall": (0.089273, 0.038924, 2.479011),
+}
+"""Where the object is in frame 200 of participant 2 of seed 7, metres, in world version 6."""
 
 
 def bytes_of(simulation: Simulation) -> list[bytes]:
@@ -36,6 +57,27 @@ def test_the_same_seed_makes_the_same_bytes(interaction: str) -> None:
     first, later = one.render(150), [other.render(frame) for frame in (40, 150)][1]
     assert first.colour.tobytes() == later.colour.tobytes()
     assert first.depth.tobytes() == later.depth.tobytes()
+
+
+@pytest.mark.parametrize("interaction", INTERACTIONS)
+def test_usual_people_do_what_they_did_in_world_version_6(interaction: str) -> None:
+    assert GENERATOR_VERSION == 6
+    place = simulate(interaction, 2, seed=7).translations[200]
+    assert place == pytest.approx(OBJECTS_OF_VERSION_6[interaction], abs=2e-6)
+
+
+@pytest.mark.parametrize("interaction", INTERACTIONS)
+def test_varied_people_and_what_they_use_are_in_the_image(interaction: str) -> None:
+    for participant in range(4):
+        cast = Casting(interaction, participant, 9, people="varied")
+        simulation = simulate_cast(cast, 360, CAMERAS["kinect"])
+        assert len(np.unique(simulation.contact)) > 1
+        points = np.concatenate(
+            [simulation.true_joints_in_camera.reshape(-1, 3), simulation.translations]
+        )
+        pixels = points[:, :2] / points[:, 2:] * KINECT.fx + (KINECT.cx, KINECT.cy)
+        assert pixels.min() > 0.0
+        assert (pixels.max(axis=0) < (KINECT.width, KINECT.height)).all()
 
 
 def test_another_seed_makes_another_world() -> None:
@@ -111,8 +153,10 @@ def test_a_left_handed_person_is_the_mirror_image(
     simulations = []
     for handedness in ("right", "left"):
 
-        def everybody(seed: int, participant: int, handedness: str = handedness) -> SimulatedPerson:
-            fields = vars(sample_person(seed, participant)) | {"handedness": handedness}
+        def everybody(
+            seed: int, participant: int, people: People, handedness: str = handedness
+        ) -> SimulatedPerson:
+            fields = vars(sample_person(seed, participant, people)) | {"handedness": handedness}
             return SimulatedPerson(**fields)
 
         monkeypatch.setattr(world, "sample_person", everybody)

@@ -5,7 +5,7 @@ import pytest
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.motions.performance import Performance
 from inhand_lab.people.body_motion import BodyMotion
-from inhand_lab.people.person import SimulatedPerson
+from inhand_lab.people.person import PEOPLE, People, SimulatedPerson
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import simulate
 from inhand_schemas.joints import Joint
@@ -42,14 +42,16 @@ crowds = pytest.mark.parametrize(
     ],
 )
 interactions = pytest.mark.parametrize("interaction", INTERACTIONS)
+kinds = pytest.mark.parametrize("people", PEOPLE)
 
 
 @crowds
+@kinds
 @interactions
-def test_the_world_keeps_its_laws(interaction: str, participants: range) -> None:
+def test_the_world_keeps_its_laws(interaction: str, people: People, participants: range) -> None:
     broken = []
     for participant in participants:
-        person, performance, body = perform(interaction, participant, SEED, FRAME_RATE)
+        person, performance, body = perform(interaction, participant, SEED, FRAME_RATE, people)
         sampled = slice(None, None, EVERY)
         placed_object = performance.world_from_object[sampled]
         broken += [
