@@ -11,14 +11,16 @@ from inhand_lab.chaos.link import Condition, Link
 @pytest.fixture
 def ends() -> Iterator[tuple[Link, socket.socket, socket.socket]]:
     """A link, and the sockets at both of its ends."""
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        with Link(server.getsockname()[1]).open() as link:
-            with socket.create_connection(("127.0.0.1", link.port)) as near:
-                far, _ = server.accept()
-                with far:
-                    near.settimeout(5.0)
-                    far.settimeout(5.0)
-                    yield link, near, far
+    with (
+        socket.create_server(("127.0.0.1", 0)) as server,
+        Link(server.getsockname()[1]).open() as link,
+        socket.create_connection(("127.0.0.1", link.port)) as near,
+    ):
+        far, _ = server.accept()
+        with far:
+            near.settimeout(5.0)
+            far.settimeout(5.0)
+            yield link, near, far
 
 
 def received(end: socket.socket, count: int) -> bytes:
