@@ -47,6 +47,7 @@ VERBS = {
     "rate": "measure rates, gaps and sizes",
     "chaos": "inflict faults on a rig of this machine, and say what each costs",
     "doctor": "say what must be mended on this host before a rig runs",
+    "install": "put systemd units, camera rules and sample settings into this system",
     "status": "list the live instances and their health",
 }
 """Verbs whose module has ``add_arguments(parser)`` and ``run(arguments) -> int``."""

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from types import FrameType
 
 from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
+from inhand_runtime.service_manager import ServiceManager, without_manager
 
 from inhand.last_words import Told, how_it_ended
 
@@ -56,6 +57,7 @@ class Child:
                 self._start_at = now
                 self._process = subprocess.Popen(
                     self.command,
+                    env=without_manager(os.environ),
                     stdin=subprocess.DEVNULL,
                     stderr=subprocess.PIPE,
                     process_group=0,
@@ -158,10 +160,12 @@ class Supervisor:
         stages: Sequence[Sequence[Child]],
         reports: Callable[[str], int | None],
         can_hear: Callable[[], bool],
+        manager: ServiceManager | None = None,
     ) -> None:
         self._stages = stages
         self._reports = reports
         self._can_hear = can_hear
+        self._manager = ServiceManager() if manager is None else manager
         self._signals = 0
 
     def run(self) -> int:
@@ -200,13 +204,22 @@ class Supervisor:
                     log.error("%s has wrong settings (see above): stopping everything", child.name)
                     return WRONG_USAGE
                 child.kill_if_it_hangs(self._reports(child.name), can_hear=can_hear)
-            if not waiting and all(child.done for child in started):
-                return DONE
+            if not waiting:
+                self._report(started)
+                if all(child.done for child in started):
+                    return DONE
             time.sleep(TICK_S)
         return DONE
 
+    def _report(self, children: Sequence[Child]) -> None:
+        """Tell systemd, where it started this process, that all were started, and how many run."""
+        running = sum(not child.ended() for child in children)
+        self._manager.status(f"{running} of {len(children)} processes run")
+        self._manager.advanced()
+
     def _stop(self) -> bool:
         """Ask all to end; False when one had to be killed. A second signal kills at once."""
+        self._manager.stopping()
         signals = self._signals
         all_ended = True
         for stage in self._stages:

@@ -170,16 +170,17 @@ def _agree(_request: bytes) -> bytes:
 
 
 def _credentials(settings: Settings[HubSettings]) -> Credentials:
-    folder = settings.service.folder
-    return Credentials(folder / CERTIFICATE_FILE, folder / KEY_FILE, folder / AUTHORITY_FILE)
+    folder, key = settings.service.folder, settings.service.key
+    return Credentials(folder / CERTIFICATE_FILE, key or folder / KEY_FILE, folder / AUTHORITY_FILE)
 
 
 def _state(settings: Settings[HubSettings]) -> State:
-    names = (MEMBERS_FILE, CERTIFICATE_FILE, KEY_FILE, AUTHORITY_FILE)
+    given = _credentials(settings)
+    members = settings.service.folder / MEMBERS_FILE
     states: list[tuple[int, int, int] | None] = []
-    for name in names:
+    for path in (members, given.certificate, given.key, given.authority):
         try:
-            status = (settings.service.folder / name).stat()
+            status = path.stat()
         except OSError:
             states.append(None)
         else:

@@ -20,10 +20,12 @@ def _encrypted(address: str) -> str:
 class HubSettings(Section):
     """``[hub.NAME]``: the hub's ``folder``, which ``inhand hub init`` made, and where to listen.
 
-    Without a word that is this machine alone; ``tls/0.0.0.0:7448`` is all of its addresses.
+    Without a word that is this machine alone; ``tls/0.0.0.0:7448`` is all of its addresses. Its
+    private ``key`` may be elsewhere than in the folder, as where systemd gives it to the hub alone.
     """
 
     folder: FilePath = Field(default=Path("site/hub"), validate_default=True)
+    key: FilePath | None = None
     listen: Annotated[
         tuple[Annotated[Address, AfterValidator(_encrypted)], ...], Field(min_length=1)
     ] = (USUAL_ADDRESS,)

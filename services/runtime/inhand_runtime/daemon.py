@@ -26,6 +26,7 @@ from inhand_runtime.known_member import require_known
 from inhand_runtime.logs import configure_logs
 from inhand_runtime.memory import give_libraries_back, give_memory_back
 from inhand_runtime.questions import Question, answer, ask
+from inhand_runtime.service_manager import ServiceManager
 from inhand_runtime.session import (
     Publisher,
     Session,
@@ -75,7 +76,8 @@ class Daemon:
         self.site = site
         self.instance = instance
         self.inbox = Inbox()
-        self.health = HealthBoard(service, instance)
+        self.manager = ServiceManager()
+        self.health = HealthBoard(service, instance, on_round=self.manager.advanced)
         self.stop = stop
         self.given_way: str | None = None
         """Why this instance ends although nobody asked for it, if it does."""
@@ -229,6 +231,8 @@ def running_daemon(
                     yield daemon
                 finally:
                     daemon.health.state = "stopping"
+                    if daemon.stop.is_set():  # a hub that starts anew goes on
+                        daemon.manager.stopping()
                     daemon.stop.set()
                     daemon.inbox.close()
         log.info("%s %s stopped", service, instance)
@@ -270,7 +274,9 @@ def _report(
     while not finished.wait(HEALTH_PERIOD_S):
         if elders.stayed() and daemon.given_way is None:
             daemon.give_way()
-        publisher.put(daemon.health.report())
+        health = daemon.health.report()
+        publisher.put(health)
+        daemon.manager.status("; ".join((health.state, *health.troubles)))
         daemon.repeat_kept()
         reports += 1
         if reports == REPORTS_UNTIL_LONELY and settings is not None and daemon.is_alone():

@@ -40,8 +40,14 @@ class HealthBoard:
     """Thread-safe counters of one instance, its troubles, and when its main loop came round."""
 
     def __init__(
-        self, service: str, instance: str, now: Callable[[], float] = time.monotonic
+        self,
+        service: str,
+        instance: str,
+        now: Callable[[], float] = time.monotonic,
+        on_round: Callable[[], None] = lambda: None,
     ) -> None:
+        """``on_round`` is called in the main loop, each time that it comes round."""
+        self._on_round = on_round
         self.state: ServiceState = "starting"
         self.effort: float | None = None
         self.shutter_closed: bool | None = None
@@ -148,6 +154,7 @@ class HealthBoard:
     def came_round(self) -> None:
         """Note that the main loop lives: a service says so each time it comes round."""
         self._came_round = self._now()
+        self._on_round()
 
     def error(self, text: str) -> None:
         """Remember the last thing that went wrong, and log it."""
