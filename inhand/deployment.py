@@ -11,7 +11,6 @@ PLACES = {
     "tmpfiles.d": "etc/tmpfiles.d",
     "udev": "etc/udev/rules.d",
     "settings": "usr/local/share/inhand/settings",
-    "prometheus": "usr/local/share/inhand/prometheus",
 }
 """By folder of ``deploy``: where its files go, below the root of a system."""
 PROGRAM = "/usr/bin/inhand"
