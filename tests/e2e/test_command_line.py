@@ -13,6 +13,7 @@ from inhand_runtime.recording import RecordingWriter, read_recording
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import CameraInfo, ObjectPose
 from inhand_schemas.topics import INFO, POSE, RGBD
+from manager_stand_in import Manager
 from running_rig import RunningRig, eventually
 
 from inhand.__main__ import DAEMONS, VERBS, main
@@ -323,6 +324,27 @@ def test_up_starts_a_killed_process_again(rig: RunningRig) -> None:
     up.said("recorder a was killed by SIGKILL")
     eventually("a second start", lambda: up.stderr.count("recorder a is up") == 2)
     assert up.stop() == 0
+
+
+@pytest.mark.long
+def test_up_tells_systemd_once_that_all_were_started_and_feeds_its_watchdog(
+    rig: RunningRig,
+) -> None:
+    """What systemd gives ``inhand up`` is not for its children, which would speak in its name."""
+    manager = Manager(str(rig.folder / "notify"))
+    rig.configure(TWO_RECORDERS.format(rig.folder))
+    up = rig.inhand("up", "--config", rig.config, **manager.environment())
+    eventually("it is up", lambda: "READY=1" in manager.heard())
+    eventually("both run", lambda: "STATUS=2 of 2 processes run" in manager.heard())
+    up.said("recorder a is up")
+    fed = manager.beats()
+    next(child for child in children(up.pid) if "a" in child.cmdline()).kill()
+    eventually("one is missing", lambda: "STATUS=1 of 2 processes run" in manager.heard())
+    eventually("the watchdog is fed", lambda: manager.beats() > fed)
+    assert up.stop() == 0
+    assert manager.heard().count("READY=1") == manager.heard().count("STOPPING=1") == 1
+    assert not any("running" in said for said in manager.heard())
+    manager.close()
 
 
 @pytest.mark.long

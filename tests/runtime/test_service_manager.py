@@ -3,7 +3,6 @@
 import itertools
 import os
 import signal
-import socket
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,42 +11,11 @@ import pytest
 from inhand_runtime.service_manager import ServiceManager, without_manager
 from inhand_schemas.messages import Skeletons
 from inhand_schemas.topics import SKELETONS
+from manager_stand_in import WATCHDOG_S, Manager
 from running_rig import Process, RunningRig, eventually
 from wire import Wire
 
 DAEMON = Path(__file__).with_name("small_daemon.py")
-WATCHDOG_S = 2.0
-
-
-class Manager:
-    """Stands for systemd: keeps what it is told, with the time."""
-
-    def __init__(self, address: str) -> None:
-        self.address = address
-        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
-        self._socket.bind(address.replace("@", "\0") if address.startswith("@") else address)
-        self._socket.setblocking(False)
-        self._heard: list[str] = []
-
-    def environment(self, watchdog_s: float = WATCHDOG_S) -> dict[str, str]:
-        """What a service that it starts finds."""
-        return {"NOTIFY_SOCKET": self.address, "WATCHDOG_USEC": str(int(watchdog_s * 1e6))}
-
-    def heard(self) -> list[str]:
-        """All that was said so far."""
-        while True:
-            try:
-                self._heard.append(self._socket.recv(4096).decode())
-            except BlockingIOError:
-                return self._heard
-
-    def beats(self) -> int:
-        """How often the watchdog was fed so far."""
-        return self.heard().count("WATCHDOG=1")
-
-    def close(self) -> None:
-        """Listen no more."""
-        self._socket.close()
 
 
 @pytest.fixture
