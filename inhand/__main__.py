@@ -48,6 +48,7 @@ VERBS = {
     "chaos": "inflict faults on a rig of this machine, and say what each costs",
     "doctor": "say what must be mended on this host before a rig runs",
     "install": "put systemd units, camera rules and sample settings into this system",
+    "support": "write what a bug report needs into one file: no secrets, no pictures",
     "status": "list the live instances and their health",
 }
 """Verbs whose module has ``add_arguments(parser)`` and ``run(arguments) -> int``."""

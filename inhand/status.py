@@ -5,6 +5,7 @@ or two publish the same.
 """
 
 import argparse
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -40,26 +41,46 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print who lives, what they last said and what is wrong; InhandError when nobody answers."""
-    expected = expected_instances(arguments.config)
-    roll = Roll()
-    with open_look(arguments.config) as look:
-        look.follow_tokens(roll.change)
-        look.follow(HEALTH)
-        _listen(look, roll, expected, arguments.seconds)
-    living, stopped = roll.living(), stopped_services(load_rig_file(arguments.config).zenoh)
-    wrong = problems(roll, expected, stopped)
-    if not living and not expected and not wrong:
-        raise nothing_heard(look.site, arguments.seconds)
-    if living:
-        output().print(_table(living))
+    state = look_at_site(arguments.config, arguments.seconds)
+    if state.living:
+        output().print(_table(state.living))
+    living = state.living
     for line in (*closed_shutters(living), *left_unused(living), *late_lines(living)):
         print(line)
-    for line in wrong:
+    for line in state.problems:
         print(f"WRONG: {line}")
     if arguments.json is not None:
-        rows = [_row(instance, heard) for instance, heard in living.items()]
-        write_json(arguments.json, {"instances": rows, "problems": wrong})
-    return FAILED if wrong else DONE
+        write_json(arguments.json, state.for_machines())
+    return FAILED if state.problems else DONE
+
+
+@dataclass(frozen=True)
+class SiteState:
+    """Who lives and what each last said, and all that is wrong there, a line each."""
+
+    living: dict[Instance, Heard | None]
+    problems: list[str]
+
+    def for_machines(self) -> dict[str, Any]:
+        """Return it as ``--json`` writes it."""
+        rows = [_row(instance, heard) for instance, heard in self.living.items()]
+        return {"instances": rows, "problems": self.problems}
+
+
+def look_at_site(config: Path | None, seconds: float = SECONDS) -> SiteState:
+    """Listen until all have spoken, or for ``seconds``; raises InhandError when nobody answers,
+    and SettingsError."""
+    expected = expected_instances(config)
+    roll = Roll()
+    with open_look(config) as look:
+        look.follow_tokens(roll.change)
+        look.follow(HEALTH)
+        _listen(look, roll, expected, seconds)
+    living, stopped = roll.living(), stopped_services(load_rig_file(config).zenoh)
+    wrong = problems(roll, expected, stopped)
+    if not living and not expected and not wrong:
+        raise nothing_heard(look.site, seconds)
+    return SiteState(living, wrong)
 
 
 def expected_instances(config: Path | None) -> tuple[Instance, ...]:

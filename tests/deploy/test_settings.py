@@ -4,26 +4,15 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from inhand_capture.settings import CaptureSettings
-from inhand_hub.settings import HubSettings
 from inhand_hub.site_folder import SiteFolder, create_site
-from inhand_recorder.service import RecorderSettings
-from inhand_runtime.settings import SERVICES, Section, instance_settings, load_rig_file
-from inhand_studio.settings import StudioSettings
-from inhand_tracker.settings import TrackerSettings
+from inhand_runtime.settings import SERVICES, instance_settings, load_rig_file
 
 from inhand.__main__ import main
 from inhand.deployment import deploy_folder
+from inhand.service_models import settings_model
 
 FOLDER = deploy_folder() / "settings"
 SAMPLES = sorted(FOLDER.rglob("*.toml"))
-MODELS: dict[str, type[Section]] = {
-    "capture": CaptureSettings,
-    "tracker": TrackerSettings,
-    "recorder": RecorderSettings,
-    "studio": StudioSettings,
-    "hub": HubSettings,
-}
 
 
 def test_there_are_samples_of_each_kind() -> None:
@@ -32,7 +21,6 @@ def test_there_are_samples_of_each_kind() -> None:
         "smart_home.toml",
         "three_hosts",
     }
-    assert set(MODELS) == set(SERVICES)
 
 
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda path: path.stem)
@@ -41,7 +29,7 @@ def test_a_sample_is_what_the_daemons_read(sample: Path) -> None:
     instances = [(one, name) for one in SERVICES for name in getattr(rig_file, one)]
     assert instances
     for service, name in instances:
-        instance_settings(rig_file, sample, service, MODELS[service], name)
+        instance_settings(rig_file, sample, service, settings_model(service), name)
 
 
 @pytest.mark.parametrize(

@@ -177,7 +177,7 @@ class Settings(Generic[S_co]):
 
 def load_rig_file(path: Path | None) -> RigFile:
     """Read a file, or take the defaults; raises SettingsError naming file, line and mend."""
-    values = with_environment({} if path is None else _read(path), RigFile)
+    values = with_environment({} if path is None else read_values(path), RigFile)
     try:
         context = None if path is None else {"folder": path.parent}
         rig_file = RigFile.model_validate(values, context=context)
@@ -242,7 +242,8 @@ def instance_settings(
     return Settings(site, rig_file.zenoh, rig_file.log, instance, checked, origin)
 
 
-def _read(path: Path) -> dict[str, Any]:
+def read_values(path: Path) -> dict[str, Any]:
+    """Read a file's values as they stand there, unchecked; raises SettingsError."""
     try:
         return tomllib.loads(path.read_text(encoding=ENCODING))
     except OSError as error:
