@@ -48,6 +48,8 @@ VERBS = {
     "chaos": "inflict faults on a rig of this machine, and say what each costs",
     "doctor": "say what must be mended on this host before a rig runs",
     "install": "put systemd units, camera rules and sample settings into this system",
+    "backup": "put a site's settings, models, objects and certificates into one file",
+    "restore": "put back what a backup holds, whole or not at all",
     "support": "write what a bug report needs into one file: no secrets, no pictures",
     "status": "list the live instances and their health",
 }

@@ -245,9 +245,15 @@ def instance_settings(
 def read_values(path: Path) -> dict[str, Any]:
     """Read a file's values as they stand there, unchecked; raises SettingsError."""
     try:
-        return tomllib.loads(path.read_text(encoding=ENCODING))
+        return values_in(path.read_bytes(), path)
     except OSError as error:
         raise SettingsError(f"cannot read {path}: {error.strerror}") from None
+
+
+def values_in(data: bytes, path: Path) -> dict[str, Any]:
+    """Read the values of a file's content, unchecked; raises SettingsError that names ``path``."""
+    try:
+        return tomllib.loads(data.decode(ENCODING))
     except UnicodeDecodeError as error:
         if b"\0" in error.object and not error.object.startswith(UTF_16_MARKS):
             raise SettingsError(f"{path} is no text: name the rig's settings (TOML)") from None
