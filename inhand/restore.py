@@ -22,9 +22,10 @@ MOST_NAMED = 3
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's arguments."""
-    parser.add_argument("file", type=Path, metavar="FILE", help="what `inhand backup` wrote")
+    parser.add_argument("source", type=Path, metavar="FILE", help="what `inhand backup` wrote")
     parser.add_argument(
         "--to",
+        dest="folder",
         type=Path,
         metavar="FOLDER",
         help="the folder of the settings, and of what stood below it (default: where it was)",
@@ -36,16 +37,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Put everything back; raises InhandError or SettingsError, and then nothing has changed."""
-    manifest = read_manifest(arguments.file)
-    folder = plain(Path(manifest.folder) if arguments.to is None else arguments.to)
-    _require_fitting(manifest, _named(arguments.file, manifest, folder), folder)
+    manifest = read_manifest(arguments.source)
+    folder = plain(Path(manifest.folder) if arguments.folder is None else arguments.folder)
+    _require_fitting(manifest, _named(arguments.source, manifest, folder), folder)
     places = {one.place: path_of(one.place, folder) for one in manifest.files}
     _require_free(places, overwrite=arguments.overwrite)
     try:
         with Placement() as placement:
             for one in manifest.folders:
                 placement.make_folder(path_of(one.place, folder), one)
-            for file, content in contents(arguments.file):
+            for file, content in contents(arguments.source):
                 placement.stage(places[file.place], content, file)
             placement.commit()
     except OSError as error:
