@@ -27,6 +27,7 @@ DAEMONS = {
 VERBS = {
     "demo": "from nothing to tracked, recorded poses on this machine",
     "up": "run every process that the config names, supervised",
+    "reload": "have a running `inhand up` take over its settings file, which has changed",
     "shutter": "close or open the cameras' shutters",
     "control": "change a camera's exposure, focus or light while it runs",
     "replay": "publish a recording again",

@@ -8,11 +8,21 @@ from collections.abc import Mapping, Sequence
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE
 
+from inhand.last_words import Told
+
 POLL_S = 0.05
 
 
+class StartError(SettingsError):
+    """Some processes cannot start; ``lines`` say why."""
+
+    def __init__(self, message: str, lines: tuple[str, ...]) -> None:
+        super().__init__(message)
+        self.lines = lines
+
+
 def require_startable(commands: Mapping[str, Sequence[str]], stop: threading.Event) -> None:
-    """Raise SettingsError, after the lines of those that cannot start, when any cannot.
+    """Raise StartError, which says why, when any cannot start; each prints its line as well.
 
     ``commands`` start each process by its name; ``--check-config`` is added to them. Ends early
     when ``stop`` is set.
@@ -22,10 +32,12 @@ def require_startable(commands: Mapping[str, Sequence[str]], stop: threading.Eve
             [*command, "--check-config"],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
             process_group=0,
         )
         for name, command in commands.items()
     }
+    told = {name: Told(check.stderr) for name, check in checks.items() if check.stderr is not None}
     try:
         while any(check.poll() is None for check in checks.values()):
             if stop.wait(POLL_S):
@@ -36,6 +48,8 @@ def require_startable(commands: Mapping[str, Sequence[str]], stop: threading.Eve
             check.wait()
     if wrong := [name for name, check in checks.items() if check.returncode != DONE]:
         has = "has" if len(wrong) == 1 else "have"
-        raise SettingsError(
-            f"{' and '.join(wrong)} {has} wrong settings (see above): nothing was started"
+        whys = dict.fromkeys(told[name].last_line() for name in wrong)
+        raise StartError(
+            f"{' and '.join(wrong)} {has} wrong settings (see above): nothing was started",
+            tuple(whys),
         )

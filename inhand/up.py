@@ -1,23 +1,25 @@
-"""``inhand up``: run every process that the config names, supervised, until SIGTERM or Ctrl-C."""
+"""``inhand up``: run every process that the config names, supervised, until SIGTERM or Ctrl-C.
+
+SIGHUP, as `inhand reload`, has it take over its settings file where that changed.
+"""
 
 import argparse
-import sys
 import threading
 from pathlib import Path
 
-from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE
 from inhand_runtime.logs import configure_logs
 from inhand_runtime.roll import Roll
-from inhand_runtime.settings import RigFile, load_rig_file
+from inhand_runtime.settings import load_rig_file
 from inhand_runtime.signals import set_on_signals
 from inhand_schemas.messages import Health
 
+from inhand.child import HANGS_AFTER_S
 from inhand.looking import open_look
+from inhand.reloading import Reloading, Stages
+from inhand.rig_processes import rig_processes
 from inhand.starts import require_startable
-from inhand.supervisor import HANGS_AFTER_S, Child, Supervisor
-
-STOP_ORDER = ("studio", "capture", "tracker", "recorder")
+from inhand.supervisor import Supervisor
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,26 +33,32 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Supervise until the end; raises SettingsError when there is nothing to run."""
     rig_file = load_rig_file(arguments.config)
-    if rig_file.hub:
-        raise SettingsError(
-            f"{arguments.config} names a hub, which is run by itself: `inhand hub`, with "
-            "settings of its own"
-        )
-    stages = [_children(rig_file, arguments.config, service) for service in STOP_ORDER]
-    if not any(stages):
-        raise SettingsError(
-            f"{arguments.config or 'the settings'} names no process: add a table such as "
-            "[capture.front], or give --config"
-        )
-    commands = {child.name: child.command for stage in stages for child in stage}
+    if arguments.check_config:
+        return _check(rig_processes(rig_file, arguments.config))
     stop = threading.Event()
+    with Reloading(arguments.config, rig_file, stop.set) as reloading:
+        with set_on_signals(stop):
+            require_startable(_commands(reloading.stages), stop)
+        if stop.is_set():
+            return DONE
+        configure_logs(rig_file.log, "up")
+        return _supervise(arguments.config, reloading, stop)
+
+
+def _check(stages: Stages) -> int:
+    commands, stop = _commands(stages), threading.Event()
     with set_on_signals(stop):
         require_startable(commands, stop)
-    if arguments.check_config:
+    if not stop.is_set():
         print(f"{', '.join(commands)}: the settings are valid")
-    if stop.is_set() or arguments.check_config:
-        return DONE
-    configure_logs(rig_file.log, "up")
+    return DONE
+
+
+def _commands(stages: Stages) -> dict[str, tuple[str, ...]]:
+    return {one.name: one.command for stage in stages for one in stage}
+
+
+def _supervise(config: Path | None, reloading: Reloading, stop: threading.Event) -> int:
     roll = Roll()
 
     def reports(name: str) -> int | None:
@@ -65,18 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
         if health.loop_age_s < HANGS_AFTER_S:
             roll.hear(health)
 
-    with open_look(arguments.config) as look:
+    with open_look(config) as look:
         look.follow_tokens(roll.change)
         look.follow_health(hear)
-        return Supervisor(stages, reports, look.can_hear).run()
-
-
-def _children(rig_file: RigFile, config: Path | None, service: str) -> list[Child]:
-    file = [] if config is None else ["--config", str(config)]
-    return [
-        Child(
-            f"{service} {instance}",
-            [sys.executable, "-m", "inhand", service, *file, "--name", instance],
-        )
-        for instance in getattr(rig_file, service)
-    ]
+        return Supervisor(reloading, reports, look.can_hear, stop).run()

@@ -318,3 +318,15 @@ def test_a_client_s_files_that_do_nothing_are_refused(load: Load, zenoh: str, wo
     with pytest.raises(SettingsError, match=words) as raised:
         load(f"[zenoh]\n{zenoh}[capture.front]\nsource = 'replay'")
     assert "rig.toml:1: setting zenoh: " in str(raised.value)
+
+
+def test_settings_of_a_later_version_are_refused_and_of_this_one_or_none_are_read(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "rig.toml"
+    for text in ('rig = "attic"\n', 'version = 1\nrig = "attic"\n'):
+        path.write_text(text)
+        assert load_rig_file(path).rig == "attic"
+    path.write_text("# new\nversion = 2\n[recorder.disk]\n")
+    with pytest.raises(SettingsError, match=r"rig\.toml:2: setting version: .*: update Inhand"):
+        load_rig_file(path)

@@ -18,6 +18,7 @@ from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
+    Field,
     ValidationError,
     ValidationInfo,
     model_validator,
@@ -28,6 +29,9 @@ from inhand_runtime.settings_environment import texts_read, with_environment
 from inhand_runtime.settings_errors import ENCODING, explain, place, suggestion
 
 SERVICES = ("capture", "tracker", "recorder", "studio", "hub")
+
+SETTINGS_VERSION = 1
+"""Version of the settings' form that this release reads and means where a file names none."""
 
 MEETING = "tcp/127.0.0.1:7447"
 
@@ -121,9 +125,23 @@ class LogSettings(Section):
     level: Literal["debug", "info", "warning", "error"] = "info"
 
 
-class RigFile(Section):
-    """The whole file; the tables of a service are checked by that service."""
+def _known_version(version: int) -> int:
+    if version > SETTINGS_VERSION:
+        raise ValueError(
+            f"these settings are of version {version}, for a later release of Inhand than this "
+            f"one, which reads version {SETTINGS_VERSION}: update Inhand"
+        )
+    return version
 
+
+class RigFile(Section):
+    """The whole file; the tables of a service are checked by that service.
+
+    ``version`` is that of the settings' form, which grows when a file of before would be read
+    otherwise than it was meant: a release refuses files of a later version than it knows.
+    """
+
+    version: Annotated[int, Field(ge=1), AfterValidator(_known_version)] = SETTINGS_VERSION
     realm: str = "inhand"
     rig: str = "rig"
     zenoh: ZenohSettings = ZenohSettings()

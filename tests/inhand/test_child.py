@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import pytest
 
+from inhand.child import LOOP_FAILURES, Child
 from inhand.last_words import how_it_ended
-from inhand.supervisor import LOOP_FAILURES, Child
 
 FAILS = "import sys; print('before', file=sys.stderr); raise ZeroDivisionError('a bug')"
 KILLED = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
@@ -16,8 +16,8 @@ KILLED = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
 
 def _run(child: Child, times: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a child end so often, without the pauses between its starts."""
-    monkeypatch.setattr("inhand.supervisor.FIRST_RESTART_S", 0.0)
-    monkeypatch.setattr("inhand.supervisor.LAST_RESTART_S", 0.0)
+    monkeypatch.setattr("inhand.child.FIRST_RESTART_S", 0.0)
+    monkeypatch.setattr("inhand.child.LAST_RESTART_S", 0.0)
     child._delay = 0.0
     ended = 0
     while ended < times:
@@ -64,7 +64,7 @@ def test_a_lack_of_memory_is_named_where_it_may_be_the_reason() -> None:
 def _silent(child: Child, hears: Sequence[bool], monkeypatch: pytest.MonkeyPatch) -> None:
     """Start a child, hear it twice, and then no more: a second for each of ``hears``."""
     now = [100.0]
-    monkeypatch.setattr("inhand.supervisor.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("inhand.child.time.monotonic", lambda: now[0])
     child.tend()
     for reports in (1, 2):
         child.kill_if_it_hangs(reports)

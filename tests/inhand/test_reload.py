@@ -1,0 +1,173 @@
+"""A running `inhand up` takes over its settings file, and a bad one changes nothing."""
+
+import os
+import pty
+import signal
+import subprocess
+import sys
+import termios
+from collections.abc import Callable
+from fcntl import ioctl
+from pathlib import Path
+
+import psutil
+import pytest
+from running_rig import Process, RunningRig, eventually
+
+from inhand.__main__ import main
+
+pytestmark = pytest.mark.long
+
+
+def _recorders(rig: RunningRig, *lines: str, **folders: str) -> None:
+    """Write settings of recorders, by their names and folders."""
+    tables = [
+        f'[recorder.{name}]\nfolder = "{rig.folder}/{folder}"' for name, folder in folders.items()
+    ]
+    rig.configure("\n".join((*lines, *tables)))
+
+
+def _pids(up: Process) -> dict[str, int]:
+    """The processes of the instances that run, by name."""
+    running = {}
+    for child in psutil.Process(up.pid).children():
+        words = child.cmdline()
+        if "--name" in words and "--check-config" not in words:
+            running[words[words.index("--name") + 1]] = child.pid
+    return running
+
+
+def _started(rig: RunningRig, **folders: str) -> Process:
+    _recorders(rig, **folders)
+    up = rig.inhand("up", "--config", rig.config)
+    for name in folders:
+        up.said(f"recorder {name} is up")
+    return up
+
+
+def _reload(rig: RunningRig) -> Process:
+    return rig.done("reload", "--config", rig.config)
+
+
+def _by_the_verb(rig: RunningRig, _up: Process) -> None:
+    assert _reload(rig).popen.returncode == 0
+
+
+def _by_sighup(_rig: RunningRig, up: Process) -> None:
+    up.popen.send_signal(signal.SIGHUP)
+
+
+@pytest.mark.parametrize("ask", [_by_the_verb, _by_sighup])
+def test_only_what_changed_starts_anew(
+    rig: RunningRig, ask: Callable[[RunningRig, Process], None]
+) -> None:
+    up = _started(rig, a="first", b="second")
+    before = _pids(up)
+    _recorders(rig, a="first", b="third")
+    ask(rig, up)
+    eventually("b again", lambda: up.stderr.count("recorder b is up") == 2)
+    assert "reload: starts anew: recorder b" in up.stderr
+    assert "reload: goes on: recorder a" in up.stderr
+    after = _pids(up)
+    assert after["a"] == before["a"]
+    assert after["b"] != before["b"]
+    eventually("its new folder", (rig.folder / "third").is_dir)
+    assert up.stop() == 0
+
+
+def test_processes_come_and_go_with_their_tables(rig: RunningRig) -> None:
+    up = _started(rig, a="first", b="second")
+    kept = _pids(up)["b"]
+    _recorders(rig, b="second", c="third")
+    done = _reload(rig)
+    assert done.popen.returncode == 0
+    assert done.stdout.splitlines() == [
+        "stops: recorder a",
+        "starts: recorder c",
+        "goes on: recorder b",
+    ]
+    up.said("recorder c is up")
+    assert _pids(up).keys() == {"b", "c"}
+    assert _pids(up)["b"] == kept
+    assert up.stop() == 0
+    assert up.stderr.count("recorder b is up") == 1
+
+
+BAD = {
+    "no TOML": ("[recorder", "is no TOML"),
+    "a typo": ('[recorder.a]\nfoldr = "x"', "unknown setting recorder.a.foldr"),
+    "not startable": ('[recorder.a]\nfolder = "/proc/nowhere"', "cannot write to the folder"),
+    "another rig": ('rig = "attic"\n[recorder.a]', "rig cannot change while `inhand up` runs"),
+    "nothing": ("", "names no process"),
+    "a camera that is gone": (
+        '[capture.front]\nsource = "simulator"\n[tracker.mug]\ncamera = "frnt"\nmodel = "x"',
+        "there is no table [capture.frnt]",
+    ),
+}
+
+
+def test_a_bad_file_is_refused_and_what_runs_goes_on(rig: RunningRig) -> None:
+    up = _started(rig, a="first", b="second")
+    before = _pids(up)
+    for text, said in BAD.values():
+        rig.configure(text)
+        done = _reload(rig)
+        assert done.popen.returncode == 2, text
+        assert said in done.stderr
+        assert "nothing was changed" in done.stderr
+        assert done.stdout == ""
+    assert _pids(up) == before
+    _recorders(rig, a="first", b="second", c="third")
+    assert _reload(rig).popen.returncode == 0
+    up.said("recorder c is up")
+    assert _pids(up) | before == _pids(up)
+    assert up.stop() == 0
+
+
+def test_what_dies_while_the_file_is_wrong_comes_back_when_it_is_mended(rig: RunningRig) -> None:
+    """Whoever edits a file that is in use may be at it for long: nothing ends for that."""
+    up = _started(rig, a="first", b="second")
+    kept = _pids(up)["b"]
+    rig.configure("[recorder")
+    os.kill(_pids(up)["a"], signal.SIGKILL)
+    up.said("recorder a ended, and the settings file was changed meanwhile and is wrong")
+    _recorders(rig, a="first", b="second")
+    eventually("a again", lambda: up.stderr.count("recorder a is up") == 2)
+    assert _pids(up)["b"] == kept
+    assert up.stop() == 0
+
+
+def test_where_nothing_runs_that_is_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["reload", "--config", str(tmp_path / "rig.toml")]) == 1
+    assert "no `inhand up` runs with" in capsys.readouterr().err
+
+
+def test_a_terminal_that_closes_ends_it_as_ever(rig: RunningRig) -> None:
+    """SIGHUP is what a closed terminal sends too, and nobody would see what goes on."""
+    _recorders(rig, a="first")
+    ours, theirs = pty.openpty()
+    with (rig.folder / "log").open("wb") as output:
+        up = subprocess.Popen(
+            [sys.executable, "-m", "inhand", "up", "--config", str(rig.config)],
+            stdin=theirs,
+            stdout=output,
+            stderr=output,
+            start_new_session=True,
+            preexec_fn=lambda: ioctl(0, termios.TIOCSCTTY, 0),
+        )
+    try:
+        os.close(theirs)
+        log = rig.folder / "log"
+        eventually("it is up", lambda: "recorder a is up" in log.read_text())
+        children = psutil.Process(up.pid).children()
+        _recorders(rig, a="second")
+        up.send_signal(signal.SIGHUP)  # the terminal is still there
+        eventually("a again", lambda: log.read_text().count("recorder a is up") == 2)
+        os.close(ours)
+        assert up.wait(30) == 0
+        assert psutil.wait_procs(children, timeout=10)[1] == []
+    finally:
+        up.kill()
+        up.wait()
