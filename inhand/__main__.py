@@ -51,6 +51,7 @@ VERBS = {
     "install": "put systemd units, camera rules and sample settings into this system",
     "backup": "put a site's settings, models, objects and certificates into one file",
     "restore": "put back what a backup holds, whole or not at all",
+    "metrics": "give the health of a rig to Prometheus, on this machine alone",
     "support": "write what a bug report needs into one file: no secrets, no pictures",
     "status": "list the live instances and their health",
 }

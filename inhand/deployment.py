@@ -10,6 +10,7 @@ PLACES = {
     "sysusers.d": "etc/sysusers.d",
     "tmpfiles.d": "etc/tmpfiles.d",
     "udev": "etc/udev/rules.d",
+    "prometheus": "usr/local/share/inhand/prometheus",
     "settings": "usr/local/share/inhand/settings",
 }
 """By folder of ``deploy``: where its files go, below the root of a system."""

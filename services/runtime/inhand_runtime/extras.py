@@ -3,6 +3,7 @@
 EXTRAS = {
     "hub": ("cryptography",),
     "lab": ("faiss", "fast_simplification", "matplotlib", "scipy", "sklearn", "trimesh"),
+    "metrics": ("prometheus_client",),
     "pose": ("ai_edge_litert",),
     "oak": ("depthai",),
     "onnx": ("onnxruntime",),
