@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
@@ -34,11 +34,19 @@ _PR_SET_PDEATHSIG = 1
 class Child:
     """One process; it is started again after a failure, later each time."""
 
-    def __init__(self, name: str, command: Sequence[str], settings: tuple[Any, ...] = ()) -> None:
+    def __init__(
+        self,
+        name: str,
+        command: Sequence[str],
+        settings: tuple[Any, ...] = (),
+        environment: Callable[[], Mapping[str, str]] = dict,
+    ) -> None:
+        """``environment`` gives what is to be added to this process's own at each start."""
         self.name = name
         self.done = False
         self.command = command
         self.settings = settings
+        self._environment = environment
         self._leaves_by = float("inf")
         self._process: subprocess.Popen[bytes] | None = None
         self._start_at = 0.0
@@ -57,7 +65,7 @@ class Child:
                 self._start_at = now
                 self._process = subprocess.Popen(
                     self.command,
-                    env=without_manager(os.environ),
+                    env={**without_manager(os.environ), **self._environment()},
                     stdin=subprocess.DEVNULL,
                     stderr=subprocess.PIPE,
                     process_group=0,
@@ -128,12 +136,6 @@ class Child:
             )
             self._reports = self._silent_s = None
             self._process.kill()
-
-    def try_again(self) -> None:
-        """Start a process that is done once more, later each time."""
-        self.done = False
-        self._start_at = time.monotonic() + self._delay
-        self._delay = min(2 * self._delay, LAST_RESTART_S)
 
     def leave(self) -> None:
         """Ask the process to end for good."""

@@ -1,5 +1,6 @@
 """Puts files into their places together: all of them, or none."""
 
+import contextlib
 import os
 import shutil
 from pathlib import Path
@@ -101,4 +102,5 @@ class Placement:
         for staged, _ in self._staged:
             staged.unlink(missing_ok=True)
         for folder in reversed(self._made):
-            folder.rmdir()
+            with contextlib.suppress(OSError):  # somebody else put something there
+                folder.rmdir()

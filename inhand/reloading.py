@@ -1,20 +1,28 @@
 """Takes over settings that changed, while the processes run of which nothing changed."""
 
-import hashlib
+import contextlib
 import logging
 import os
 import queue
 import signal
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Self
 
+from inhand_runtime.accepted_settings import AcceptedSettings
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.logs import configure_logs
-from inhand_runtime.settings import RigFile, load_rig_file
+from inhand_runtime.settings import (
+    LogSettings,
+    RigFile,
+    load_rig_file,
+    rig_file_of,
+    settings_data,
+    values_in,
+)
 
 from inhand.rig_processes import RigProcess, rig_processes
 from inhand.starts import StartError, require_startable
@@ -37,14 +45,15 @@ class Reloading:
     SIGHUP is not a request but means, as ever, the end: ``on_hangup`` is called.
     """
 
-    def __init__(
-        self, config: Path | None, rig_file: RigFile, on_hangup: Callable[[], object]
-    ) -> None:
+    def __init__(self, config: Path | None, on_hangup: Callable[[], object]) -> None:
+        """Raises SettingsError for a file that is wrong, or names nothing to run."""
+        data = b"" if config is None else settings_data(config)
+        rig_file = load_rig_file(None) if config is None else _rig_file(data, config)
         self.stages = rig_processes(rig_file, config)
         self._config = config
         self._rig_file = rig_file
         self._on_hangup = on_hangup
-        self._digest = self._read_digest()
+        self._accepted = _accepted(config, data)
         self._requests: queue.SimpleQueue[Future[Answer] | None] = queue.SimpleQueue()
         self._ready: queue.SimpleQueue[Stages] = queue.SimpleQueue()
         self._ends = threading.Event()
@@ -80,9 +89,15 @@ class Reloading:
         except queue.Empty:
             return None
 
-    def file_has_changed(self) -> bool:
-        """Whether the file is another one than that whose settings are in use."""
-        return self._read_digest() != self._digest
+    @property
+    def log_settings(self) -> LogSettings:
+        """How this process is to log."""
+        return self._rig_file.log
+
+    def environment(self) -> Mapping[str, str]:
+        """Return the variables by which a child reads what was accepted, whatever the file says."""
+        accepted = self._accepted
+        return {} if accepted is None else accepted.environment()
 
     def _note(self, _number: int, _frame: FrameType | None) -> None:
         if self._has_terminal and not _terminal_is_there():
@@ -114,35 +129,48 @@ class Reloading:
         """Check the file, hand over what is to run, and say what that changes; InhandError."""
         if self._config is None:
             raise SettingsError("there is no settings file: give --config to `inhand up`")
-        digest = self._read_digest()
-        rig_file = load_rig_file(self._config)
+        data = settings_data(self._config)
+        rig_file = _rig_file(data, self._config)
         for setting in FIXED:
             if getattr(rig_file, setting) != getattr(self._rig_file, setting):
                 raise SettingsError(
                     f"{self._config}: {setting} cannot change while `inhand up` runs: start it "
-                    "again; nothing was changed"
+                    "again"
                 )
         stages = rig_processes(rig_file, self._config)
-        # All of them: one whose own table is as before may follow a camera that is gone.
-        require_startable({one.name: one.command for one in _flat(stages)}, self._ends)
-        if self._ends.is_set():
-            raise InhandError("`inhand up` ends")
+        new = _accepted(self._config, data)
+        try:
+            # All of them: one whose own table is as before may follow a camera that is gone.
+            environment = {} if new is None else new.environment()
+            require_startable(commands(stages), environment, self._ends)
+            if self._ends.is_set():
+                raise InhandError("`inhand up` ends")
+        except InhandError:
+            if new is not None:
+                new.close()
+            raise
+        # The former one stays: a process that goes on may read its settings again.
         lines = _differences(_flat(self.stages), _flat(stages))
         configure_logs(rig_file.log, "up")
-        self._rig_file, self._digest, self.stages = rig_file, digest, stages
+        self._rig_file, self._accepted, self.stages = rig_file, new, stages
         self._ready.put(stages)
         return lines
 
-    def _read_digest(self) -> str | None:
-        """What tells the file's content from another; None where there is none to be read."""
-        try:
-            return None if self._config is None else _digest(self._config.read_bytes())
-        except OSError:
-            return None
+
+def commands(stages: Stages) -> dict[str, tuple[str, ...]]:
+    """Return the command that starts each process, by its name."""
+    return {one.name: one.command for one in _flat(stages)}
 
 
-def _digest(data: bytes) -> str:
-    return hashlib.sha256(data).hexdigest()
+def _rig_file(data: bytes, config: Path) -> RigFile:
+    return rig_file_of(values_in(data, config), config)
+
+
+def _accepted(config: Path | None, data: bytes) -> AcceptedSettings | None:
+    """Keep what was accepted; where that cannot be, processes read the file."""
+    with contextlib.suppress(OSError, AttributeError):
+        return None if config is None else AcceptedSettings(config, data)
+    return None
 
 
 def _flat(stages: Stages) -> list[RigProcess]:

@@ -1,5 +1,6 @@
 """Whether the processes of a rig can start: each checks its settings itself, all at once."""
 
+import os
 import signal
 import subprocess
 import threading
@@ -21,15 +22,18 @@ class StartError(SettingsError):
         self.lines = lines
 
 
-def require_startable(commands: Mapping[str, Sequence[str]], stop: threading.Event) -> None:
+def require_startable(
+    commands: Mapping[str, Sequence[str]], environment: Mapping[str, str], stop: threading.Event
+) -> None:
     """Raise StartError, which says why, when any cannot start; each prints its line as well.
 
-    ``commands`` start each process by its name; ``--check-config`` is added to them. Ends early
-    when ``stop`` is set.
+    ``commands`` start each process by its name; ``--check-config`` is added to them, and
+    ``environment`` to this process's own. Ends early when ``stop`` is set.
     """
     checks = {
         name: subprocess.Popen(
             [*command, "--check-config"],
+            env={**os.environ, **environment},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,

@@ -45,7 +45,7 @@ class Supervisor:
         self._stop = stop
         self._manager = ServiceManager()
         self._signals = 0
-        self._stages = [[_child(one) for one in stage] for stage in plan.stages]
+        self._stages = [[self._child(one) for one in stage] for stage in plan.stages]
         self._waiting = list(self._stages)
         self._started: list[Child] = []
         self._leaving: list[Child] = []
@@ -78,7 +78,8 @@ class Supervisor:
             self._begin_next_stage()
             can_hear = self._can_hear()
             for child in self._started:
-                if child.tend() == WRONG_USAGE and not self._may_try_again(child):
+                if child.tend() == WRONG_USAGE:
+                    log.error("%s has wrong settings (see above): stopping everything", child.name)
                     return WRONG_USAGE
                 child.kill_if_it_hangs(self._reports(child.name), can_hear=can_hear)
             self._has_started_all |= not self._waiting
@@ -94,7 +95,9 @@ class Supervisor:
         if (stages := self._plan.taken()) is None:
             return
         before = {child.name: child for child in self._children()}
-        self._stages = [[_child(one, before.get(one.name)) for one in stage] for stage in stages]
+        self._stages = [
+            [self._child(one, before.get(one.name)) for one in stage] for stage in stages
+        ]
         after = self._children()
         for child in before.values():
             if child not in after:
@@ -104,6 +107,12 @@ class Supervisor:
         waiting = [[one for one in stage if one not in self._started] for stage in self._stages]
         self._waiting = [stage for stage in waiting if stage]
         self._next_stage_at = time.monotonic()
+
+    def _child(self, process: RigProcess, before: Child | None = None) -> Child:
+        """Return the child that runs a process: that of before where nothing of it changed."""
+        if before is not None and before.settings == process.settings:
+            return before
+        return Child(process.name, process.command, process.settings, self._plan.environment)
 
     def _begin_next_stage(self) -> None:
         """Start a stage when its time has come, and none that is to end still has its name."""
@@ -115,20 +124,6 @@ class Supervisor:
         ):
             self._started += self._waiting.pop()
             self._next_stage_at = time.monotonic() + UP_WITHIN_S
-
-    def _may_try_again(self, child: Child) -> bool:
-        """Whether a child's settings are wrong only since the file was changed, by whoever is at
-        it: that ends nothing, and the child is started when they are right again."""
-        if not self._plan.file_has_changed():
-            log.error("%s has wrong settings (see above): stopping everything", child.name)
-            return False
-        log.error(
-            "%s ended, and the settings file was changed meanwhile and is wrong (see above): it is "
-            "tried again until that is mended",
-            child.name,
-        )
-        child.try_again()
-        return True
 
     def _report(self) -> None:
         """Tell systemd, where it started this process, that all were started, and how many run."""
@@ -156,10 +151,3 @@ class Supervisor:
                     child.kill()
                     all_ended = False
         return all_ended
-
-
-def _child(process: RigProcess, before: Child | None = None) -> Child:
-    """Return the child that runs a process: the one from before where nothing of it changed."""
-    if before is not None and before.settings == process.settings:
-        return before
-    return Child(process.name, process.command, process.settings)

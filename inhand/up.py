@@ -16,7 +16,7 @@ from inhand_schemas.messages import Health
 
 from inhand.child import HANGS_AFTER_S
 from inhand.looking import open_look
-from inhand.reloading import Reloading, Stages
+from inhand.reloading import Reloading, commands
 from inhand.rig_processes import rig_processes
 from inhand.starts import require_startable
 from inhand.supervisor import Supervisor
@@ -32,30 +32,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Supervise until the end; raises SettingsError when there is nothing to run."""
-    rig_file = load_rig_file(arguments.config)
-    if arguments.check_config:
-        return _check(rig_processes(rig_file, arguments.config))
     stop = threading.Event()
-    with Reloading(arguments.config, rig_file, stop.set) as reloading:
+    if arguments.check_config:
+        stages = rig_processes(load_rig_file(arguments.config), arguments.config)
         with set_on_signals(stop):
-            require_startable(_commands(reloading.stages), stop)
+            require_startable(commands(stages), {}, stop)
+        if not stop.is_set():
+            print(f"{', '.join(commands(stages))}: the settings are valid")
+        return DONE
+    with Reloading(arguments.config, stop.set) as reloading:
+        with set_on_signals(stop):
+            require_startable(commands(reloading.stages), reloading.environment(), stop)
         if stop.is_set():
             return DONE
-        configure_logs(rig_file.log, "up")
+        configure_logs(reloading.log_settings, "up")
         return _supervise(arguments.config, reloading, stop)
-
-
-def _check(stages: Stages) -> int:
-    commands, stop = _commands(stages), threading.Event()
-    with set_on_signals(stop):
-        require_startable(commands, stop)
-    if not stop.is_set():
-        print(f"{', '.join(commands)}: the settings are valid")
-    return DONE
-
-
-def _commands(stages: Stages) -> dict[str, tuple[str, ...]]:
-    return {one.name: one.command for stage in stages for one in stage}
 
 
 def _supervise(config: Path | None, reloading: Reloading, stop: threading.Event) -> int:

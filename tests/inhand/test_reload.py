@@ -124,17 +124,32 @@ def test_a_bad_file_is_refused_and_what_runs_goes_on(rig: RunningRig) -> None:
     assert up.stop() == 0
 
 
-def test_what_dies_while_the_file_is_wrong_comes_back_when_it_is_mended(rig: RunningRig) -> None:
-    """Whoever edits a file that is in use may be at it for long: nothing ends for that."""
+@pytest.mark.parametrize("changed", ["[recorder", "", None], ids=["wrong", "empty", "gone"])
+def test_what_dies_while_the_file_is_being_changed_starts_with_what_was_accepted(
+    rig: RunningRig, changed: str | None
+) -> None:
     up = _started(rig, a="first", b="second")
     kept = _pids(up)["b"]
-    rig.configure("[recorder")
+    if changed is None:
+        rig.config.unlink()
+    else:
+        rig.config.write_text(changed)
     os.kill(_pids(up)["a"], signal.SIGKILL)
-    up.said("recorder a ended, and the settings file was changed meanwhile and is wrong")
-    _recorders(rig, a="first", b="second")
     eventually("a again", lambda: up.stderr.count("recorder a is up") == 2)
     assert _pids(up)["b"] == kept
     assert up.stop() == 0
+
+
+def test_what_was_not_reloaded_is_not_taken_over_by_what_dies(rig: RunningRig) -> None:
+    up = _started(rig, a="first")
+    eventually("a file", lambda: list(rig.folder.glob("first/*")))
+    _recorders(rig, a="second")
+    os.kill(_pids(up)["a"], signal.SIGKILL)
+    eventually("a again", lambda: up.stderr.count("recorder a is up") == 2)
+    eventually("files of both", lambda: len(list(rig.folder.glob("first/*"))) == 2)
+    assert not (rig.folder / "second").exists()
+    assert _reload(rig).stdout == "starts anew: recorder a\n"
+    eventually("its new folder", (rig.folder / "second").is_dir)
 
 
 def test_where_nothing_runs_that_is_one_line(

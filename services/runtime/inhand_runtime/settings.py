@@ -24,6 +24,7 @@ from pydantic import (
     model_validator,
 )
 
+from inhand_runtime.accepted_settings import accepted_data
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings_environment import texts_read, with_environment
 from inhand_runtime.settings_errors import ENCODING, explain, place, suggestion
@@ -195,7 +196,12 @@ class Settings(Generic[S_co]):
 
 def load_rig_file(path: Path | None) -> RigFile:
     """Read a file, or take the defaults; raises SettingsError naming file, line and mend."""
-    values = with_environment({} if path is None else read_values(path), RigFile)
+    return rig_file_of({} if path is None else read_values(path), path)
+
+
+def rig_file_of(values: Mapping[str, Any], path: Path | None) -> RigFile:
+    """Check the values of a file, and the environment's; raises SettingsError as from the file."""
+    values = with_environment(values, RigFile)
     try:
         context = None if path is None else {"folder": path.parent}
         rig_file = RigFile.model_validate(values, context=context)
@@ -261,9 +267,18 @@ def instance_settings(
 
 
 def read_values(path: Path) -> dict[str, Any]:
-    """Read a file's values as they stand there, unchecked; raises SettingsError."""
+    """Read a file's values as they stand there, unchecked; raises SettingsError.
+
+    A process that is supervised reads them as its supervisor accepted them.
+    """
+    data = accepted_data(path)
+    return values_in(settings_data(path) if data is None else data, path)
+
+
+def settings_data(path: Path) -> bytes:
+    """Read the content of a file; raises SettingsError."""
     try:
-        return values_in(path.read_bytes(), path)
+        return path.read_bytes()
     except OSError as error:
         raise SettingsError(f"cannot read {path}: {error.strerror}") from None
 

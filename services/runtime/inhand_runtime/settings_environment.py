@@ -12,6 +12,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from inhand_runtime.accepted_settings import ACCEPTED_VARIABLE
 from inhand_runtime.cache_folder import CACHE_VARIABLE
 from inhand_runtime.data_folder import DATA_VARIABLE
 from inhand_runtime.errors import SettingsError
@@ -54,7 +55,7 @@ def _variables() -> list[tuple[str, tuple[str, ...], str]]:
         (variable, tuple(variable[len(ENVIRONMENT_PREFIX) :].lower().split(NESTED)), text)
         for variable, text in os.environ.items()
         if variable.upper().startswith(ENVIRONMENT_PREFIX)
-        and variable not in (CACHE_VARIABLE, DATA_VARIABLE)
+        and variable not in (CACHE_VARIABLE, DATA_VARIABLE, ACCEPTED_VARIABLE)
     ]
 
 

@@ -53,7 +53,10 @@ def place(path: Path | None, location: tuple[str, ...]) -> str:
             return f"environment variable {variable}: "
     if path is None:
         return ""
-    line = _line_of(path.read_text(encoding=ENCODING), location)
+    try:
+        line = _line_of(path.read_text(encoding=ENCODING), location)
+    except (OSError, UnicodeDecodeError):  # it was changed since it was read
+        line = None
     return f"{path}: " if line is None else f"{path}:{line}: "
 
 
