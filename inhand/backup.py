@@ -16,7 +16,8 @@ import msgspec
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.exit_codes import DONE
 from inhand_runtime.locked_folder import locked_folder
-from inhand_runtime.settings import load_rig_file, read_values
+from inhand_runtime.settings import load_rig_file
+from inhand_runtime.settings_file import read_values
 from inhand_runtime.wording import counted
 
 from inhand.backup_file import (

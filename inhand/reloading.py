@@ -20,9 +20,8 @@ from inhand_runtime.settings import (
     RigFile,
     load_rig_file,
     rig_file_of,
-    settings_data,
-    values_in,
 )
+from inhand_runtime.settings_file import settings_data, values_in
 
 from inhand.rig_processes import RigProcess, rig_processes
 from inhand.starts import StartError, require_startable

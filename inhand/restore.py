@@ -9,7 +9,7 @@ from pathlib import Path
 
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.exit_codes import DONE
-from inhand_runtime.settings import values_in
+from inhand_runtime.settings_file import values_in
 from inhand_runtime.wording import counted
 
 from inhand.backup_file import SETTINGS, Manifest, contents, path_of, read_manifest

@@ -16,8 +16,9 @@ from typing import Any
 
 from inhand_runtime.errors import InhandError
 from inhand_runtime.exit_codes import DONE
-from inhand_runtime.settings import RigFile, load_rig_file, read_values
+from inhand_runtime.settings import RigFile, load_rig_file
 from inhand_runtime.settings_environment import with_environment
+from inhand_runtime.settings_file import read_values
 
 from inhand.host_facts import journal, system, versions
 from inhand.shown_settings import Shown

@@ -6,6 +6,7 @@ import urllib.request
 
 import psutil
 import pytest
+from hub_site import made_site, start_hub
 from manager_stand_in import Manager
 from running_rig import Process, RunningRig, eventually
 
@@ -93,6 +94,17 @@ def test_only_this_machine_reaches_it_and_systemd_is_told(rig: RunningRig) -> No
     assert metrics.stop() == 0
     assert (manager.heard()[0], manager.heard()[-1]) == ("READY=1", "STOPPING=1")
     manager.close()
+
+
+def test_a_viewer_of_a_hub_reads_the_same_and_says_when_the_hub_is_away(rig: RunningRig) -> None:
+    site, port = start_hub(rig, made_site(rig.folder / "site")), _free_port()
+    metrics = rig.inhand("metrics", "--config", site.config("anna"), "--port", str(port))
+    metrics.said(f"http://127.0.0.1:{port}/metrics")
+    up = 'inhand_instance_up{daemon="hub",service="hub"}'
+    eventually("the hub is up", lambda: _read(port).get(up) == 1)
+    assert _read(port)["inhand_connected"] == 1
+    assert site.hub.stop() == 0
+    eventually("nothing can be heard", lambda: _read(port)["inhand_connected"] == 0)
 
 
 def test_a_port_that_is_taken_is_one_line(

@@ -4,9 +4,7 @@ Every daemon reads the same file, and its own table in it: ``[capture.front]`` i
 the capture instance ``front``. Relative paths follow the file's folder.
 """
 
-import codecs
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -24,10 +22,10 @@ from pydantic import (
     model_validator,
 )
 
-from inhand_runtime.accepted_settings import accepted_data
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings_environment import texts_read, with_environment
-from inhand_runtime.settings_errors import ENCODING, explain, place, suggestion
+from inhand_runtime.settings_errors import explain, place, suggestion
+from inhand_runtime.settings_file import read_values
 
 SERVICES = ("capture", "tracker", "recorder", "studio", "hub")
 
@@ -35,8 +33,6 @@ SETTINGS_VERSION = 1
 """Version of the settings' form that this release reads and means where a file names none."""
 
 MEETING = "tcp/127.0.0.1:7447"
-
-UTF_16_MARKS = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 _ADDRESS = re.compile(r"[a-z][a-z-]*/[^\s/?#]+:\d+")
 
@@ -264,35 +260,6 @@ def instance_settings(
     checked = origin.checked(getattr(rig_file, service).get(instance, {}), model)
     site = Site(rig_file.realm, rig_file.rig)
     return Settings(site, rig_file.zenoh, rig_file.log, instance, checked, origin)
-
-
-def read_values(path: Path) -> dict[str, Any]:
-    """Read a file's values as they stand there, unchecked; raises SettingsError.
-
-    A process that is supervised reads them as its supervisor accepted them.
-    """
-    data = accepted_data(path)
-    return values_in(settings_data(path) if data is None else data, path)
-
-
-def settings_data(path: Path) -> bytes:
-    """Read the content of a file; raises SettingsError."""
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise SettingsError(f"cannot read {path}: {error.strerror}") from None
-
-
-def values_in(data: bytes, path: Path) -> dict[str, Any]:
-    """Read the values of a file's content, unchecked; raises SettingsError that names ``path``."""
-    try:
-        return tomllib.loads(data.decode(ENCODING))
-    except UnicodeDecodeError as error:
-        if b"\0" in error.object and not error.object.startswith(UTF_16_MARKS):
-            raise SettingsError(f"{path} is no text: name the rig's settings (TOML)") from None
-        raise SettingsError(f"{path} is no UTF-8 text: save it as UTF-8") from None
-    except tomllib.TOMLDecodeError as error:
-        raise SettingsError(f"{path} is no TOML: {error}") from None
 
 
 def _refuse_shared_names(rig_file: RigFile, path: Path | None) -> None:
