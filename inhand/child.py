@@ -13,6 +13,7 @@ from typing import Any
 from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
 from inhand_runtime.service_manager import without_manager
 
+from inhand.heartbeats import Heartbeats
 from inhand.last_words import Told, how_it_ended
 
 log = logging.getLogger(__name__)
@@ -22,8 +23,8 @@ HEALTHY_AFTER_S = 10.0
 LOOP_FAILURES = 5
 """Number of ends, each within ``HEALTHY_AFTER_S`` of its start, after which that is an alert."""
 HANGS_AFTER_S = 10.0
-"""Seconds without a report of a main loop that came round, after which a child is killed and
-started again."""
+"""Seconds in which a child's main loop does not come round, after which it is killed and started
+again."""
 STOP_WITHIN_S = 10.0
 """What a daemon promises (2 s), and time for a busy machine on which it has just begun."""
 LONGEST_TICK_S = 1.0
@@ -53,7 +54,7 @@ class Child:
         self._delay = FIRST_RESTART_S
         self._told: Told | None = None
         self._failures: list[float] = []
-        self._reports: int | None = None
+        self._heartbeats: Heartbeats | None = None
         self._silent_s: float | None = None
         self._tended_at = time.monotonic()
 
@@ -63,9 +64,14 @@ class Child:
         if self._process is None:
             if not self.done and now >= self._start_at:
                 self._start_at = now
+                self._heartbeats = Heartbeats()
                 self._process = subprocess.Popen(
                     self.command,
-                    env={**without_manager(os.environ), **self._environment()},
+                    env={
+                        **without_manager(os.environ),
+                        **self._heartbeats.environment(HANGS_AFTER_S),
+                        **self._environment(),
+                    },
                     stdin=subprocess.DEVNULL,
                     stderr=subprocess.PIPE,
                     process_group=0,
@@ -78,6 +84,7 @@ class Child:
         if code is None:
             return None
         self._process = None
+        self._hear_no_more()
         self.done = code in (DONE, WRONG_USAGE)
         if self.done:
             log.info("%s ended with exit code %d", self.name, code)
@@ -110,32 +117,33 @@ class Child:
         self._start_at = now + self._delay
         self._delay = min(2 * self._delay, LAST_RESTART_S)
 
-    def kill_if_it_hangs(self, reports: int | None, *, can_hear: bool = True) -> None:
-        """End the process when it has reported before and does so no more, for long.
+    @property
+    def is_up(self) -> bool:
+        """Whether the work of the process that runs has come round."""
+        return self._silent_s is not None
+
+    def kill_if_it_hangs(self) -> None:
+        """End the process when its work has come round before and does so no more, for long.
 
         Only time in which this process itself ran counts: after a suspended night, or on a machine
-        that was too busy to let anybody run, all have time to speak again. So have they after a
-        time in which nothing can be heard, since the hub is away.
+        that was too busy to let anybody run, all have time to show themselves again.
         """
         now = time.monotonic()
         awake, self._tended_at = min(now - self._tended_at, LONGEST_TICK_S), now
-        if self._process is None:
-            self._reports = self._silent_s = None
-            return
-        if reports is not None and reports != self._reports:
-            # What was counted of the process before this one is not this one's report.
-            self._silent_s = None if self._reports is None else 0.0
-            self._reports = reports
+        if self._process is None or self._heartbeats is None:
+            self._silent_s = None
+        elif self._heartbeats.came_from(self._process.pid):
+            self._silent_s = 0.0
         elif self._silent_s is not None:
-            self._silent_s = self._silent_s + awake if can_hear else 0.0
-        if self._silent_s is not None and self._silent_s > HANGS_AFTER_S:
-            log.error(
-                "%s has not come round for %.0f s: it hangs, and is killed",
-                self.name,
-                self._silent_s,
-            )
-            self._reports = self._silent_s = None
-            self._process.kill()
+            self._silent_s += awake
+            if self._silent_s > HANGS_AFTER_S:
+                log.error(
+                    "%s has not come round for %.0f s: it hangs, and is killed",
+                    self.name,
+                    self._silent_s,
+                )
+                self._silent_s = None
+                self._process.kill()
 
     def leave(self) -> None:
         """Ask the process to end for good."""
@@ -148,6 +156,8 @@ class Child:
         if not self.ended() and time.monotonic() > self._leaves_by:
             log.error("%s did not end by itself: killed", self.name)
             self.kill()
+        if self.ended():
+            self._hear_no_more()
         return self.ended()
 
     def send(self, number: int) -> None:
@@ -164,6 +174,12 @@ class Child:
         if self._process is not None:
             self._process.kill()
             self._process.wait()
+        self._hear_no_more()
+
+    def _hear_no_more(self) -> None:
+        if self._heartbeats is not None:
+            self._heartbeats.close()
+            self._heartbeats = None
 
 
 def _ending_with(parent: int) -> Callable[[], None] | None:

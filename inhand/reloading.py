@@ -15,12 +15,7 @@ from typing import Self
 from inhand_runtime.accepted_settings import AcceptedSettings
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.logs import configure_logs
-from inhand_runtime.settings import (
-    LogSettings,
-    RigFile,
-    load_rig_file,
-    rig_file_of,
-)
+from inhand_runtime.settings import RigFile, load_rig_file, rig_file_of
 from inhand_runtime.settings_file import settings_data, values_in
 
 from inhand.rig_processes import RigProcess, rig_processes
@@ -89,9 +84,9 @@ class Reloading:
             return None
 
     @property
-    def log_settings(self) -> LogSettings:
-        """How this process is to log."""
-        return self._rig_file.log
+    def rig_file(self) -> RigFile:
+        """The settings in use."""
+        return self._rig_file
 
     def environment(self) -> Mapping[str, str]:
         """Return the variables by which a child reads what was accepted, whatever the file says."""

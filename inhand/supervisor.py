@@ -4,7 +4,6 @@ import logging
 import signal
 import threading
 import time
-from collections.abc import Callable
 from types import FrameType
 
 from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
@@ -26,22 +25,12 @@ class Supervisor:
     It ends on SIGTERM or SIGINT, and when ``stop`` is set. Processes are stopped stage by stage in
     the given order, so that what is under way reaches the last, and started in reverse: a stage
     begins when the one after it is up, or has had time enough, so that nothing early is missed.
-    Where the plan takes over settings, those of which nothing changed go on. ``reports`` says how
-    many reports of its health came from a child of that name so far, None while it is not up; a
-    child from which no more come is killed, and so started again. ``can_hear`` says whether any
-    could come, as where a hub is up.
+    Where the plan takes over settings, those of which nothing changed go on. A child whose work
+    comes round no more is killed, and so started again.
     """
 
-    def __init__(
-        self,
-        plan: Reloading,
-        reports: Callable[[str], int | None],
-        can_hear: Callable[[], bool],
-        stop: threading.Event,
-    ) -> None:
+    def __init__(self, plan: Reloading, stop: threading.Event) -> None:
         self._plan = plan
-        self._reports = reports
-        self._can_hear = can_hear
         self._stop = stop
         self._manager = ServiceManager()
         self._signals = 0
@@ -76,12 +65,11 @@ class Supervisor:
         while not (self._signals or self._stop.is_set()):
             self._take_over()
             self._begin_next_stage()
-            can_hear = self._can_hear()
             for child in self._started:
                 if child.tend() == WRONG_USAGE:
                     log.error("%s has wrong settings (see above): stopping everything", child.name)
                     return WRONG_USAGE
-                child.kill_if_it_hangs(self._reports(child.name), can_hear=can_hear)
+                child.kill_if_it_hangs()
             self._has_started_all |= not self._waiting
             if self._has_started_all:
                 self._report()
@@ -120,7 +108,7 @@ class Supervisor:
         if not self._waiting or self._leaving:
             return
         if time.monotonic() > self._next_stage_at or all(
-            child.done or self._reports(child.name) is not None for child in self._started
+            child.done or child.is_up for child in self._started
         ):
             self._started += self._waiting.pop()
             self._next_stage_at = time.monotonic() + UP_WITHIN_S

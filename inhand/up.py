@@ -5,17 +5,15 @@ SIGHUP, as `inhand reload`, has it take over its settings file where that change
 
 import argparse
 import threading
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 from inhand_runtime.exit_codes import DONE
 from inhand_runtime.logs import configure_logs
-from inhand_runtime.roll import Roll
-from inhand_runtime.settings import load_rig_file
+from inhand_runtime.session import open_session
+from inhand_runtime.settings import ZenohSettings, load_rig_file
 from inhand_runtime.signals import set_on_signals
-from inhand_schemas.messages import Health
 
-from inhand.child import HANGS_AFTER_S
-from inhand.looking import open_look
 from inhand.reloading import Reloading, commands
 from inhand.rig_processes import rig_processes
 from inhand.starts import require_startable
@@ -45,26 +43,12 @@ def run(arguments: argparse.Namespace) -> int:
             require_startable(commands(reloading.stages), reloading.environment(), stop)
         if stop.is_set():
             return DONE
-        configure_logs(reloading.log_settings, "up")
-        return _supervise(arguments.config, reloading, stop)
+        configure_logs(reloading.rig_file.log, "up")
+        with _meeting(reloading.rig_file.zenoh):
+            return Supervisor(reloading, stop).run()
 
 
-def _supervise(config: Path | None, reloading: Reloading, stop: threading.Event) -> int:
-    roll = Roll()
-
-    def reports(name: str) -> int | None:
-        living = roll.living()
-        instance = tuple(name.split(" "))
-        if instance not in living:
-            return None
-        heard = living[instance]
-        return 0 if heard is None else heard.reports
-
-    def hear(health: Health) -> None:
-        if health.loop_age_s < HANGS_AFTER_S:
-            roll.hear(health)
-
-    with open_look(config) as look:
-        look.follow_tokens(roll.change)
-        look.follow_health(hear)
-        return Supervisor(reloading, reports, look.can_hear, stop).run()
+def _meeting(zenoh: ZenohSettings) -> AbstractContextManager[object]:
+    """Hold the address at which peers meet, so that the end of none of them takes it away; clients
+    meet at a hub, which may come later than this process."""
+    return open_session(zenoh) if zenoh.mode == "peer" else nullcontext()

@@ -3,7 +3,6 @@
 import logging
 import sys
 import time
-from collections.abc import Sequence
 
 import pytest
 
@@ -61,32 +60,68 @@ def test_a_lack_of_memory_is_named_where_it_may_be_the_reason() -> None:
     assert "memory" not in how_it_ended(-15, "")
 
 
-def _silent(child: Child, hears: Sequence[bool], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Start a child, hear it twice, and then no more: a second for each of ``hears``."""
-    now = [100.0]
-    monkeypatch.setattr("inhand.child.time.monotonic", lambda: now[0])
-    child.tend()
-    for reports in (1, 2):
-        child.kill_if_it_hangs(reports)
-    for can_hear in hears:
-        now[0] += 1.0
-        child.kill_if_it_hangs(2, can_hear=can_hear)
+BEATS = """
+import os, time
+from inhand_runtime.service_manager import ServiceManager
+manager, parent = ServiceManager(), os.getppid()
+for _ in range({rounds}):
+    if os.getppid() != parent:
+        break
+    manager.advanced()
+    manager.status("said by another thread")
+    time.sleep(0.02)
+for number in range(1000):
+    manager.status(f"still said {{number}}")
+    time.sleep(0.02)
+"""
+OF_ANOTHER = """
+import subprocess, sys, time
+subprocess.Popen([sys.executable, "-c", {script!r}], stdout=subprocess.DEVNULL).wait()
+"""
 
 
-@pytest.mark.parametrize(
-    ("hears", "killed"),
-    [([True] * 12, True), ([False] * 30, False), ([False] * 30 + [True] * 8, False)],
-    ids=["silent", "the hub is away", "the hub was away"],
-)
-def test_a_silent_child_is_killed_but_not_where_nothing_could_be_heard(
-    hears: list[bool],
-    killed: bool,
-    monkeypatch: pytest.MonkeyPatch,
-    caplog: pytest.LogCaptureFixture,
-) -> None:
-    child = Child("recorder disk", ["sleep", "60"])
+def _tended(script: str, seconds: float) -> tuple[bool, bool]:
+    """Whether a child was ever up, and whether it was killed, within so many seconds."""
+    child = Child("recorder disk", [sys.executable, "-c", script])
+    was_up = False
+    end = time.monotonic() + seconds
     try:
-        _silent(child, hears, monkeypatch)
-        assert ("it hangs, and is killed" in caplog.text) == killed
+        while time.monotonic() < end:
+            if child.tend() is not None:
+                return was_up, True
+            child.kill_if_it_hangs()
+            was_up |= child.is_up
+            time.sleep(0.01)
     finally:
         child.kill()
+    return was_up, False
+
+
+@pytest.fixture
+def hangs_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A child hangs after a second already."""
+    monkeypatch.setattr("inhand.child.HANGS_AFTER_S", 1.0)
+
+
+@pytest.mark.usefixtures("hangs_soon")
+def test_a_child_whose_work_comes_round_no_more_is_killed_whatever_its_other_threads_say(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    assert _tended(BEATS.format(rounds=10), 30.0) == (True, True)
+    assert "recorder disk has not come round for 1 s: it hangs, and is killed" in caplog.text
+
+
+@pytest.mark.usefixtures("hangs_soon")
+def test_a_child_whose_work_comes_round_lives_on() -> None:
+    assert _tended(BEATS.format(rounds=1000), 4.0) == (True, False)
+
+
+@pytest.mark.usefixtures("hangs_soon")
+def test_a_child_that_takes_long_to_begin_is_not_killed() -> None:
+    assert _tended("import time; time.sleep(60)", 3.0) == (False, False)
+
+
+@pytest.mark.usefixtures("hangs_soon")
+def test_what_a_child_has_started_does_not_speak_for_it() -> None:
+    script = OF_ANOTHER.format(script=BEATS.format(rounds=1000))
+    assert _tended(script, 3.0) == (False, False)
