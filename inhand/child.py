@@ -18,7 +18,7 @@ from inhand.last_words import Told, how_it_ended
 
 log = logging.getLogger(__name__)
 
-FIRST_RESTART_S, LAST_RESTART_S = 0.5, 30.0
+FIRST_RESTART_S, LAST_RESTART_S = 0.1, 30.0
 HEALTHY_AFTER_S = 10.0
 LOOP_FAILURES = 5
 """Number of ends, each within ``HEALTHY_AFTER_S`` of its start, after which that is an alert."""

@@ -74,7 +74,7 @@ class PriorLearningParameters:
     other_holder_ratio: float = 1.1
     """Factor on the errors of a holder that is not the dominant hand: that one keeps its grip where
     the other slides along, which people in training may not have done."""
-    upright_holder_ratio: float = 1.5
+    upright_holder_ratio: float = 1.7
     """Factor on the errors of a holder that keeps the trunk's directions: where people do the same
     again and again, objects seem to be kept upright that turn with the arm."""
 
