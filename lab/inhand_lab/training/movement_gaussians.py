@@ -20,7 +20,8 @@ EMPTY_SIZE = 1e-3
 
 @dataclass(frozen=True)
 class MovementSequence:
-    """Features (N, D) of frames of a recording at ``times_ns`` (N,), and those of the ``arms``.
+    """Features (N, D) of frames of a recording at ``times_ns`` (N,), and all observations (M, 18)
+    of its ``arms``.
 
     Actions count from 0; the number after the last is that of people who use nothing.
     """
@@ -56,9 +57,9 @@ def owners_of(actions: int, of_action: int, of_none: int) -> Indices:
     return np.repeat(np.arange(actions + 1), counts)
 
 
-def gathered(sequences: Sequence[MovementSequence], *, arms: bool = False) -> MovementFrames:
-    """Put all sequences, or those of their arms, together; no frame has a Gaussian yet."""
-    features = [one.arms if arms else one.features for one in sequences]
+def gathered(sequences: Sequence[MovementSequence]) -> MovementFrames:
+    """Put all sequences together; no frame has a Gaussian yet."""
+    features = [one.features for one in sequences]
     lengths = [len(some) for some in features]
     return MovementFrames(
         np.concatenate(features),

@@ -16,6 +16,7 @@ from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
 from numpy.typing import NDArray
 
+from inhand_lab.training.arm_course_training import learn_courses
 from inhand_lab.training.movement_gaussians import (
     MovementFrames,
     MovementSequence,
@@ -46,9 +47,9 @@ def train_movements(
     """Learn classes of movements, and the temper: the share of each frame's evidence that is new.
 
     The sequences are of two participants at least, and of every action and of none. People unlike
-    all others teach the arms' classes alone: nobody else shows how people like them vary.
+    all others teach the arms' courses alone: nobody else shows how people like them vary.
     """
-    arms = _fit_arms(sequences, actions, parameters)
+    arms = learn_courses(sequences, actions, parameters)
     frames, folds = _left_out(sequences, actions, parameters)
     if strangers := _strangers(folds, frames, parameters.within_limits_share):
         sequences = [one for one in sequences if one.participant not in strangers]
@@ -64,16 +65,6 @@ def train_movements(
     temper = _best_temper(folds, frames, sequences, parameters.tempers)
     classes = judged(fit_gaussians(frames, folds[0].classes.owners, parameters.shrinkage))
     return replace(classes, arms=arms), temper
-
-
-def _fit_arms(
-    sequences: Sequence[MovementSequence], actions: int, parameters: TrainingParameters
-) -> MovementClasses:
-    """Fit the classes of the arms' movements, which all people teach."""
-    owners = owners_of(actions, parameters.arm_gaussians, parameters.idle_gaussians)
-    shrinkage = parameters.arm_shrinkage
-    frames = clustered(gathered(sequences, arms=True), owners, shrinkage)
-    return fit_gaussians(frames, owners, shrinkage)
 
 
 def _left_out(

@@ -115,10 +115,12 @@ class TrainingParameters:
     """Share of the frames of people left out that are within the reach of their own action."""
     shrinkage: float = 0.05
     """Share of the identity in the covariance of standardised features."""
-    arm_gaussians: int = 6
-    """Number of Gaussians of an action by the arms alone."""
-    arm_shrinkage: float = 0.3
-    """The ``shrinkage`` of the arms' features."""
+    courses: int = 24
+    """Number of recordings of an action, at the most, whose arms' courses a recogniser keeps, of as
+    many people as there are: cost grows with it."""
+    hanging_reach: float = 0.35
+    """Distance in lengths of an arm from where wrists usually hang within which both hang; nothing
+    is kept of how a recording begins and ends so."""
     groups: int = 5
     """Number of groups of participants, at the most, each of which is left out once."""
     prior_frames: float = 1.0

@@ -13,7 +13,7 @@ from inhand_tracker.body.skeleton import (
     stature_of,
 )
 from inhand_tracker.geometry.arrays import Array, Indices
-from inhand_tracker.recognition.arm_movement import arm_window
+from inhand_tracker.recognition.arm_movement import ArmReader
 from inhand_tracker.recognition.movement_window import MovementWindow
 from inhand_tracker.wire.conversion import joints_of
 
@@ -36,7 +36,8 @@ class UsualPoses:
 @dataclass(frozen=True)
 class RecordedMovement:
     """What is learned from N bodies of a recording: their poses (N, 60), their movement features
-    (N, D), those of their arms (N, A), and the numbers (N,) of their frames."""
+    (N, D), and the numbers (N,) of their frames; and observations (M, 18) of the arms in all of
+    it."""
 
     body_poses: Array
     features: Array
@@ -80,21 +81,20 @@ def read_bodies(sequence: JointSequence, usual: UsualPoses) -> list[Body | None]
 
 
 def read_movement(sequence: JointSequence, usual: UsualPoses, step: int) -> RecordedMovement:
-    """Read what is learned from the bodies in every ``step``-th frame."""
-    window, arms = MovementWindow(), arm_window()
-    poses, features, of_arms, frames = [], [], [], []
+    """Read what is learned from the bodies in every ``step``-th frame, and the arms in all."""
+    window, reader = MovementWindow(), ArmReader()
+    poses, features, arms, frames = [], [], [], []
     for index, body in enumerate(read_bodies(sequence, usual)):
         if body is None:
             continue
         window.add(int(sequence.times_ns[index]), body.pose)
-        arms.add(int(sequence.times_ns[index]), body.pose)
+        arms += reader.read(int(sequence.times_ns[index]), body.pose)
         if index % step == 0:
             poses.append(body.pose)
             features.append(window.features())
-            of_arms.append(arms.features())
             frames.append(index)
     numbers = np.array(frames, np.int64)
-    return RecordedMovement(np.array(poses), np.array(features), np.array(of_arms), numbers)
+    return RecordedMovement(np.array(poses), np.array(features), np.array(arms), numbers)
 
 
 def _whole_poses(sequence: JointSequence) -> Array:

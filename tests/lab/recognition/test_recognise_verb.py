@@ -113,7 +113,7 @@ def test_a_recogniser_of_a_release_without_arms_loads_and_does_without_them(
     save_recogniser(recogniser, tmp_path / "new")
     assert load_recogniser(tmp_path / "new").movements.arms is not None
     with np.load(tmp_path / "new") as archive:
-        older = {name: archive[name] for name in archive if not name.startswith("arms.")}
+        older = {name: archive[name] for name in archive if not name.startswith("courses.")}
     with (tmp_path / "older").open("wb") as file:
         np.savez(file, **older)
     again = load_recogniser(tmp_path / "older")

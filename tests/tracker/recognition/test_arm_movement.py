@@ -1,30 +1,19 @@
-"""What is read of arms, and what it says, on two actions that one number tells apart."""
+"""What is read of arms, of whatever sensor, and at whatever rate."""
 
 import numpy as np
 import pytest
+from arm_paths import LIFT_AND_SWEEP, POSE, arm_pose, arm_poses
 from inhand_schemas.joints import Joint
-from inhand_tracker.recognition.arm_movement import arm_description, arm_evidence
-from inhand_tracker.recognition.movement_classes import MovementClasses
+from inhand_tracker.recognition.arm_movement import MOVED, WRISTS, ArmReader, arm_description
 from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
-from people import STANDING
 
-POSE = (STANDING - STANDING[Joint.HIP_CENTER]) / 1.7
-NONE_AT, ACTIONS_AT = 0.0, (-8.0, 8.0)
+RATE_HZ = DEFAULT_RECOGNITION.arms.rate_hz
 
 
-def classes() -> MovementClasses:
-    """Two actions on both sides of nothing in use."""
-    return MovementClasses(
-        means=np.zeros(1),
-        whitening=np.eye(1),
-        directions=np.eye(1),
-        centres=np.array([[ACTIONS_AT[0]], [ACTIONS_AT[1]], [NONE_AT]]),
-        log_shares=np.log(np.array([0.1, 0.3, 0.6])),
-        says=np.ones((3, 3)),
-        limits=np.full(2, np.inf),
-        reaches=np.full(2, np.inf),
-        owners=np.array([0, 1, 2]),
-    )
+def observations(rate_hz: float) -> np.ndarray:
+    reader = ArmReader()
+    poses = arm_poses(LIFT_AND_SWEEP, rate_hz)
+    return np.array([one for time_ns, pose in poses for one in reader.read(time_ns, pose)])
 
 
 def test_what_a_sensor_decides_for_itself_is_not_read() -> None:
@@ -45,17 +34,30 @@ def test_a_pelvis_that_leans_otherwise_changes_nothing() -> None:
     )
 
 
-@pytest.mark.parametrize("action", [0, 1])
-def test_arms_speak_for_the_action_they_are_near_to(action: int) -> None:
-    features = np.array([[ACTIONS_AT[action]], [NONE_AT]])
-    of_action, of_none = arm_evidence(classes(), features)
-    assert of_action[action] > 5.0
-    assert of_action[1 - action] < -20.0
-    assert of_none[:2].max() < -20.0
+def test_a_wrist_is_placed_to_the_left_up_and_ahead_of_the_shoulders() -> None:
+    right = arm_description(arm_pose(0.0, 0.0))[:3]
+    np.testing.assert_allclose(right, [-0.35, 0.0, 1.0], atol=0.03)
+    np.testing.assert_allclose(arm_description(arm_pose(90.0, 0.0))[:3], [-1.35, 0, 0], atol=0.03)
 
 
-def test_far_from_all_that_was_learned_arms_say_nothing_for_any_action() -> None:
-    far = np.array([[1000.0], [-1000.0]])
-    assert arm_evidence(classes(), far)[:, :2].max() < 0.0
-    bound = DEFAULT_RECOGNITION.most_said - DEFAULT_RECOGNITION.arm_caution
-    assert arm_evidence(classes(), np.array([[12.0]]))[0, 1] == pytest.approx(bound)
+@pytest.mark.parametrize("rate_hz", [15.0, 20.0, 24.0, 60.0])
+def test_observations_are_the_same_at_any_rate_of_frames(rate_hz: float) -> None:
+    usual, other = observations(30.0), observations(rate_hz)
+    assert abs(len(other) - len(usual)) <= 1
+    both = min(len(other), len(usual))
+    np.testing.assert_allclose(other[:both], usual[:both], atol=0.05)
+
+
+def test_an_observation_says_how_far_wrists_moved_in_a_fifth_of_a_second() -> None:
+    some = observations(30.0)
+    lag = round(0.2 * RATE_HZ)
+    np.testing.assert_allclose(some[10, MOVED], some[10, WRISTS] - some[10 - lag, WRISTS])
+
+
+def test_after_a_long_gap_nothing_has_moved() -> None:
+    reader = ArmReader()
+    reader.read(0, arm_pose(0.0, -85.0))
+    (after,) = reader.read(5_000_000_000, arm_pose(0.0, 30.0))
+    np.testing.assert_array_equal(after[MOVED], 0.0)
+    (again,) = reader.read(1_000_000_000, arm_pose(90.0, 30.0))
+    np.testing.assert_array_equal(again[MOVED], 0.0)

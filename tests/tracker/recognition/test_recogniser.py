@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from arm_paths import LIFT_AND_SWEEP, arm_poses
 from inhand_tracker.body.reader import Body
 from inhand_tracker.body.skeleton import Bases
-from inhand_tracker.recognition.arm_movement import arm_window
+from inhand_tracker.recognition.arm_courses import ArmCourses
+from inhand_tracker.recognition.arm_movement import ArmReader
 from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.movement_window import MovementWindow
 from inhand_tracker.recognition.parameters import RecognitionParameters
@@ -85,26 +87,16 @@ def test_who_comes_next_starts_without_a_history() -> None:
 
 
 def test_where_a_body_is_unlike_all_that_were_learned_the_arms_decide() -> None:
-    arms = arm_window()
-    arms.add(0, FIRST)
-    of_first = arms.features()
-    described = MovementClasses(
-        means=of_first,
-        whitening=np.eye(len(of_first)),
-        directions=np.eye(len(of_first))[:, :1],
-        centres=np.array([[0.0], [9.0], [9.0]]),
-        log_shares=np.log(np.full(3, 1.0 / 3.0)),
-        says=np.ones((3, 3)),
-        limits=np.full(2, np.inf),
-        reaches=np.full(2, np.inf),
-        owners=np.array([0, 1, 2]),
-    )
+    poses = arm_poses(LIFT_AND_SWEEP)
+    reader = ArmReader()
+    taught = np.array([one for time_ns, pose in poses for one in reader.read(time_ns, pose)])
+    arms = ArmCourses(taught, np.array([len(taught)]), np.array([1]))
     strange = replace(CLASSES, limits=np.full(2, 1e-3))
-    far = 0.3 * SECOND
     known = []
-    for classes in (strange, replace(strange, arms=described), replace(CLASSES, arms=described)):
+    for classes in (strange, replace(strange, arms=arms), replace(CLASSES, arms=arms)):
         recogniser = MovementRecogniser(classes, 0.4)
-        for frame in range(30):
-            probabilities = recogniser.step(frame * FRAME_NS, body(far))
+        for time_ns, pose in poses:
+            probabilities = recogniser.step(time_ns, body(pose))
         known.append(recognised_action(probabilities[:-1]))
-    assert known == [None, 0, None]
+    assert known[:2] == [None, 1]
+    assert known[2] != 1

@@ -9,7 +9,7 @@ near to it as the nearer movements of people who do it, above all where no image
 is an object.
 
 All this holds for bodies like those that were learned. Of others all classes are far, and another
-description decides (``arm_movement``).
+description decides (``arm_courses``).
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Indices
+from inhand_tracker.recognition.arm_courses import ArmCourses
 from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION, RecognitionParameters
 
 
@@ -31,8 +32,8 @@ class MovementClasses:
     logarithms of their weights, ``owners`` (G,) their classes, and ``says`` (G, K + 1) is
     P(class | Gaussian) / P(class). Distances that people keep: ``limits`` (2,) to the nearest
     centre, within the span and outside of it; ``reaches`` (K,) to an action's own nearest centre,
-    of a part of its people. ``arms`` are the same classes by the arms alone; None in recognisers of
-    older releases.
+    of a part of its people. ``arms`` are the courses that arms took in the same recordings; None in
+    recognisers of older releases.
     """
 
     means: Array
@@ -44,7 +45,7 @@ class MovementClasses:
     limits: Array
     reaches: Array
     owners: Indices
-    arms: MovementClasses | None = None
+    arms: ArmCourses | None = None
 
     @property
     def actions(self) -> int:
@@ -95,17 +96,6 @@ class MovementClasses:
     def _beyond(self, distances: Array) -> Array:
         """How many times (log) distances (N, 2) exceed their limits, together, (N,)."""
         return np.asarray(np.log(np.maximum(distances / self.limits, 1.0)).sum(axis=1))
-
-    def log_likelihoods(self, features: Array) -> Array:
-        """Log-likelihood (N, K + 1) of features (N, D) in each class, but for one summand."""
-        inside, _ = self.project(features)
-        logs = self.log_shares - 0.5 * np.square(inside[:, None] - self.centres).sum(axis=2)
-        by_class = []
-        for number in range(self.actions + 1):
-            ours = self.owners == number
-            whole = np.logaddexp.reduce(self.log_shares[ours])
-            by_class.append(np.logaddexp.reduce(logs[:, ours], axis=1) - whole)
-        return np.column_stack(by_class)
 
     def apart(self, features: Array) -> Array:
         """Distances (N, K) of features (N, D) from the nearest of each action's own centres."""

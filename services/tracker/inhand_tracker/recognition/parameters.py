@@ -9,6 +9,72 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
+class ArmParameters:
+    """Decides what the arms say of a body unlike the learned ones (arm_movement, arm_courses).
+
+    Lengths are in those of an arm, axes to the left, up and ahead of the trunk. A pair of spreads
+    is the standard deviation where a recording rests, and what each unit of its movement in
+    ``lag`` observations adds, in squares. All were chosen together on simulated people and four of
+    UTD-MHAD's eight, each of whom taught the others once
+    (`inhand recognise --test-on --taught-by`).
+    """
+
+    rate_hz: float = 15.0
+    """Number of observations of the arms a second."""
+    lag: int = 3
+    """Number of observations that a wrist's movement is taken over."""
+    wrist_spread: tuple[float, float] = (0.083, 0.225)
+    """Spread of other people's wrists about those of a recording."""
+    moved_spread: tuple[float, float] = (0.026, 0.245)
+    """Spread of other people's movements of wrists about those of a recording."""
+    upper_spread: tuple[float, float] = (0.22, 0.0)
+    """Spread of other people's directions of upper arms about those of a recording."""
+
+    hanging_wrist: tuple[float, float, float] = (-0.45, -0.97, 0.0)
+    """Usual place of a right wrist that hangs; a left one's is its mirror image."""
+    hanging_wrist_spread: float = 0.25
+    """Spread of wrists that hang."""
+    hanging_upper: tuple[float, float, float] = (-0.12, -0.98, 0.0)
+    """Usual direction of a right upper arm that hangs."""
+    hanging_upper_spread: float = 0.057
+    """Spread of upper arms that hang."""
+    any_wrist: tuple[float, float, float] = (-0.35, -0.3, 0.35)
+    """Usual place of a right wrist that does anything."""
+    any_wrist_spread: float = 1.1
+    """Spread of wrists that do anything."""
+    any_upper: tuple[float, float, float] = (-0.3, -0.6, 0.2)
+    """Usual direction of a right upper arm that does anything."""
+    any_upper_spread: float = 0.26
+    """Spread of upper arms that do anything."""
+    slow_spread: float = 0.026
+    """Spread of the movements of a wrist that rests."""
+    fast_spread: float = 0.23
+    """Spread of the movements of a wrist that is used."""
+
+    kept: float = 0.977
+    """Share of a score that is left after an observation."""
+    waiting: float = 6.0
+    """Score that it costs to stay at a place of a recording."""
+    skipping: float = 0.11
+    """Score that each place costs that is passed over."""
+    still_worth: float = 0.12
+    """Share of an observation's worth where nothing moves."""
+    moved: float = 0.34
+    """Movement of a wrist that adds 1 to that share."""
+    remembered_s: float = 4.0
+    """Seconds of movement that count where a body was like the learned ones before."""
+
+    score: float = 109.0
+    """Score of an action from which on the arms speak for it."""
+    gain: float = 0.027
+    """Log evidence for an action of each point of its score."""
+    most_for: float = 2.1
+    """Log evidence for an action in a frame, at the most."""
+    most_against: float = 0.1
+    """Log evidence against an action in a frame, at the most: who pauses goes on."""
+
+
+@dataclass(frozen=True)
 class RecognitionParameters:
     """Decides when movement and images make an action recognised, and which objects are tracked."""
 
@@ -25,10 +91,6 @@ class RecognitionParameters:
     """Numbers of frames back to the poses that the present one is compared with."""
     speed_lag: int = 2
     """Number of frames between the poses that give a speed."""
-    arm_windows: tuple[int, ...] = (20, 60)
-    """The ``windows`` of what is read of the arms alone."""
-    arm_lags: tuple[int, ...] = (6, 12)
-    """The ``lags`` of what is read of the arms alone."""
 
     # What a movement is evidence of (movement_classes). `--false-objects` on a dataset without
     # images shows the doubts; they were chosen there, on two people left out of six.
@@ -45,24 +107,14 @@ class RecognitionParameters:
     """Log evidence against an action of a movement at e times its reach, without an image, which
     would show whether there is an object."""
 
-    # What the arms are evidence of where a body is unlike the learned ones (movement_classes,
-    # arm_movement). Chosen on simulated people and three of UTD-MHAD's eight
-    # (`inhand recognise --alone --test-on`).
-    home_ends: float = 0.6
+    # When the arms speak (movement_classes); what they say is in ``arms``. Chosen with it.
+    home_ends: float = 0.4
     """Logarithm of how far, in people's limits, a movement is from all classes, from which on the
     arms speak as well; of other simulated people's taught movements 98 % are nearer."""
-    far_from_home: float = 1.0
-    """The logarithm from which on the arms speak alone; of another sensor's people nine in ten are
-    farther, even where their joints are moved to the canonical body's."""
-    most_said: float = 60.0
-    """Bound on the log-likelihood ratio of the arms' movement."""
-    arm_reach: float = 5.0
-    """Distance from an action's nearest centre up to which there is no doubt, in deviations."""
-    arm_doubt: float = 1.0
-    """Log evidence against an action for each deviation beyond that."""
-    arm_caution: float = 14.0
-    """Log evidence that the arms' movement has to have for an action before it counts: what is far
-    from all that was learned resembles something now and then."""
+    far_from_home: float = 0.7
+    """The logarithm from which on the arms speak alone; another sensor's people are farther from
+    soon after they begin to move, even where their joints are moved to the canonical body's."""
+    arms: ArmParameters = ArmParameters()
 
     # How evidence adds up over time (class_filter).
     stays: float = 0.997

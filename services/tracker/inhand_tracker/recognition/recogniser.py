@@ -6,7 +6,7 @@ import numpy as np
 
 from inhand_tracker.body.reader import Body
 from inhand_tracker.geometry.arrays import Array
-from inhand_tracker.recognition.arm_movement import arm_evidence, arm_window
+from inhand_tracker.recognition.arm_courses import CourseFollower
 from inhand_tracker.recognition.class_filter import ClassFilter, reweighted
 from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.movement_window import MovementWindow
@@ -52,13 +52,18 @@ class MovementRecogniser:
     ) -> None:
         self._classes = classes
         self._parameters = parameters
+        self._temper = temper
         self._filter = ClassFilter(classes.actions, temper, parameters)
+        self._arms: CourseFollower | None = None
+        if classes.arms is not None:
+            self._arms = CourseFollower(classes.arms, classes.actions, parameters)
         self.restart()
 
     def restart(self) -> None:
         """Start anew: somebody else comes into view."""
         self._window = MovementWindow(self._parameters)
-        self._arms = arm_window(self._parameters)
+        if self._arms is not None:
+            self._arms.restart()
         self._filter.restart()
 
     def step(self, time_ns: int, body: Body, seen: Array | None = None) -> Array:
@@ -76,7 +81,8 @@ class MovementRecogniser:
     def remember(self, time_ns: int, body: Body) -> None:
         """Take a frame in which nothing is to be recognised; the movement counts later."""
         self._window.add(time_ns, body.pose)
-        self._arms.add(time_ns, body.pose)
+        if self._arms is not None:
+            self._arms.add(time_ns, body.pose)
 
     def _movement_evidence(self, time_ns: int, body: Body, *, seeing: bool) -> Array:
         """Log evidence (K + 1,): by the arms as far as the body is unlike the learned ones."""
@@ -84,9 +90,9 @@ class MovementRecogniser:
         features = self._window.features()[None]
         doubts = self._classes.doubts(features, seeing=seeing, parameters=self._parameters)
         evidence = (self._classes.evidence(features, self._parameters) + doubts)[0]
-        arms = self._classes.arms
         home = self._classes.at_home(features, self._parameters)[0]
-        if arms is None or home == 1.0:
+        if self._arms is None or home == 1.0:
             return evidence
-        of_arms = arm_evidence(arms, self._arms.features()[None], self._parameters)[0]
+        # All of it is new: scores have added up what goes before.
+        of_arms = self._arms.evidence() / self._temper
         return np.asarray(home * evidence + (1.0 - home) * of_arms)

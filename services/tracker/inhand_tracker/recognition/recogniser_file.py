@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from inhand_tracker.model.archive import ArchiveKind, Arrays, read_archive, write_archive
+from inhand_tracker.recognition.arm_courses import ArmCourses
 from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.pairwise_svm import PairwiseSvm
 from inhand_tracker.recognition.presence import Presence
@@ -21,6 +22,7 @@ _ARRAYS = {
     "movements": tuple(f.name for f in fields(MovementClasses) if f.name != "arms"),
     "presence": tuple(field.name for field in fields(Presence)),
 }
+_COURSES = tuple(field.name for field in fields(ArmCourses))
 
 
 def save_recogniser(recogniser: Recogniser, path: Path | str) -> None:
@@ -37,7 +39,7 @@ def save_recogniser(recogniser: Recogniser, path: Path | str) -> None:
     for part, names in _ARRAYS.items():
         arrays |= _named(part, getattr(recogniser, part), names)
     if recogniser.movements.arms is not None:
-        arrays |= _named("arms", recogniser.movements.arms, _ARRAYS["movements"])
+        arrays |= _named("courses", recogniser.movements.arms, _COURSES)
     write_archive(RECOGNISER_FILE, path, description, arrays)
 
 
@@ -58,8 +60,8 @@ def _assemble(description: dict[str, Any], arrays: Arrays) -> Recogniser:
     parts = {part: _part(part, names, arrays) for part, names in _ARRAYS.items()}
     arms = None
     # Files of older releases have none.
-    if "arms.means" in arrays:
-        arms = MovementClasses(**_part("arms", _ARRAYS["movements"], arrays))
+    if "courses.observations" in arrays:
+        arms = ArmCourses(**_part("courses", _COURSES, arrays))
     return Recogniser(
         actions=tuple(description["actions"]),
         body_poses=arrays["body_poses"],
