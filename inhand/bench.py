@@ -23,6 +23,7 @@ from inhand_lab.benchmarks.estimated_skeletons import check_skeletons, check_ste
 from inhand_lab.benchmarks.estimation_cost import measure_estimation
 from inhand_lab.benchmarks.frame_cost import frame_steps, measure_frames
 from inhand_lab.benchmarks.label_errors import check_labels, chosen_entries
+from inhand_lab.benchmarks.likelihood_bias import measure_bias
 from inhand_lab.benchmarks.likelihood_check import check_likelihood
 from inhand_lab.benchmarks.object_accuracy import check_objects, object_steps
 from inhand_lab.benchmarks.parameters import (
@@ -38,6 +39,7 @@ from inhand_lab.benchmarks.transport_delay import measure_transport
 from inhand_lab.datasets.dataset import load_dataset
 from inhand_lab.evaluation.folds import leave_one_out
 from inhand_lab.workers import usable_cores
+from inhand_lab.world.interactions import INTERACTIONS
 from inhand_runtime.errors import SettingsError
 from rich.console import Console, Group, RenderableType
 
@@ -45,6 +47,7 @@ from inhand.bench_label_tables import labels_table
 from inhand.bench_skeleton_tables import actions_table, costs_table, joints_table, rules_table
 from inhand.bench_tables import (
     ablation_table,
+    bias_table,
     comparison_table,
     constants_table,
     fusion_table,
@@ -74,8 +77,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         type=Path,
         metavar="SOURCE",
-        help="for likelihood: a folder of YCB-Video, or of an excerpt; for ablation, constants "
-        "and labels: a dataset; for skeletons, if at hand: a folder of UTD-MHAD with its depth",
+        help="for ablation, constants and labels: a dataset; for likelihood, in place of rendered "
+        "objects: a folder of YCB-Video, or of an excerpt; for skeletons, if at hand: a folder of "
+        "UTD-MHAD with its depth",
     )
     parser.add_argument(
         "--vary",
@@ -113,9 +117,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Measure and show the table; raises InhandError."""
     named = arguments.source is not None
-    if named != (arguments.subject in MEASURED_ON) and arguments.subject != "skeletons":
+    if not named and arguments.subject in MEASURED_ON:
+        raise SettingsError(f"{arguments.subject} is measured on a SOURCE: name it")
+    if named and arguments.subject not in MEASURED_ON + ALSO_MEASURED_ON:
         raise SettingsError(
-            f"{', '.join(MEASURED_ON)}, and nothing else, are measured on a SOURCE: name it"
+            f"{arguments.subject} is measured on no SOURCE: leave it out; only "
+            f"{', '.join(MEASURED_ON + ALSO_MEASURED_ON)} are"
         )
     for option in ("vary", "test_on", "plain", "no_images"):
         if getattr(arguments, option) and arguments.subject != "ablation":
@@ -160,6 +167,10 @@ def _comparison_row(case: CaseComparison) -> dict[str, Any]:
 
 
 def _likelihood(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    if arguments.source is None:
+        with progress_bar("rendering", len(INTERACTIONS)) as advance:
+            biases = measure_bias(list(INTERACTIONS), advance)
+        return bias_table(biases), {"objects": [asdict(bias) for bias in biases]}
     checks = check_likelihood(arguments.source)
     return likelihood_table(checks), {"objects": [asdict(check) for check in checks]}
 
@@ -249,7 +260,8 @@ SUBJECTS_HELP = {
     "ablation": "the error of fusion without each of its parts",
     "constants": "its error with each number halved and doubled",
     "labels": "how far labels between keyframes are from the truth",
-    "likelihood": "how true poses score, and refine, on real frames of YCB-Video",
+    "likelihood": "where its optimum is beside the truth, on rendered objects; or how true poses "
+    "score, and refine, on real frames of YCB-Video",
     "objects": "new objects, by measures and by the camera, beside the true meshes",
     "skeletons": "skeletons from images: found people, joints' errors, and what a frame costs",
     "tracker": "poses weighed in a second, and what a frame costs, by itself or against other code",
@@ -257,7 +269,8 @@ SUBJECTS_HELP = {
     "transport": "the delay of a frame to another process, beside Zenoh's own and dora-rs's",
 }
 
-MEASURED_ON = ("likelihood", "ablation", "constants", "labels")
+MEASURED_ON = ("ablation", "constants", "labels")
+ALSO_MEASURED_ON = ("likelihood", "skeletons")
 
 SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "ablation": _ablation,

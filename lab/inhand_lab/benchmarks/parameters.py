@@ -1,6 +1,6 @@
 """Every number of the benchmarks that can be tuned: on whom and on how much each measures.
 
-`inhand bench tracker`, `training`, and `likelihood SOURCE` show what they come to. Simulated people
+`inhand bench tracker`, `training`, and `likelihood` show what they come to. Simulated people
 drink from a mug in all of them.
 """
 
@@ -263,3 +263,54 @@ class LabelCheckParameters:
 
 
 DEFAULT_LABEL_CHECK = LabelCheckParameters()
+
+
+@dataclass(frozen=True)
+class LikelihoodBiasParameters:
+    """At which poses objects are rendered, and how far about them the optimum is looked for."""
+
+    seed: int = 19
+    """Seed of rooms, poses and starts."""
+    rooms: int = 3
+    """Number of rooms, in turns."""
+    camera_m: float = 3.9
+    """Distance in metres of the camera from the middle of the room, to which people stand; the back
+    wall is 1.1 to 1.8 m farther away."""
+    camera_height_m: float = 1.3
+    """Height of the camera in metres."""
+    finer: int = 5
+    """Number of samples, each way, that a pixel's colour is the mean of; odd, so that one is in its
+    middle."""
+    learned: int = 24
+    """Number of frames that an object's appearance is learned from."""
+    poses: int = 60
+    """Number of frames in which it is looked for."""
+    distance_m: tuple[float, float] = (1.5, 4.0)
+    """Least and largest distance in metres of the object's middle."""
+    margin: float = 0.25
+    """Share of the image, on each side, in which no object's middle is."""
+    object_rate: float = 0.1
+    """Share of a frame in the object's colours: what trackers learn."""
+    around_rate: float = 0.5
+    """Share of a frame in the surroundings' colours."""
+    across_m: float = 0.015
+    """Metres to each side, across the ray, within which the optimum is looked for."""
+    along_m: float = 0.2
+    """Metres along the ray, either way, within which it is looked for."""
+    offsets: int = 81
+    """Number of places, each way, at which poses are weighed."""
+    beside_peak: int = 8
+    """Number of these on either side of the best one to which a parabola is fitted."""
+    starts: int = 4
+    """Number of starts of refinement in each frame."""
+    start_m: float = 0.02
+    """Distance in metres of a start from the truth, in a random direction."""
+    free_m: float = 1.0
+    """Standard deviation in metres of the prior on a start's place, which says next to nothing."""
+    turn_rad: float = 1e-3
+    """Standard deviation in radians of the prior that holds a start's turn, which is true."""
+    refinements: int = 3
+    """Number of times that a start is refined, each time about where the last one ended."""
+
+
+DEFAULT_LIKELIHOOD_BIAS = LikelihoodBiasParameters()

@@ -45,8 +45,8 @@ def test_a_folder_without_frames_is_refused(tmp_path: Path) -> None:
         check_likelihood(tmp_path)
 
 
-@pytest.mark.parametrize("words", [["likelihood"], ["tracker", "somewhere"]])
-def test_a_source_is_for_the_likelihood_alone(
+@pytest.mark.parametrize("words", [["labels"], ["tracker", "somewhere"]])
+def test_a_source_is_for_what_is_measured_on_one(
     words: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["bench", *words]) == 2
