@@ -13,10 +13,15 @@ def step_across(size: int = 60) -> np.ndarray:
 def test_distances_count_pixels_from_an_edge() -> None:
     row = edge_distances(step_across())[0, 30]
     edge = int(np.argmin(row))
-    assert row[edge] == 0
-    assert edge in (29, 30)
-    np.testing.assert_array_equal(row[edge : edge + 6], np.arange(6))
+    assert edge == 29
+    np.testing.assert_array_equal(row[edge + 1 : edge + 7], np.arange(6))
     assert (row[:10] == FARTHEST_PIXELS).all()
+
+
+@pytest.mark.parametrize("turns", [0, 1, 2, 3])
+def test_a_step_is_as_far_from_the_pixels_on_either_side(turns: int) -> None:
+    near = edge_distances(np.rot90(step_across(), turns).copy()).min(axis=0)
+    np.testing.assert_array_equal(near, near[::-1, ::-1])
 
 
 @pytest.mark.parametrize(("turns", "channel"), [(0, 0), (1, 2)])
@@ -51,6 +56,8 @@ def test_near_an_edge_speaks_for_a_boundary_and_far_from_any_against() -> None:
 
 def test_where_edges_are_everywhere_they_say_less() -> None:
     stripes = np.where(np.arange(240) // 4 % 2, 200, 40).astype(np.uint8)
-    crowded = edge_scores(edge_distances(np.tile(stripes, (240, 1))))[0]
+    distances = edge_distances(np.tile(stripes, (240, 1)))
+    crowded = edge_scores(distances)[0]
     lone = edge_scores(edge_distances(step_across(240)))[0]
-    assert np.ptp(crowded[:5]) < 0.7 * np.ptp(lone[:5])
+    there = np.unique(distances[0, 10:230, 10:230])
+    assert np.ptp(crowded[there]) < 0.7 * np.ptp(lone[there])

@@ -7,7 +7,7 @@ STEPS = ((0, 1), (1, 1), (1, 0), (1, -1))
 
 
 def defined(across: np.ndarray, down: np.ndarray, least: float, agreement: float) -> np.ndarray:
-    """Edges are no weaker than the pixel ahead, stronger than the one behind, and strong."""
+    """Edges are strong, and no weaker than the pixels ahead and behind."""
     gradients = np.stack((across, down)).astype(float)
     strengths = np.linalg.norm(gradients, axis=0)
     normals = np.array([(1.0, 0.0), (0.5**0.5, 0.5**0.5), (0.0, 1.0), (0.5**0.5, -(0.5**0.5))])
@@ -18,7 +18,7 @@ def defined(across: np.ndarray, down: np.ndarray, least: float, agreement: float
             continue
         step, own = STEPS[nearest[row, column]], strengths[row, column]
         ahead = strengths[row + step[0], column + step[1]]
-        if own >= ahead and own > strengths[row - step[0], column - step[1]]:
+        if own >= ahead and own >= strengths[row - step[0], column - step[1]]:
             no_edge[along[:, row, column] >= agreement * own, row, column] = 0
     return no_edge
 

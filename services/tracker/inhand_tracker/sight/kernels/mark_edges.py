@@ -45,9 +45,10 @@ def mark_edges(
                 step_row, step_column = 1, 0
             else:
                 step_row, step_column = 1, -1
+            # Equal ones are all edges: a sharp step lies between two, and belongs to neither alone.
             if square < squares[row + step_row, column + step_column]:
                 continue
-            if square <= squares[row - step_row, column - step_column]:
+            if square < squares[row - step_row, column - step_column]:
                 continue
             least = np.float32(agreement) * np.sqrt(np.float32(square))
             for channel in range(4):
