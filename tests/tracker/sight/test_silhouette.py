@@ -4,9 +4,11 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT
 from inhand_tracker.sight.silhouette import (
     interior,
+    object_shares,
     pixels_covered,
     region_around,
     silhouette_depths,
+    weights_of_sides,
 )
 from sights import EXTENTS, box
 
@@ -23,6 +25,34 @@ def test_a_box_ahead_is_a_rectangle_as_far_away_as_its_front() -> None:
     assert seen.any(axis=0).sum() == pytest.approx(100.0 * EXTENTS[0], abs=1.5)
     assert seen.any(axis=1).sum() == pytest.approx(100.0 * EXTENTS[1], abs=1.5)
     assert depths[24, 32] == pytest.approx(1.0)
+
+
+def test_shares_add_up_to_the_area_that_an_object_covers() -> None:
+    shifts = np.random.default_rng(0).uniform(-0.01, 0.01, (40, 2))
+    areas = [
+        object_shares(box(), AHEAD + np.array([*shift, 0.0]), UPRIGHT, CAMERA).sum()
+        for shift in shifts
+    ]
+    assert np.mean(areas) == pytest.approx(1e4 * EXTENTS[0] * EXTENTS[1], rel=0.02)
+
+
+def test_shares_go_from_all_in_the_middle_to_none_beside_it() -> None:
+    shares = object_shares(box(), AHEAD, UPRIGHT, CAMERA)
+    assert shares[24, 32] == 1.0
+    assert shares[24, 32 + 8] == 0.0
+    assert ((shares > 0.1) & (shares < 0.9)).sum() > 20
+
+
+def test_the_rest_of_a_mixed_pixel_is_the_surroundings_in_the_ratio_of_both_areas() -> None:
+    shares = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 0.25, 0.5, 1.0, 1.0, 1.0]], np.float32)
+    hidden, beside = np.zeros(shares.shape, bool), np.zeros(shares.shape, bool)
+    hidden[0, 9], beside[0, :4] = True, True
+    of_object, around = weights_of_sides(shares, hidden, beside)
+    np.testing.assert_allclose(of_object[0, 5:], [0.25, 0.5, 1.0, 1.0, 0.0])
+    np.testing.assert_allclose(around[0, :5], [1.0, 1.0, 1.0, 1.0, 0.0])
+    # Of 4 pixels of surroundings and 2.75 of the object, half a pixel is as much of either.
+    assert around[0, 6] / around[0, :4].sum() == pytest.approx(of_object[0, 6] / of_object.sum())
+    assert around[0, 7:].sum() == 0.0
 
 
 def test_a_region_holds_the_object_with_surroundings_of_half_its_size() -> None:

@@ -17,9 +17,11 @@ from inhand_tracker.sight.limbs import limb_mask
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
 from inhand_tracker.sight.silhouette import (
     interior,
+    object_shares,
     pixels_covered,
     region_around,
     silhouette_depths,
+    weights_of_sides,
 )
 
 AppearanceSample = tuple[Image, Array, Array, Array | None]
@@ -68,15 +70,19 @@ class _Counts:
         self.behind += int((off >= frame.parameters.aside_m).sum())
         self.looked_at += len(off)
 
-    def add_colours(self, frame: SightFrame, silhouette: Flags, joints: Array | None) -> None:
-        """Count colours on the silhouette, and beside it those of a person with joints (20, 3)."""
+    def add_colours(
+        self, frame: SightFrame, shares: Singles, hidden: Flags, joints: Array | None
+    ) -> None:
+        """Count colours by the object's ``shares`` in pixels (H, W) that are not ``hidden``, and
+        beside it those of a person with joints (20, 3)."""
         if frame.bins is None:
             return
-        self.of_object += _counts(frame.bins, silhouette)
-        beside = ~cv2.dilate(silhouette.astype(np.uint8), np.ones((3, 3))).astype(bool)
-        self.around += _counts(frame.bins, beside)
+        beside = ~cv2.dilate((shares > 0.0).astype(np.uint8), np.ones((3, 3))).astype(bool)
+        of_object, around = weights_of_sides(shares, hidden, beside)
+        self.of_object += _counts(frame.bins, of_object)
+        self.around += _counts(frame.bins, around)
         limbs = limb_mask(joints, frame.camera, frame.depth, frame.parameters).astype(bool)
-        self.of_limbs += _counts(frame.bins, beside & limbs)
+        self.of_limbs += _counts(frame.bins, (beside & limbs).astype(np.float32))
 
 
 def learn_appearance(
@@ -101,11 +107,9 @@ def learn_appearance(
         depths = silhouette_depths(shape, translation, rotation, frame.camera)
         silhouette = np.isfinite(depths)
         counts.add_depths(frame, depths, silhouette)
-        counts.add_colours(
-            frame,
-            silhouette & ~pixels_covered(frame.depth, depths, frame.parameters.aside_m),
-            joints,
-        )
+        hidden = pixels_covered(frame.depth, depths, frame.parameters.aside_m)
+        shares = object_shares(shape, translation, rotation, frame.camera)
+        counts.add_colours(frame, shares, hidden, joints)
     of_object, around = counts.of_object, counts.around
     if min(of_object.sum(), around.sum()) < parameters.fewest_pixels:
         return None
@@ -145,5 +149,5 @@ def _without_limbs(of_object: Array, of_limbs: Array, parameters: SightParameter
     return np.asarray(left / left.sum(), np.float32)
 
 
-def _counts(bins: Bins, chosen: Flags) -> Array:
-    return np.bincount(bins[chosen], minlength=BINS).astype(float)
+def _counts(bins: Bins, weights: Singles) -> Array:
+    return np.bincount(bins.ravel(), weights.ravel(), minlength=BINS).astype(float)

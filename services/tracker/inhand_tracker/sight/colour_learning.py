@@ -5,11 +5,17 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.arrays import Array, Singles
 from inhand_tracker.shape.shape import ObjectShape
-from inhand_tracker.sight.colours import Colours, blend, histogram
+from inhand_tracker.sight.colours import Bins, Colours, blend, histogram
 from inhand_tracker.sight.frame import SightFrame, cut
-from inhand_tracker.sight.silhouette import pixels_covered, region_around, silhouette_depths
+from inhand_tracker.sight.parameters import SightParameters
+from inhand_tracker.sight.silhouette import (
+    object_shares,
+    pixels_covered,
+    region_around,
+    silhouette_depths,
+)
 
 _WIDENED = np.ones((5, 5))
 """What is within two pixels of the object is not learned as its surroundings."""
@@ -35,12 +41,38 @@ def learn_colours(
     bins, measured = frame.bins[pixels], None if frame.depth is None else frame.depth[pixels]
     depths = silhouette_depths(shape, *pose, camera)
     object_rate, around_rate = rates
+    hidden = pixels_covered(measured, depths, parameters.aside_m)
+    shares = object_shares(shape, *pose, camera)
     if around_rate > 0.0:
         wide = cv2.dilate(np.isfinite(depths).astype(np.uint8), _WIDENED)
         around = histogram(bins, (1 - wide).astype(np.float32), parameters)
         colours = replace(colours, around=blend(colours.around, around, around_rate))
     if object_rate > 0.0:
-        within = np.isfinite(depths) & ~pixels_covered(measured, depths, parameters.aside_m)
-        of_object = histogram(bins, within.astype(np.float32), parameters)
+        within = np.where(hidden, np.float32(0.0), shares)
+        of_object = histogram(bins, _own(within), parameters)
         colours = replace(colours, of_object=blend(colours.of_object, of_object, object_rate))
+        mixed = _mixed(bins, within, parameters)
+        colours = replace(colours, mixed=blend(colours.mixed, mixed, around_rate))
     return colours
+
+
+def _own(shares: Singles) -> Singles:
+    """Weigh pixels (H, W) for the object's own colours, by its shares in them: only those that are
+    all its own, where there are some."""
+    own = (shares == 1.0).astype(np.float32)
+    return own if own.any() else shares
+
+
+def _mixed(bins: Bins, shares: Singles, parameters: SightParameters) -> Singles | None:
+    """Count colours of the outline, ``Colours.mixed`` (4096, 2), by the object's ``shares`` in
+    pixels (H, W); None where the object has no pixel."""
+    mixed = (shares > 0.0) & (shares < 1.0)
+    parts = [
+        np.where(mixed, part, 0.0).astype(np.float32) for part in (shares, np.float32(1.0) - shares)
+    ]
+    histograms = [histogram(bins, part, parameters) for part in parts]
+    weights = [part.sum() / max(float(shares.sum()), 1.0) for part in parts]
+    columns = [
+        weight * one for weight, one in zip(weights, histograms, strict=True) if one is not None
+    ]
+    return np.stack(columns, axis=1) if len(columns) == 2 else None

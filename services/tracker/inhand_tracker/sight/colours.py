@@ -26,10 +26,13 @@ the same."""
 @dataclass(frozen=True, eq=False)
 class Colours:
     """Histograms (4096,) that sum to 1 of an object and of what is around it; None until some
-    pixels of it were seen. One is equal to itself alone: it never changes."""
+    pixels of it were seen. ``mixed`` (4096, 2) is that of the outline's pixels: the object's part
+    of them and the surroundings', both as shares of the object's area; None until an image
+    supported a pose. One is equal to itself alone: it never changes."""
 
     of_object: Singles | None = None
     around: Singles | None = None
+    mixed: Singles | None = None
 
 
 def colour_bins(colour: Bytes) -> Bins:
@@ -76,7 +79,10 @@ def log_odds_by_colour(colours: Colours, parameters: SightParameters = DEFAULT_S
     if colours.of_object is None or colours.around is None:
         return np.zeros(BINS, np.float32)
     on_object = colours.of_object + parameters.object_floor
-    odds = np.log(on_object / (colours.around + parameters.around_floor))
+    around = colours.around + parameters.around_floor
+    if colours.mixed is not None:
+        on_object, around = on_object + colours.mixed[:, 0], around + colours.mixed[:, 1]
+    odds = np.log(on_object / around)
     return np.asarray(
         np.clip(odds, -parameters.most_log_odds, parameters.most_log_odds), np.float32
     )

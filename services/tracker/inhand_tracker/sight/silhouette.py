@@ -1,4 +1,5 @@
-"""Where an object at a pose is in an image: the region around it, and its surface's depths."""
+"""Where an object at a pose is in an image: the region around it, its surface's depths, and its
+share in each pixel."""
 
 import cv2
 import numpy as np
@@ -6,8 +7,10 @@ import numpy as np
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Flags, Singles
 from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.shape.kernels.mark_faces import mark_faces
 from inhand_tracker.shape.raster import nearest_depths
 from inhand_tracker.shape.shape import ObjectShape
+from inhand_tracker.sight.colours import without_noise
 from inhand_tracker.sight.frame import Region
 from inhand_tracker.sight.parameters import SightParameters
 
@@ -41,6 +44,32 @@ def silhouette_depths(
     placed = rotations.rotate(rotation, shape.vertices) + translation
     size = camera.height, camera.width
     return nearest_depths(camera.project(placed), placed[:, 2], shape.faces, size)
+
+
+def object_shares(
+    shape: ObjectShape, translation: Array, rotation: Array, camera: Intrinsics
+) -> Singles:
+    """Return the share (H, W), from 0 to 1, of the object in each pixel's colour of an image
+    ``without_noise``: at its outline colours are mixed."""
+    placed = rotations.rotate(rotation, shape.vertices) + translation
+    mask = np.zeros((camera.height, camera.width), np.uint8)
+    mark_faces(camera.project(placed), shape.faces, mask)
+    return without_noise(255 * mask).astype(np.float32) / np.float32(255.0)
+
+
+def weights_of_sides(shares: Singles, hidden: Flags, beside: Flags) -> tuple[Singles, Singles]:
+    """Weigh pixels (H, W) for the colours of an object and of its surroundings, by the object's
+    ``shares`` (H, W) in them.
+
+    ``hidden`` pixels are not the object's; of those without a share in it, the ones ``beside`` it
+    are surroundings. The rest of a mixed pixel is the surroundings', in the ratio of both areas, so
+    that a colour that is half the object's says nothing.
+    """
+    of_object = np.where(hidden, np.float32(0.0), shares)
+    around = (beside & (shares == 0.0)).astype(np.float32)
+    ratio = np.float32(around.sum() / max(float(of_object.sum()), 1.0))
+    mixed = (shares > 0.0) & (shares < 1.0) & ~hidden
+    return of_object, np.where(mixed, ratio * (np.float32(1.0) - shares), around)
 
 
 def pixels_covered(measured: Singles | None, depths: Array, aside_m: float) -> Flags:

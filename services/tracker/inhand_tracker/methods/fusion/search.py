@@ -162,7 +162,7 @@ class ImageSearch:
     def _supported(self, found: "_Found") -> Support:
         """The image's support by the colours of training: what was learned since may be another
         thing's."""
-        trained = replace(found.colours, of_object=self._sight.start().of_object)
+        trained = replace(found.colours, of_object=self._sight.start().of_object, mixed=None)
         trained_view = self._sight.view(found.view.frame, trained, found.joints)
         centres, orientations = means_of(found.modes)
         origins = self._sphere.origins(centres, orientations)
