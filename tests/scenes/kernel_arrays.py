@@ -36,6 +36,7 @@ def outlines(points: int = 12) -> Outlines:
         np.float32(0.06) * vectors[2],
         vectors[3],
         random.uniform(0.05, 0.2, len(directions)).astype(np.float32),
+        random.uniform(0.5, 1.5, len(directions)).astype(np.float32),
     )
 
 

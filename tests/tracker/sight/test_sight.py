@@ -2,11 +2,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.rotations import angle_between
+from inhand_tracker.shape.shape import ObjectShape
+from inhand_tracker.shape.viewpoints import find_viewpoints
 from inhand_tracker.sight.frame import prepare
 from inhand_tracker.sight.refinement import PosePrior
-from inhand_tracker.sight.sight import SIGHT_TERMS, SightTerm
+from inhand_tracker.sight.sight import SIGHT_TERMS, Sight, SightTerm
 from people import STANDING, quaternion_of, scipy_rotation
 from scipy.spatial.transform import Rotation
 from sights import CAMERA, PLACE, TURN, appearance, draw, scattered, sight, view_of
@@ -39,6 +42,23 @@ def test_terms_add_up_and_what_is_left_out_is_zero() -> None:
     np.testing.assert_allclose(both.log_likelihood(*poses, view), sum(by_term.values()))
     alone = sight(("depth",), appearance())
     np.testing.assert_allclose(alone.log_likelihood(*poses, view), by_term["depth"])
+
+
+def test_a_boundary_says_as_much_however_long_the_rest_of_the_outline_is() -> None:
+    """A plate of 20 cm × 20 cm × 2 cm: points lie denser around its edge than around its face."""
+    mesh = trimesh.creation.box((0.2, 0.2, 0.02))
+    vertices = np.asarray(mesh.vertices, float)
+    plate = ObjectShape("plate", vertices, np.asarray(mesh.faces), vertices, np.array([1.0, 0, 0]))
+    eyes = Sight(plate, find_viewpoints(plate), terms=("edges",))
+    grey = np.full((480, 640, 3), 90, np.uint8)
+    grey[:, 320:] = 170
+    view = eyes.view(prepare(Image(None, CAMERA, None, grey)), eyes.start())
+    view.pixels.edge_scores[:] = 1.0
+    facing = np.array([1.0, 0.0, 0.0, 0.0])
+    edge_on = quaternion_of(Rotation.from_rotvec([np.pi / 2.0, 0.0, 0.0]))
+    ahead = np.tile([0.0, 0.0, 1.5], (2, 1))
+    whole, narrow = eyes.weigh(ahead, np.array([facing, edge_on]), view)[:, 0]
+    assert narrow / whole == pytest.approx(0.44 / 0.8, abs=0.06)
 
 
 def test_an_image_that_holds_nothing_says_nothing() -> None:

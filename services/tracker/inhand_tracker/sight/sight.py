@@ -16,7 +16,7 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.shape.contours import find_contours
+from inhand_tracker.shape.contours import Contours, find_contours
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.shape.view_grid import view_grid
 from inhand_tracker.shape.viewpoints import Viewpoints
@@ -217,7 +217,18 @@ def _outlines(shape: ObjectShape, viewpoints: Viewpoints) -> Outlines:
         _points_last(contours.surface_points),
         _points_last(contours.surface_normals),
         np.sqrt(contours.areas),
+        _outline_lengths(contours),
     )
+
+
+def _outline_lengths(contours: Contours) -> Singles:
+    """Measure the outlines (V,), as shares of their mean length: their points are equally spaced,
+    but for the steps from one outline to the next."""
+    steps = np.diff(contours.points, axis=1)
+    along = np.einsum("vbi,vi->vb", steps, contours.directions)
+    across = steps - along[..., None] * contours.directions[:, None]
+    lengths = np.median(np.linalg.norm(across, axis=2), axis=1)
+    return np.asarray(lengths / lengths.mean(), np.float32)
 
 
 def _points_last(points: Singles) -> Singles:

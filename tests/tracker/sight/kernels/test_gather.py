@@ -91,7 +91,7 @@ def outline(pose: Pose) -> list[Measurement]:
         variance += (SETTINGS.contour_error_m * per_m) ** 2
         certainty = 1.0 / variance - 3.0 / (SETTINGS.samples * (SETTINGS.samples + 1) * step**2)
         slopes = np.vstack((np.eye(2), -point[:2] / point[2])) * arrays.LENS[:2] / point[2]
-        weight = SETTINGS.outline_weight * max(certainty, 0.0)
+        weight = SETTINGS.outline_weight * OUTLINES.lengths[view] * max(certainty, 0.0)
         measurements.append((arm, slopes @ normal, mean, weight))
     return measurements
 

@@ -64,8 +64,8 @@ class Definition:
             pixel_m = points[2] / arrays.LENS[0]
             region += within * (step * pixel_m < outlines.inside[self.view])
             region += beside * (step * pixel_m < outlines.outside[self.view])
-        count = len(channel)
-        return edges[visible].sum() / count, region[visible].sum() / count, int(visible.sum())
+        share = outlines.lengths[self.view] / len(channel)
+        return edges[visible].sum() * share, region[visible].sum() * share, int(visible.sum())
 
     def surface(self) -> tuple[float, float, int]:
         _, points = arrays.place(self.pose, self.outlines.surface_points[self.view])

@@ -96,6 +96,7 @@ def _gather_outline(
     lens = _corner_lens(pixels.lens)
     fx, fy = lens[0], lens[1]
     height, width = pixels.limbs.shape
+    weight = settings.outline_weight * outlines.lengths[view]
     for point in range(outlines.points.shape[2]):
         a, b, c = outlines.points[view, :, point]
         arm, (px, py, pz), (u, v) = _placed(turn, place, (a, b, c), lens)
@@ -122,7 +123,7 @@ def _gather_outline(
             continue
         # The pixel's displacement along (nx, ny) by a displacement of the point.
         across = nx * fx / pz, ny * fy / pz, -(nx * fx * px + ny * fy * py) / (pz * pz)
-        add(equation, across, arm, mean, settings.outline_weight * certainty)
+        add(equation, across, arm, mean, weight * certainty)
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)

@@ -13,7 +13,7 @@ class Outlines(NamedTuple):
     several at once.
 
     ``grid`` finds the nearest direction (``view_grid``); ``sizes`` (V,) is the square root of the
-    areas.
+    areas, and ``lengths`` (V,) are those of the outlines, as shares of their mean.
     """
 
     grid: NDArray[np.int16]
@@ -25,6 +25,7 @@ class Outlines(NamedTuple):
     surface_points: Singles
     surface_normals: Singles
     sizes: Singles
+    lengths: Singles
 
 
 class ScoredPixels(NamedTuple):

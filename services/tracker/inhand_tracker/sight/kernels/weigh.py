@@ -55,11 +55,12 @@ def weigh(
     scores: Singles,
 ) -> None:
     """Fill ``scores`` (P, 5) of poses (P, 3) and (P, 4): the mean of each term over the points of
-    a pose's view, and the share of points that lie in the image with nothing in front.
+    a pose's view, of those at the outline times its length, and the share of points that lie in the
+    image with nothing in front.
 
     What is not wanted is not read, and its scores are 0.
     """
-    grid, directions, points, normals, inside, outside, surface_points, _, sizes = outlines
+    grid, directions, points, normals, inside, outside, surface_points, _, sizes, lengths = outlines
     lens, edges, edge_scores, colour_scores, limbs, depth = pixels
     wanted, depth_scores, sensor = settings.wanted, settings.depth_scores, settings.sensor
     limb_weight, scale_per_pixel = settings.limb_weight, settings.scale_per_pixel
@@ -74,7 +75,7 @@ def weigh(
     most = max(outline_count, surface_count)
     u, v, away = np.empty(most, np.float32), np.empty(most, np.float32), np.empty(most, np.float32)
     nu, nv = np.empty(most, np.float32), np.empty(most, np.float32)
-    outline_share, surface_share = one / outline_count, one / surface_count
+    surface_share = one / surface_count
     for pose in range(len(translations)):
         tx, ty, tz = translations[pose, 0], translations[pose, 1], translations[pose, 2]
         turn = rotation_matrix(
@@ -83,6 +84,8 @@ def weigh(
         view = view_of_pose(grid, directions, turn, tx, ty, tz)
         edge_sum, region_sum, interior_sum, depth_sum = zero, zero, zero, zero
         asked, visible = zero, zero
+        # Points are denser on a shorter outline, and each of them stands for less.
+        outline_share = lengths[view] / outline_count
         size = sizes[view] * fx / max(tz, NEAREST)
         reach = min(max(size * scale_per_pixel, least_outline), most_outline)
         noise = depth_noise(sensor.noise_m, sensor.noise_per_m, max(tz, NEAREST))
