@@ -108,6 +108,33 @@ def test_a_part_that_strays_from_the_expected_pose_loses_weight(doubt: float) ->
     assert weights[0] / weights[1] == pytest.approx(3.0)
 
 
+AT_REST = Belief(ALONE, BELIEVED, SECOND, replace(BEFORE, time_ns=SECOND - FRAME_NS))
+
+
+def leapt(metres: float, before: Belief = AT_REST, *, frames: int = 1) -> np.ndarray:
+    """The weights of what is believed when the body goes so far, the last two of where the object
+    was and of how it went."""
+    now = replace(EXPECTED, centre=EXPECTED.centre + np.array([metres, 0.0, 0.0]))
+    time_ns = SECOND + frames * FRAME_NS
+    return carry_over(before, Expected(now), time_ns, FOR_EVER_S, DEFAULT_FUSION).weights
+
+
+def test_a_body_that_leaps_may_be_wrong_however_far_it_leaps() -> None:
+    for metres in (0.2, 2.0):
+        weights = leapt(metres)
+        assert len(weights) == 4
+        assert weights[2:].sum() == pytest.approx(0.5)
+    assert len(leapt(0.05)) == 3
+
+
+def test_a_body_that_was_on_its_way_or_had_time_does_not_leap() -> None:
+    faster = replace(BELIEVED, centre=BELIEVED.centre - np.array([0.15, 0.0, 0.0]))
+    moving = replace(AT_REST, earlier=replace(BEFORE, believed=faster, time_ns=SECOND - FRAME_NS))
+    assert len(leapt(0.35, moving)) == 3
+    assert len(leapt(0.35, frames=10)) == 3
+    assert len(leapt(0.35, replace(AT_REST, earlier=None))) == 3
+
+
 # --- Postures unlike all that were learned
 
 HELD = gaussian([0.3, 0.2, 2.1], [0.3, 1.0, 0.5], 0.05)

@@ -392,8 +392,11 @@ def test_a_model_of_an_older_release_says_to_train_again() -> None:
 # --- Postures unlike all that were learned
 
 
-def sharpness_while(shoulders_m: float, monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """How much images count while the wedge is waved, by shoulders that far from where they are."""
+def sharpness_while(
+    shoulders_m: float, monkeypatch: pytest.MonkeyPatch, glitch_m: float = 0.0
+) -> list[float]:
+    """How much images count while the wedge is waved, by shoulders that far from where they are,
+    and hands that leap for a frame."""
     counted: list[float] = []
     looked = ImageSearch.look
 
@@ -405,6 +408,7 @@ def sharpness_while(shoulders_m: float, monkeypatch: pytest.MonkeyPatch) -> list
     monkeypatch.setattr(ImageSearch, "look", look)
     joints = sequence("p0", seed=0).joints[:8].copy()
     joints[:, [2, 4, 8], 1] += shoulders_m
+    joints[5, [10, 11], 0] += glitch_m
     follow(one, joints, images()[:8])
     return counted
 
@@ -414,6 +418,11 @@ def test_a_smear_counts_less_but_in_a_strange_posture_it_says_more_than_the_body
 ) -> None:
     assert min(sharpness_while(0.0, monkeypatch)) < 0.9
     assert sharpness_while(0.3, monkeypatch) == [1.0] * 8
+
+
+def test_a_hand_that_leaps_for_a_frame_blurs_no_image(monkeypatch: pytest.MonkeyPatch) -> None:
+    usual, leaping = (sharpness_while(0.0, monkeypatch, glitch_m) for glitch_m in (0.0, 0.15))
+    assert leaping[5] > 0.7 * usual[5]
 
 
 def test_the_confidence_is_that_of_the_object_s_centre() -> None:

@@ -20,10 +20,10 @@ from inhand_tracker.geometry.arrays import Array, Singles
 from inhand_tracker.geometry.pose_gaussian import (
     PoseGaussian,
     PoseMixture,
-    mixture,
     moved_covariance,
     turn_blocks,
 )
+from inhand_tracker.geometry.weights import normalised_weights
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.prior.parameters import DEFAULT_PRIOR, PriorParameters
 from inhand_tracker.prior.prediction import Prediction
@@ -140,8 +140,10 @@ def carry_over(
     """Mix what is expected now with what was believed before.
 
     The parts are, in this order: the difference from the prior stays; it is another one; where
-    ``parameters.leaves``, the object stays where it was; and, where the posture is strange, it goes
-    on as it went. ``persistence_s`` is the time constant with which a difference fades.
+    ``parameters.leaves``, the object stays where it was; and, where the posture is strange or the
+    body leaps, it goes on as it went. ``persistence_s`` is the time constant with which a
+    difference fades. Of a body that leaps a joint may be wrong: the last two are as likely then as
+    what it makes likely.
     """
     elapsed_s = (time_ns - before.time_ns) / 1e9
     was, now = before.expected.whole, expected.whole
@@ -151,14 +153,35 @@ def carry_over(
     afresh = expect_afresh(expected)
     parts = [stays, *afresh.parts]
     shares = [parameters.stays_share, *(parameters.afresh_share * afresh.weights)]
+    of_body, leaps = len(parts), _leaps(before, expected, elapsed_s, parameters)
     if parameters.leaves:
         parts.append(_left(before.believed, parameters))
         shares.append(parameters.left_share)
-    if expected.strange and before.earlier is not None:
+    if (expected.strange or leaps) and before.earlier is not None:
         parts.append(_goes_on(before.earlier, before, elapsed_s, parameters))
         shares.append(parameters.goes_on_share)
     off = np.array([expected.whole.square_distance(part) for part in parts])
-    return mixture(parts, np.log(shares) - 0.5 * off / parameters.doubt)
+    weights = normalised_weights(np.log(shares) - 0.5 * off / parameters.doubt)
+    if leaps and len(parts) > of_body:
+        by_body = np.arange(len(parts)) < of_body
+        weights = np.array(shares)
+        weights[by_body] *= (1.0 - parameters.leap_doubt) / weights[by_body].sum()
+        weights[~by_body] *= parameters.leap_doubt / weights[~by_body].sum()
+    return PoseMixture(tuple(parts), weights)
+
+
+def _leaps(
+    before: Belief, expected: Expected, elapsed_s: float, parameters: FusionParameters
+) -> bool:
+    """Whether a body takes what is expected away from where it was, as fast as no object goes that
+    was not on its way already."""
+    earlier = before.earlier
+    if earlier is None:
+        return False
+    leap = float(np.linalg.norm(expected.whole.centre - before.expected.whole.centre))
+    went = float(np.linalg.norm(before.believed.centre - earlier.believed.centre))
+    speed = went / ((before.time_ns - earlier.time_ns) / 1e9)
+    return leap > elapsed_s * (parameters.leap_m_per_s + parameters.quickening * speed)
 
 
 def expect_afresh(expected: Expected) -> PoseMixture:

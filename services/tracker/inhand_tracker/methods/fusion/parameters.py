@@ -45,6 +45,13 @@ class FusionParameters:
     """Standard deviation, in metres, of a frame's change of an object's movement."""
     goes_on_deviation_rad: float = 0.1
     """Standard deviation, in radians, of a frame's change of an object's turning."""
+    quickening: float = 2.0
+    """Number of times as far as in the frame before that an object goes at the most, from frame to
+    frame: of a body that leaps farther, a joint is wrong."""
+    leap_m_per_s: float = 3.0
+    """Metres a second, beside those, by which what a body makes likely goes at the most."""
+    leap_doubt: float = 0.5
+    """Probability that a body that leaps is wrong, and the object stays or goes on as it went."""
     forgetting_s: float = 0.3
     """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
 

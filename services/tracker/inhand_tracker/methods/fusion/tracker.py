@@ -178,11 +178,16 @@ class FusionFollower(Follower):
         return seen
 
     def _sharpness(self, expected: Expected, image: Image) -> float:
-        """Sharpness, from 0 to 1, of an object that moved to where it is expected: whole where the
-        posture is strange, as even a smear says more than the body does."""
-        if self._before is None or expected.strange:
+        """Sharpness, from 0 to 1, of an object that moved to where it is expected, as far as it was
+        moving already: a body's glitch blurs nothing. It is whole where the posture is strange, as
+        even a smear says more than the body does."""
+        before = self._before
+        if before is None or expected.strange:
             return 1.0
-        way = self._sphere.way(self._before.expected.whole, expected.whole, image.camera)
+        way = self._sphere.way(before.expected.whole, expected.whole, image.camera)
+        if before.earlier is not None:
+            went = self._sphere.way(before.earlier.believed, before.believed, image.camera)
+            way = min(way, self._parameters.quickening * went)
         return 1.0 / (1.0 + (way / self._parameters.blurred_pixels) ** 2)
 
     def _state(self, believed: PoseGaussian, *, seen: bool) -> Estimate:
