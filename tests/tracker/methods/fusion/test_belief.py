@@ -123,7 +123,7 @@ def test_a_body_that_leaps_may_be_wrong_however_far_it_leaps() -> None:
     for metres in (0.2, 2.0):
         weights = leapt(metres)
         assert len(weights) == 4
-        assert weights[2:].sum() == pytest.approx(0.5)
+        assert weights[2:].sum() == pytest.approx(DEFAULT_FUSION.leap_doubt)
     assert len(leapt(0.05)) == 3
 
 

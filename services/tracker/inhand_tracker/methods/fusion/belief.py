@@ -142,8 +142,8 @@ def carry_over(
     The parts are, in this order: the difference from the prior stays; it is another one; where
     ``parameters.leaves``, the object stays where it was; and, where the posture is strange or the
     body leaps, it goes on as it went. ``persistence_s`` is the time constant with which a
-    difference fades. Of a body that leaps a joint may be wrong: the last two are as likely then as
-    what it makes likely.
+    difference fades. Of a body that leaps a joint is likely wrong, and so the last two are likelier
+    than what it makes likely.
     """
     elapsed_s = (time_ns - before.time_ns) / 1e9
     was, now = before.expected.whole, expected.whole

@@ -50,7 +50,7 @@ class FusionParameters:
     frame: of a body that leaps farther, a joint is wrong."""
     leap_m_per_s: float = 3.0
     """Metres a second, beside those, by which what a body makes likely goes at the most."""
-    leap_doubt: float = 0.5
+    leap_doubt: float = 0.7
     """Probability that a body that leaps is wrong, and the object stays or goes on as it went."""
     forgetting_s: float = 0.3
     """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
