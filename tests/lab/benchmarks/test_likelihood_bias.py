@@ -4,7 +4,6 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 from inhand_lab.benchmarks.likelihood_bias import Bias, measure_bias
 from inhand_lab.benchmarks.parameters import DEFAULT_LIKELIHOOD_BIAS
@@ -23,12 +22,6 @@ def test_a_mug_that_returns_depth_is_found_to_a_millimetre_across_and_five_along
     assert mug.refined.across_mm < 1.0
     assert abs(mug.refined.along_mm) < 5.0
     assert abs(mug.terms["depth"].along_mm) < 5.0
-
-
-@pytest.mark.long
-def test_what_returns_no_depth_has_no_optimum_of_depth() -> None:
-    (phone,) = measure_bias(["answerPhone"], lambda: None, replace(FEW, poses=4))
-    assert np.isnan(phone.terms["depth"].along_mm)
 
 
 def test_across_is_how_far_it_lies_both_ways() -> None:
