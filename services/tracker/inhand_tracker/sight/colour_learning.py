@@ -41,13 +41,13 @@ def learn_colours(
     bins, measured = frame.bins[pixels], None if frame.depth is None else frame.depth[pixels]
     depths = silhouette_depths(shape, *pose, camera)
     object_rate, around_rate = rates
-    hidden = pixels_covered(measured, depths, parameters.aside_m)
-    shares = object_shares(shape, *pose, camera)
     if around_rate > 0.0:
         wide = cv2.dilate(np.isfinite(depths).astype(np.uint8), _WIDENED)
         around = histogram(bins, (1 - wide).astype(np.float32), parameters)
         colours = replace(colours, around=blend(colours.around, around, around_rate))
     if object_rate > 0.0:
+        hidden = pixels_covered(measured, depths, parameters.aside_m)
+        shares = object_shares(shape, *pose, camera)
         within = np.where(hidden, np.float32(0.0), shares)
         of_object = histogram(bins, _own(within), parameters)
         colours = replace(colours, of_object=blend(colours.of_object, of_object, object_rate))
@@ -66,13 +66,13 @@ def _own(shares: Singles) -> Singles:
 def _mixed(bins: Bins, shares: Singles, parameters: SightParameters) -> Singles | None:
     """Count colours of the outline, ``Colours.mixed`` (4096, 2), by the object's ``shares`` in
     pixels (H, W); None where the object has no pixel."""
-    mixed = (shares > 0.0) & (shares < 1.0)
-    parts = [
-        np.where(mixed, part, 0.0).astype(np.float32) for part in (shares, np.float32(1.0) - shares)
-    ]
-    histograms = [histogram(bins, part, parameters) for part in parts]
-    weights = [part.sum() / max(float(shares.sum()), 1.0) for part in parts]
+    mixed = ((shares > 0.0) & (shares < 1.0)).astype(np.float32)
+    of_object = mixed * shares
+    sides = of_object, mixed - of_object
+    whole = max(float(shares.sum()), 1.0)
     columns = [
-        weight * one for weight, one in zip(weights, histograms, strict=True) if one is not None
+        np.float32(side.sum() / whole) * one
+        for side in sides
+        if (one := histogram(bins, side, parameters)) is not None
     ]
     return np.stack(columns, axis=1) if len(columns) == 2 else None
