@@ -159,6 +159,12 @@ def test_where_nothing_runs_that_is_one_line(
     assert "no `inhand up` runs with" in capsys.readouterr().err
 
 
+def _on_its_terminal() -> None:
+    """What a child of a terminal does first; SIGHUP ends it, also where tests run without one."""
+    ioctl(0, termios.TIOCSCTTY, 0)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 def test_a_terminal_that_closes_ends_it_as_ever(rig: RunningRig) -> None:
     """SIGHUP is what a closed terminal sends too, and nobody would see what goes on."""
     _recorders(rig, a="first")
@@ -170,7 +176,7 @@ def test_a_terminal_that_closes_ends_it_as_ever(rig: RunningRig) -> None:
             stdout=output,
             stderr=output,
             start_new_session=True,
-            preexec_fn=lambda: ioctl(0, termios.TIOCSCTTY, 0),
+            preexec_fn=_on_its_terminal,
         )
     try:
         os.close(theirs)

@@ -86,6 +86,7 @@ def test_objects_of_measures_and_of_a_mesh_file_are_made_seen_and_saved(
         page.screenshot(path=str(tmp_path / "mug.png"))
 
         choose(page, "Kind", "box")
+        page.get_by_text("Depth, cm", exact=True).wait_for()  # the last of its measures
         fill(page, "Name", "tea")
         for measure in ("Height", "Width", "Depth"):
             fill(page, f"{measure}, cm", "10")
