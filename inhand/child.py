@@ -69,7 +69,7 @@ class Child:
                     self.command,
                     env={
                         **without_manager(os.environ),
-                        **self._heartbeats.environment(HANGS_AFTER_S),
+                        **self._heartbeats.environment(HANGS_AFTER_S / 10),
                         **self._environment(),
                     },
                     stdin=subprocess.DEVNULL,

@@ -9,7 +9,7 @@ import socket
 import struct
 from collections.abc import Mapping
 
-from inhand_runtime.service_manager import SOCKET, WATCHDOG_US
+from inhand_runtime.service_manager import BEATS, SOCKET, WATCHDOG_US
 
 LARGEST_BYTES = 4096
 CREDENTIALS = struct.Struct("3i")
@@ -27,10 +27,10 @@ class Heartbeats:
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
         self._socket.bind(b"")  # Linux finds a name
 
-    def environment(self, watchdog_s: float) -> Mapping[str, str]:
-        """Return the variables by which a child shows itself four times in ``watchdog_s``."""
+    def environment(self, every_s: float) -> Mapping[str, str]:
+        """Return the variables by which a child shows itself every so many seconds."""
         name = "@" + self._socket.getsockname()[1:].decode()
-        return {SOCKET: name, WATCHDOG_US: str(round(watchdog_s * 1e6))}
+        return {SOCKET: name, WATCHDOG_US: str(round(BEATS * every_s * 1e6))}
 
     def came_from(self, process: int) -> bool:
         """Whether a sign of life of a process has come since the last call; others' are nobody's,

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -57,7 +57,8 @@ def _frozen(service: str) -> Fault:
         try:
             yield
         finally:
-            process.resume()
+            with suppress(psutil.NoSuchProcess):  # who ended it is told as well
+                process.resume()
 
     return Fault(f"the {service} stands still for 8 s", inflict, lasts_s=8.0)
 
@@ -144,7 +145,7 @@ def _full_disk(rig: ChaosRig) -> Iterator[None]:
     try:
         yield
     finally:
-        if recorder.is_running():
+        with suppress(psutil.NoSuchProcess):
             recorder.rlimit(resource.RLIMIT_FSIZE, before)
 
 
