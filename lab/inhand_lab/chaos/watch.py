@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from inhand_runtime.inbox import Received
 from inhand_runtime.session import Session, Subscription, end_subscription, subscribe
-from inhand_schemas.errors import MessageError
+from inhand_schemas.errors import MessageError, UnknownVersionError
 from inhand_schemas.keys import Site
 from inhand_schemas.topics import POSE, SKELETONS, AnyTopic
 from inhand_tracker.geometry.arrays import Array
@@ -67,7 +67,7 @@ class Watch:
         def note(sample: Received) -> None:
             try:
                 message = topic.decode(sample.payload, sample.encoding)
-            except MessageError:
+            except (MessageError, UnknownVersionError):
                 return  # one of ours: a fault sends such
             with self._lock:
                 rows.append((message.time_ns / 1e9, sample.received_ns / 1e9))
