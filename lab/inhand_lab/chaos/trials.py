@@ -26,8 +26,9 @@ class Span:
 
 @dataclass(frozen=True)
 class Trial:
-    """What a fault did: how poses came back, of how many of the skeletons' frames no pose came,
-    what `inhand status` called wrong meanwhile, and which processes ended of it that should not."""
+    """What a fault did: how ``poses`` came back, when the skeletons that came were ``captured``
+    (N,), in seconds since the epoch, for how many of them no pose came, what `inhand status` called
+    wrong meanwhile, and which processes ended of it that should not."""
 
     name: str
     span: Span

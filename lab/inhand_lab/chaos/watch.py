@@ -88,15 +88,6 @@ class Recovery:
     back_s: float | None
     normal_s: float | None
 
-    def promised(self, parameters: ChaosParameters = DEFAULT_CHAOS) -> bool:
-        """Whether it came back as soon as is promised."""
-        return (
-            self.back_s is not None
-            and self.back_s <= parameters.back_within_s
-            and self.normal_s is not None
-            and self.normal_s <= parameters.age_normal_within_s
-        )
-
 
 def recovery_of(
     arrivals: Arrivals,
