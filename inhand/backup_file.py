@@ -7,7 +7,6 @@ in its order. Nothing else is taken for a backup.
 import gzip
 import hashlib
 import io
-import os
 import tarfile
 import time
 import zlib
@@ -19,6 +18,7 @@ from typing import IO
 
 import msgspec
 from inhand_runtime.errors import InhandError
+from inhand_runtime.private_file import PRIVATE_FILE, new_private_file
 from inhand_schemas.fields import Count
 from msgspec import Struct
 
@@ -26,7 +26,6 @@ FORMAT = 1
 MANIFEST = "manifest.json"
 LARGEST_MANIFEST = 64 << 20
 PIECE_BYTES = 1 << 20
-PRIVATE = 0o600
 SETTINGS, ELSEWHERE = "settings", "elsewhere"
 """Where in the archive: what stood in the folder of the settings, and what stood outside of it."""
 
@@ -96,11 +95,8 @@ def write_backup(path: Path, manifest: Manifest, source_of: Callable[[str], Path
     ``source_of`` says where a place of the archive is now; a file that changes while it is copied
     is none that can be restored, and refused.
     """
-    unfinished = path.with_name(f".{path.name}.unfinished")
     try:
-        unfinished.unlink(missing_ok=True)
-        descriptor = os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL, PRIVATE)
-        with os.fdopen(descriptor, "wb") as file:
+        with new_private_file(path) as file:
             with tarfile.open(fileobj=file, mode="w:gz") as archive:
                 data = msgspec.json.format(msgspec.json.encode(manifest))
                 archive.addfile(_entry(MANIFEST, len(data)), io.BytesIO(data))
@@ -108,15 +104,11 @@ def write_backup(path: Path, manifest: Manifest, source_of: Callable[[str], Path
                     with source_of(one.place).open("rb") as source:
                         archive.addfile(_entry(one.place, one.size), source)
             file.flush()
-            os.fsync(file.fileno())
-        _require_whole(unfinished)
-        unfinished.replace(path)
+            _require_whole(Path(file.name))
     except OSError as error:
         raise InhandError(
             f"cannot write {path}: {error.strerror or error}; nothing was written"
         ) from None
-    finally:
-        unfinished.unlink(missing_ok=True)
 
 
 def _require_whole(path: Path) -> None:
@@ -239,7 +231,7 @@ def _require_plain(place: str, path: Path) -> None:
 
 def _entry(name: str, size: int) -> tarfile.TarInfo:
     entry = tarfile.TarInfo(name)
-    entry.size, entry.mtime, entry.mode = size, int(time.time()), PRIVATE
+    entry.size, entry.mtime, entry.mode = size, int(time.time()), PRIVATE_FILE
     return entry
 
 

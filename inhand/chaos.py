@@ -25,9 +25,6 @@ from inhand.looking import output
 from inhand.progress import progress_bar
 from inhand.results import listing, write_json
 
-MOST_LOST_BEFORE_S = 1.0
-"""Seconds of what was captured before a fault that may be in no recording."""
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's arguments."""
@@ -108,7 +105,7 @@ def _broken(trial: Trial, kept: Unrecorded) -> list[str]:
         lines.append(f"poses were back after {_seconds(poses.back_s)}")
     if poses.normal_s is None or poses.normal_s > promised.age_normal_within_s:
         lines.append(f"poses were as old as usual after {_seconds(poses.normal_s)}")
-    if kept.before_s > MOST_LOST_BEFORE_S:
+    if kept.before_s > promised.unrecorded_before_s:
         lines.append(f"of the {kept.before_s:.1f} s before, something was not recorded")
     return lines
 

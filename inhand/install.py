@@ -15,8 +15,8 @@ from inhand.deployment import deployed_files, program
 from inhand.installation import Installation
 
 SYSTEM = Path("/")
-HOMES = ("/home/", "/root/", "/tmp/")
-"""Where units may not look, nor run a program."""
+UNSEEN = ("home", "root", "tmp")
+"""Folders of the system's root into which units may not look, nor run a program there."""
 AFTERWARDS = """\
 Then, once:   systemd-sysusers && systemd-tmpfiles --create
               udevadm control --reload-rules && udevadm trigger
@@ -55,7 +55,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _install(root: Path) -> int:
     command = program()
-    if root == SYSTEM and command.startswith(HOMES):
+    if root == SYSTEM and Path(command).parts[1] in UNSEEN:
         raise SettingsError(
             f"units may not look into homes, where this Inhand is ({command}): install it "
             "elsewhere, as by `python3 -m venv /opt/inhand`"

@@ -7,6 +7,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from inhand_runtime.private_file import sync_folder
+
 from inhand.backup_file import PIECE_BYTES, Content, Stored
 
 
@@ -71,11 +73,7 @@ class Placement:
             staged.replace(path)
             self._placed.append(path)
         for folder in {path.parent for path in self._placed}:
-            descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-            try:
-                os.fsync(descriptor)
-            finally:
-                os.close(descriptor)
+            sync_folder(folder)
         self._done = True
         for former, _ in self._former:
             former.unlink()

@@ -16,6 +16,7 @@ from typing import Any
 
 from inhand_runtime.errors import InhandError
 from inhand_runtime.exit_codes import DONE
+from inhand_runtime.private_file import PRIVATE_FILE, new_private_file
 from inhand_runtime.settings import RigFile, load_rig_file
 from inhand_runtime.settings_environment import with_environment
 from inhand_runtime.settings_file import read_values
@@ -23,8 +24,6 @@ from inhand_runtime.settings_file import read_values
 from inhand.host_facts import journal, system, versions
 from inhand.shown_settings import Shown
 from inhand.status import look_at_site
-
-PRIVATE = 0o600
 
 
 @dataclass(frozen=True)
@@ -119,20 +118,12 @@ def _cleaned(value: Any, shown: Shown) -> Any:
 
 def _write(path: Path, folder: str, parts: list[Part]) -> None:
     """Write the bundle whole or not at all, for its owner alone; raises InhandError."""
-    unfinished = path.with_name(f".{path.name}.unfinished")
     try:
-        unfinished.unlink(missing_ok=True)
-        descriptor = os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL, PRIVATE)
-        with (
-            os.fdopen(descriptor, "wb") as file,
-            tarfile.open(fileobj=file, mode="w:gz") as archive,
-        ):
+        with new_private_file(path) as file, tarfile.open(fileobj=file, mode="w:gz") as archive:
             for part in parts:
                 data = part.text.encode()
                 entry = tarfile.TarInfo(f"{folder}/{part.name}")
-                entry.size, entry.mtime, entry.mode = len(data), int(time.time()), PRIVATE
+                entry.size, entry.mtime, entry.mode = len(data), int(time.time()), PRIVATE_FILE
                 archive.addfile(entry, io.BytesIO(data))
-        unfinished.replace(path)
     except OSError as error:
-        unfinished.unlink(missing_ok=True)
         raise InhandError(f"cannot write {path}: {error.strerror}; choose another file") from None

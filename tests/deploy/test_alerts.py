@@ -7,8 +7,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from examples import RUNNING
 from inhand_runtime.roll import Roll
-from inhand_schemas.messages import Health, Latency, TopicHealth
+from inhand_schemas.messages import Latency, TopicHealth
+from msgspec.structs import replace
 from prometheus_client import CollectorRegistry, generate_latest
 from running_rig import ROOT
 
@@ -22,14 +24,8 @@ PROMTOOL = shutil.which("promtool")
 needs_promtool = pytest.mark.skipif(
     PROMTOOL is None and "PROMTOOL_REQUIRED" not in os.environ, reason="there is no promtool"
 )
-HEALTH = Health(
-    sequence=0,
-    time_ns=1,
-    service="tracker",
-    instance="mug",
-    state="running",
-    uptime_s=1.0,
-    resident_bytes=1,
+HEALTH = replace(
+    RUNNING,
     effort=1.0,
     shutter_closed=False,
     latency_ms=Latency(p50=1.0, p99=2.0),

@@ -1,8 +1,10 @@
 """What ``inhand status`` says of instances that are well but behind."""
 
+from examples import RUNNING
 from inhand_runtime.health_lines import LATE_MS, MOST_KEYS, late_lines, left_unused
 from inhand_runtime.roll import Heard
-from inhand_schemas.messages import Health, TopicHealth
+from inhand_schemas.messages import TopicHealth
+from msgspec.structs import replace
 
 KEY = "inhand/@v1/rig/rgbd/front"
 
@@ -11,18 +13,8 @@ Living = dict[tuple[str, str], Heard | None]
 
 
 def living(topics: dict[str, TopicHealth], effort: float | None = None) -> Living:
-    health = Health(
-        sequence=0,
-        time_ns=1,
-        service="tracker",
-        instance="mug",
-        state="running",
-        uptime_s=1.0,
-        resident_bytes=1,
-        topics=topics,
-        effort=effort,
-    )
-    return {("tracker", "mug"): Heard(health, 0.0, 1), ("recorder", "disk"): None}
+    health = replace(RUNNING, topics=topics, effort=effort)
+    return {("tracker", "mug"): Heard(health, 0.0), ("recorder", "disk"): None}
 
 
 def said(late_ms: float | None, effort: float | None) -> list[str]:

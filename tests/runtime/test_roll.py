@@ -1,18 +1,11 @@
 """Who of a rig lives, as somebody sees it who looks for long."""
 
+from examples import RUNNING
 from inhand_runtime.roll import SILENT_AFTER_S, Roll
-from inhand_schemas.messages import Health
+from msgspec.structs import replace
 
 CAMERA = ("capture", "front")
-HEALTH = Health(
-    sequence=0,
-    time_ns=1,
-    service="capture",
-    instance="front",
-    state="running",
-    uptime_s=1.0,
-    resident_bytes=1,
-)
+HEALTH = replace(RUNNING, service="capture", instance="front")
 
 
 def test_one_that_is_started_again_is_not_said_to_hang_by_what_it_said_before() -> None:

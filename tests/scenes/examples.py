@@ -30,6 +30,17 @@ PERSON = Person(
     confidences=(0.0, 0.5, *[1.0] * 18),
 )
 
+RUNNING = Health(
+    sequence=0,
+    time_ns=1,
+    service="tracker",
+    instance="mug",
+    state="running",
+    uptime_s=1.0,
+    resident_bytes=1,
+)
+"""What an instance says of itself that has nothing to tell."""
+
 EXAMPLES: tuple[Message, ...] = (
     CameraInfo(
         sequence=1,

@@ -84,7 +84,7 @@ def _malformed(rig: ChaosRig) -> AbstractContextManager[None]:
 
     keys = itertools.cycle(_keys(rig))
     chosen = zip(keys, payloads(), range(DEFAULT_CHAOS.flood_messages), strict=False)
-    return _flooded(rig, ((*_as_sent(key, data),) for key, data, _ in chosen))
+    return _flooded(rig, (_as_sent(key, data) for key, data, _ in chosen))
 
 
 def _huge(rig: ChaosRig) -> AbstractContextManager[None]:
@@ -182,12 +182,18 @@ def _as_sent(key: str, payload: bytes) -> Sent:
     return key, payload, TOPICS[parse_key(key).stream].encoding
 
 
+_FLOOD = f"{DEFAULT_CHAOS.flood_messages:,}"
+
 FAULTS: dict[str, Fault] = {
     **{f"kill-{service}": _killed(service) for service in SERVICES},
     **{f"freeze-{service}": _frozen(service) for service in SERVICES},
-    "malformed": Fault("20,000 malformed messages on all streams", _malformed),
-    "huge": Fault("three messages of 32 MiB on each stream", _huge),
-    "other-releases": Fault("20,000 messages of former and later releases", _of_other_releases),
+    "malformed": Fault(f"{_FLOOD} malformed messages on all streams", _malformed),
+    "huge": Fault(
+        f"{DEFAULT_CHAOS.huge_messages} messages of {DEFAULT_CHAOS.huge_bytes >> 20} MiB on each "
+        "stream",
+        _huge,
+    ),
+    "other-releases": Fault(f"{_FLOOD} messages of former and later releases", _of_other_releases),
     "stuck-reader": Fault("a reader of everything stands still for 10 s", _stuck_reader, 10.0),
     "twin": Fault("a second tracker of the same name starts", _twin, 6.0),
     "full-disk": Fault("the recorder can write nothing for 8 s", _full_disk, 8.0),

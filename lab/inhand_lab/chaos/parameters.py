@@ -23,6 +23,8 @@ class ChaosParameters:
     """Times the usual median age that the poses of a second may be old and still be normal."""
     usual_age_more_ms: float = 10.0
     """Milliseconds that they may be older still, as machines are shared."""
+    unrecorded_before_s: float = 1.0
+    """Seconds of what was captured before a fault that may be in no recording."""
     window_s: float = 1.0
     """Seconds over which a median age is taken."""
     flood_messages: int = 20_000

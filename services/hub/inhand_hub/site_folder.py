@@ -8,7 +8,6 @@ as it is after.
 
 import contextlib
 import ipaddress
-import os
 import re
 import secrets
 import shutil
@@ -17,6 +16,7 @@ from pathlib import Path
 
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.locked_folder import locked_folder
+from inhand_runtime.private_file import new_private_file, sync_folder
 
 from inhand_hub.access import Member, RoleName
 from inhand_hub.certificates import (
@@ -46,7 +46,7 @@ HUB = "hub"
 """The hub's folder, and the name that is therefore no member's."""
 LONGEST_COMMON_NAME = 64
 """Characters that X.509 allows."""
-PRIVATE_FILE, PRIVATE_FOLDER = 0o600, 0o700
+PRIVATE_FOLDER = 0o700
 
 _HOST_NAME = re.compile(r"(?!-)[a-z0-9-]{1,63}(?<!-)(\.(?!-)[a-z0-9-]{1,63}(?<!-))*", re.IGNORECASE)
 
@@ -213,30 +213,15 @@ def _new_folder(path: Path, *, replace: bool) -> Iterator[Path]:
         if replace and path.exists():
             shutil.rmtree(path)
         unfinished.rename(path)
-        _sync_folder(path.absolute().parent)
+        sync_folder(path.absolute().parent)
     finally:
         shutil.rmtree(unfinished, ignore_errors=True)
 
 
 def _write_file(path: Path, data: bytes) -> None:
     """Write a file that only its owner reads, whole or not at all."""
-    unfinished = path.with_name(f".{path.name}.unfinished")
-    unfinished.unlink(missing_ok=True)
-    descriptor = os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL, PRIVATE_FILE)
-    with os.fdopen(descriptor, "wb") as file:
+    with new_private_file(path) as file:
         file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-    unfinished.replace(path)
-    _sync_folder(path.parent)
-
-
-def _sync_folder(folder: Path) -> None:
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 def _failure(error: OSError, path: Path) -> InhandError:

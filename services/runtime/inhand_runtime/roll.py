@@ -20,11 +20,10 @@ MOST_PROBLEMS_OF_ONE = 16
 
 @dataclass(frozen=True)
 class Heard:
-    """An instance's last words, when they came (monotonic seconds), and how many came so far."""
+    """An instance's last words, and when they came (monotonic seconds)."""
 
     health: Health
     at: float
-    reports: int
 
 
 class Roll:
@@ -58,9 +57,7 @@ class Roll:
         """Take note of a health message."""
         instance = (health.service, health.instance)
         with self._lock:
-            before = self._heard.get(instance)
-            reports = 1 if before is None else before.reports + 1
-            self._heard[instance] = Heard(health, self._now(), reports)
+            self._heard[instance] = Heard(health, self._now())
 
     def living(self) -> dict[Instance, Heard | None]:
         """The live instances by name, with None for one that said nothing yet."""

@@ -55,37 +55,28 @@ def test_nothing_passes_a_cut_link_and_everything_comes_once_it_is_mended(
     assert received(far, 4) == b"held"
 
 
-def test_bytes_are_under_way_as_long_as_the_link_is_late(
+@pytest.mark.parametrize(
+    ("condition", "count", "least_s"),
+    [
+        (Condition(delay_s=0.25), 4, 0.25),
+        (Condition(bytes_per_s=100_000.0), 50_000, 0.5),
+        (Condition(lost=1.0), 5, 0.3),
+    ],
+    ids=["late", "slow", "lossy"],
+)
+def test_bytes_take_as_long_as_the_link_s_condition_says(
     ends: tuple[Link, socket.socket, socket.socket],
+    condition: Condition,
+    count: int,
+    least_s: float,
 ) -> None:
     link, near, far = ends
-    with link.being(Condition(delay_s=0.25)):
+    sent = bytes(number % 251 for number in range(count))
+    with link.being(condition):
         begin = time.monotonic()
-        near.sendall(b"late")
-        assert received(far, 4) == b"late"
-        assert time.monotonic() - begin >= 0.25
-
-
-def test_a_slow_link_passes_so_many_bytes_a_second(
-    ends: tuple[Link, socket.socket, socket.socket],
-) -> None:
-    link, near, far = ends
-    with link.being(Condition(bytes_per_s=100_000.0)):
-        begin = time.monotonic()
-        near.sendall(bytes(50_000))
-        received(far, 50_000)
-        assert time.monotonic() - begin >= 0.5
-
-
-def test_what_is_lost_on_a_link_comes_a_retransmission_later(
-    ends: tuple[Link, socket.socket, socket.socket],
-) -> None:
-    link, near, far = ends
-    with link.being(Condition(lost=1.0)):
-        begin = time.monotonic()
-        near.sendall(b"again")
-        assert received(far, 5) == b"again"
-        assert time.monotonic() - begin >= 0.3
+        near.sendall(sent)
+        assert received(far, count) == sent
+        assert time.monotonic() - begin >= least_s
 
 
 def test_the_end_of_a_connection_reaches_the_other_end(
