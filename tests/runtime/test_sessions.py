@@ -4,6 +4,7 @@ import os
 import signal
 import socket
 import time
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -175,15 +176,21 @@ def test_a_reader_that_is_stopped_holds_nobody_up(
             publisher.put(_message(topic, number))
             time.sleep(max(0.0, begin + number / 60.0 - time.monotonic()))
         took = time.monotonic() - begin
-        wanted = set(range(1, STOPPED_MESSAGES + 1))
-        eventually(
-            "all messages", lambda: wanted <= {topic.decode(one.payload).sequence for one in heard}
-        )
+        most_left_out = FRAMES_LEFT_OUT if topic is RGBD else 0
+
+        def goes_on() -> bool:
+            numbers = {topic.decode(one.payload).sequence for one in heard}
+            steps = sorted({0, *numbers, STOPPED_MESSAGES + 1})
+            return max(after - one - 1 for one, after in pairwise(steps)) <= most_left_out
+
+        eventually("all messages", goes_on)
     stopped.popen.send_signal(signal.SIGCONT)
     assert took < STOPPED_MESSAGES / 60.0 + 2.0  # a reader once held them for 5 s
 
 
 STOPPED_MESSAGES = 420
+FRAMES_LEFT_OUT = 60
+"""Frames in a row, a second of them, that a busy machine may drop before a reader that runs."""
 
 
 def _message(topic: AnyTopic, number: int) -> Any:
