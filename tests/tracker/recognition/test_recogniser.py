@@ -77,6 +77,18 @@ def test_a_look_counts_at_once_and_over_time() -> None:
     assert against[0] < 0.01 < 0.5 < run(FIRST, [3.0, 0.0, 0.0])[0]
 
 
+def test_what_looks_like_an_object_for_ever_is_none_while_nobody_moves_as_with_it() -> None:
+    recogniser = MovementRecogniser(CLASSES, 0.1)
+    looks = np.array([0.0, 3.0, 0.0])
+    with_nothing, as_with_it = body(0.5 * SECOND), body(SECOND)
+    for frame in range(300):
+        idle = recogniser.step(frame * FRAME_NS, with_nothing, looks)
+    for frame in range(300, 330):
+        used = recogniser.step(frame * FRAME_NS, as_with_it, looks)
+    assert recognised_action(idle[:-1]) is None
+    assert recognised_action(used[:-1]) == 1
+
+
 def test_who_comes_next_starts_without_a_history() -> None:
     recogniser = MovementRecogniser(CLASSES, 0.4)
     first = recogniser.step(0, body(FIRST)).copy()

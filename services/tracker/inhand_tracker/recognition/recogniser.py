@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from inhand_tracker.body.reader import Body
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.recognition.arm_courses import CourseFollower
@@ -70,13 +68,20 @@ class MovementRecogniser:
         """Give the probabilities (K + 1,) of the actions and, last, of none or an unknown one.
 
         ``seen`` (K + 1,) is the log evidence of the last looks at images, None where there is
-        none. It counts over time, as any other evidence, and at once.
+        none. It counts over time, as any other evidence, and at once: and so does then what the
+        movement says now, so that what only looks like an object is none.
         """
-        evidence = self._movement_evidence(time_ns, body, seeing=seen is not None)
+        self.remember(time_ns, body)
+        home, movement = self._movement_evidence(seeing=seen is not None)
+        evidence = home * movement
+        if self._arms is not None and home < 1.0:
+            # All of it is new: scores have added up what goes before.
+            evidence = evidence + (1.0 - home) * self._arms.evidence() / self._temper
         if seen is None:
             return self._filter.step(time_ns, evidence)
         over_time = self._filter.step(time_ns, evidence + seen)
-        return reweighted(over_time, self._parameters.looks_at_once * seen)
+        rest = (1.0 - self._temper) * home * movement
+        return reweighted(over_time, rest + self._parameters.looks_at_once * seen)
 
     def remember(self, time_ns: int, body: Body) -> None:
         """Take a frame in which nothing is to be recognised; the movement counts later."""
@@ -84,15 +89,12 @@ class MovementRecogniser:
         if self._arms is not None:
             self._arms.add(time_ns, body.pose)
 
-    def _movement_evidence(self, time_ns: int, body: Body, *, seeing: bool) -> Array:
-        """Log evidence (K + 1,): by the arms as far as the body is unlike the learned ones."""
-        self.remember(time_ns, body)
+    def _movement_evidence(self, *, seeing: bool) -> tuple[float, Array]:
+        """How far the body is like the learned ones, 1 to 0, and the log evidence (K + 1,) of its
+        movement; it counts in full where nothing was learned of arms."""
         features = self._window.features()[None]
         doubts = self._classes.doubts(features, seeing=seeing, parameters=self._parameters)
         evidence = (self._classes.evidence(features, self._parameters) + doubts)[0]
-        home = self._classes.at_home(features, self._parameters)[0]
-        if self._arms is None or home == 1.0:
-            return evidence
-        # All of it is new: scores have added up what goes before.
-        of_arms = self._arms.evidence() / self._temper
-        return np.asarray(home * evidence + (1.0 - home) * of_arms)
+        if self._arms is None:
+            return 1.0, evidence
+        return float(self._classes.at_home(features, self._parameters)[0]), evidence
