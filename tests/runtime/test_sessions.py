@@ -55,6 +55,18 @@ def test_peers_find_a_new_one_after_the_first_was_killed(rig: RunningRig) -> Non
         peer.said("knows 2\nknows 1\nknows 2")
 
 
+def test_two_peers_whose_link_breaks_find_each_other_again(rig: RunningRig) -> None:
+    first = rig.python(PEER, rig.meeting)
+    first.said("knows 0")
+    others = [rig.python(PEER, rig.meeting) for _ in range(2)]
+    for peer in (first, *others):
+        peer.said("knows 2")
+    others[0].popen.send_signal(signal.SIGUSR1)
+    for peer in others:
+        peer.said("knows 2\nknows 1\nknows 2")
+    assert first.stdout.endswith("knows 2\n")
+
+
 def test_a_foreign_program_at_the_meeting_address_delays_nobody_for_long() -> None:
     with socket.create_server(("127.0.0.1", 0)) as foreign:
         begin = time.monotonic()

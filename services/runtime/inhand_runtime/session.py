@@ -2,11 +2,13 @@
 
 Peers meet without multicast: the first process of a rig takes the meeting address and the later
 ones connect to it; gossip then connects each to all. When the one that holds the address goes
-away, the next process that starts takes it and the others find it by retrying.
+away, the next process that starts takes it and the others find it by retrying. Peers that lose each
+other are brought together again (see ``reconnection``).
 """
 
 import contextlib
 import json
+import secrets
 import time
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Generic, TypeVar
@@ -21,6 +23,7 @@ from inhand_schemas.topics import Delivery, Topic
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.hub_access import require_usable, why_closed
 from inhand_runtime.inbox import Received
+from inhand_runtime.reconnection import Links, Reconnection
 from inhand_runtime.settings import ZenohSettings
 
 T = TypeVar("T", bound=Message)
@@ -40,6 +43,12 @@ CLIENT_TIMEOUT_MS = 3_000
 HANDSHAKE_TIMEOUT_MS = 1_500
 FOR_EVER_MS = -1
 LIVELINESS_TIMEOUT_S = 0.5
+LEASE_MS = 10_000
+"""Milliseconds without a sign of life after which a link is closed, whatever waits for it: a process
+that stands still for less loses none."""
+SIGNS_IN_A_LEASE = 10
+GO_BETWEEN = "60be"
+"""The first digits of the id of a session that only brings others together."""
 LONGEST_QUEUE = 16
 """Batches of 64 KiB that may wait for a link: some frames, or bursts of small messages, which share
 batches, so that a busy moment drops none."""
@@ -59,8 +68,11 @@ _CONGESTION = {
 def open_session(settings: ZenohSettings) -> Iterator[Session]:
     """A session that is closed at the end; raises SettingsError or InhandError within seconds."""
     zenoh.init_log_from_env_or("off")
-    session = _open_client(settings) if settings.mode == "client" else _open_peer(settings)
-    with session:
+    if settings.mode == "client":
+        with _open_client(settings) as session:
+            yield session
+        return
+    with _open_peer(settings) as session, _reconnected(session, settings):
         yield session
 
 
@@ -88,6 +100,36 @@ def _open_peer(settings: ZenohSettings) -> Session:
             f"cannot listen on {', '.join(listen)}: the port is in use, or the address is not "
             f"of this machine; change zenoh.{setting}"
         ) from None
+
+
+@contextlib.contextmanager
+def _reconnected(session: Session, settings: ZenohSettings) -> Iterator[None]:
+    """Connect a peer again with those whose link was closed, until the block ends."""
+    reconnection = Reconnection(lambda: _links(session), lambda: _go_between(settings))
+
+    def note(event: zenoh.TransportEvent) -> None:
+        peer = str(event.transport.zid)
+        if event.kind == zenoh.SampleKind.DELETE and not peer.startswith(GO_BETWEEN):
+            reconnection.lose(peer)
+
+    with session.info.declare_transport_events_listener(note), reconnection.running():
+        yield
+
+
+@contextlib.contextmanager
+def _go_between(settings: ZenohSettings) -> Iterator[Callable[[], Links]]:
+    config = _config(settings, listen=(), connect=(settings.meeting, *settings.connect))
+    config.insert_json5("id", json.dumps(GO_BETWEEN + secrets.token_hex(14)))
+    config.insert_json5("open/return_conditions/connect_scouted", "false")
+    with zenoh.open(config) as session:
+        yield lambda: _links(session)
+
+
+def _links(session: Session) -> Links:
+    info = session.info
+    others = frozenset(str(other) for other in (*info.peers_zid(), *info.routers_zid()))
+    go_betweens = frozenset(one for one in others if one.startswith(GO_BETWEEN))
+    return Links(others - go_betweens, go_betweens)
 
 
 def _any_port(endpoint: str) -> str:
@@ -123,6 +165,9 @@ def zenoh_config(values: Mapping[str, Any]) -> zenoh.Config:
     shared: dict[str, Any] = {
         "transport/unicast/open_timeout": HANDSHAKE_TIMEOUT_MS,
         "scouting/multicast/enabled": False,
+        "transport/link/tx/lease": LEASE_MS,
+        "transport/link/tx/keep_alive": SIGNS_IN_A_LEASE,
+        "transport/link/tx/queue/congestion_control/block/wait_before_close": 1000 * LEASE_MS,
         "transport/link/tx/queue/size/data": LONGEST_QUEUE,
         "transport/link/tx/queue/size/data_low": LONGEST_QUEUE,
         "transport/link/tx/queue/size/real_time": LONGEST_QUEUE,
@@ -246,8 +291,7 @@ def session_id(session: Session) -> str:
 
 def connected(session: Session) -> frozenset[str]:
     """The sessions of the processes that are connected now."""
-    info = session.info
-    return frozenset(str(other) for other in (*info.peers_zid(), *info.routers_zid()))
+    return _links(session).peers
 
 
 def tokens(session: Session, pattern: str) -> set[str]:
