@@ -3,7 +3,7 @@
 import contextlib
 import logging
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
@@ -51,19 +51,19 @@ READER_SETTLES_S = 0.25
 
 def run(settings: Settings[CaptureSettings]) -> None:
     """Publish until the source ends or a signal comes; raises SettingsError or InhandError."""
-    chosen, options = settings.service, check(settings)
+    chosen, prepared = settings.service, cache(partial(_prepare, settings))
     if chosen.masks or chosen.mask_faces:
         forbid_core_dumps()
-    network = _network(chosen)
-    faces = _face_finder(chosen, network)
     changed: dict[str, Any] = {}
 
     def open_source() -> Source:
+        options, _, faces = prepared()
         source = source_factory(chosen.source)({**options, **changed})
         return viewed(source, chosen.rotate, chosen.masks, faces)
 
     shutter = kept_shutter(settings.site, settings.instance)
-    with running_daemon("capture", settings) as daemon:
+    with running_daemon("capture", settings, prepare=prepared) as daemon:
+        _, network, _ = prepared()
         watched = WatchedSource(chosen.source, daemon.health)
         _offer_shutter(daemon, shutter)
         _offer_controls(daemon, watched, changed)
@@ -72,6 +72,15 @@ def run(settings: Settings[CaptureSettings]) -> None:
                 _publish(daemon, chosen, open_source, stage, shutter, watched)
         except SourceError as error:
             raise InhandError(f"source {chosen.source}: {error}") from error
+
+
+def _prepare(
+    settings: Settings[CaptureSettings],
+) -> "tuple[Mapping[str, Any], PoseNetwork | None, FaceFinder | None]":
+    """Check the settings, and return the source's options and what looks at its pictures."""
+    options, chosen = check(settings), settings.service
+    network = _network(chosen)
+    return options, network, _face_finder(chosen, network)
 
 
 def _offer_shutter(daemon: Daemon, shutter: Shutter) -> None:

@@ -11,7 +11,8 @@ Two that could not reach each other for so long are both up when they meet, and 
 import contextlib
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import Site, parse_claim
@@ -67,18 +68,26 @@ class Elders:
 
 @contextlib.contextmanager
 def claimed_name(
-    session: Session, site: Site, service: str, instance: str, stop: threading.Event
+    session: Session,
+    site: Site,
+    service: str,
+    instance: str,
+    stop: threading.Event,
+    meanwhile: Callable[[], object],
 ) -> Iterator[Elders]:
     """Hold the name of an instance, and announce it, until the block ends.
 
-    Raises InhandError when another has it. It takes half a second, and 1.5 s for the first process
-    of a rig; ``stop`` ends the wait.
+    Raises InhandError when another has it, or what ``meanwhile`` raises. It takes half a second,
+    and 1.5 s for the first process of a rig, in which ``meanwhile`` works; ``stop`` ends the wait.
     """
     claim = f"{time.time_ns():020d}_{session_id(session)}"
     elders = Elders(claim)
     with contextlib.ExitStack() as held:
         with shown(session, site.claim_key(service, instance, STARTING, claim)):
-            if not _is_free(session, site, service, instance, claim, stop):
+            with ThreadPoolExecutor(1, "claim") as executor:
+                free = executor.submit(_is_free, session, site, service, instance, claim, stop)
+                meanwhile()
+            if not free.result():
                 raise InhandError(
                     f"{service} {instance} runs already in rig {site.rig!r} of realm "
                     f"{site.realm!r}: stop it first, or give this one another name"

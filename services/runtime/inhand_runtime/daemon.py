@@ -200,15 +200,23 @@ class Daemon:
         return message
 
 
+def _nothing() -> None:
+    """A service that needs nothing."""
+
+
 @contextlib.contextmanager
 def running_daemon(
     service: str,
     settings: Settings[Section],
     router: contextlib.AbstractContextManager[Session] | None = None,
+    *,
+    prepare: Callable[[], object] = _nothing,
 ) -> Iterator[Daemon]:
     """Open the session, announce the instance, and publish its health until the block ends.
 
     ``router`` opens the session of a hub, which is reached by others and looks for nobody.
+    ``prepare`` does what a service needs before it is announced, while its name is claimed; what it
+    raises ends the start.
 
     SIGTERM or SIGINT sets ``daemon.stop``; a second one ends the process at once. Raises
     SettingsError or InhandError when the session cannot be opened, and InhandError when an
@@ -222,7 +230,7 @@ def running_daemon(
         site, instance = settings.site, settings.instance
         if router is None and settings.zenoh.credentials is not None:
             require_known(session, settings, service, stop)
-        with claimed_name(session, site, service, instance, stop) as elders:
+        with claimed_name(session, site, service, instance, stop, prepare) as elders:
             daemon = Daemon(session, site, service, instance, stop)
             looks_for = settings.zenoh if router is None else None
             with _publishing_health(daemon, elders, looks_for):

@@ -44,9 +44,10 @@ HANDSHAKE_TIMEOUT_MS = 1_500
 FOR_EVER_MS = -1
 LIVELINESS_TIMEOUT_S = 0.5
 LEASE_MS = 10_000
-"""Milliseconds without a sign of life after which a link is closed, whatever waits for it: a process
-that stands still for less loses none."""
+"""Milliseconds without a sign of life after which a link is closed, whatever waits for it: a
+process that stands still for less loses none."""
 SIGNS_IN_A_LEASE = 10
+"""Number of signs of life that are sent in that time."""
 GO_BETWEEN = "60be"
 """The first digits of the id of a session that only brings others together."""
 LONGEST_QUEUE = 16

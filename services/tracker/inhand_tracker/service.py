@@ -3,6 +3,7 @@
 import logging
 import time
 from collections.abc import Callable, Sequence
+from functools import cache, partial
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
@@ -263,10 +264,10 @@ class TrackerService:
 
 
 def run(settings: Settings[TrackerSettings]) -> None:
-    """Run until a signal; raises SettingsError before anything starts."""
-    chosen = settings.service
-    first = check(settings)
-    with running_daemon("tracker", settings) as daemon:
+    """Run until a signal; raises SettingsError before anything is tracked."""
+    chosen, checked = settings.service, cache(partial(check, settings))
+    with running_daemon("tracker", settings, prepare=checked) as daemon:
+        first = checked()
         log.info("tracking %s with %s", ", ".join(first.names), chosen.method)
         service = TrackerService(daemon, chosen, _watchers(settings, first))
         daemon.answer(HYPOTHESES, service.desk.ask)
