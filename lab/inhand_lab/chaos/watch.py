@@ -13,16 +13,19 @@ from inhand_schemas.keys import Site
 from inhand_schemas.topics import POSE, SKELETONS, AnyTopic
 from inhand_tracker.geometry.arrays import Array
 
+from inhand_lab.chaos.host import HostClock
 from inhand_lab.chaos.parameters import DEFAULT_CHAOS, ChaosParameters
 
 
 @dataclass(frozen=True)
 class Arrivals:
     """Messages of a stream in the order in which they came: when they were ``captured`` (N,) and
-    when they ``came`` (N,), both in seconds since the epoch."""
+    when they ``came`` (N,), both in seconds since the epoch by this machine's clock, and the
+    ``stamps`` (N,) that they bear, in seconds by the rig's."""
 
     captured: Array
     came: Array
+    stamps: Array
 
     @property
     def ages(self) -> Array:
@@ -32,13 +35,14 @@ class Arrivals:
     def between(self, start: float, end: float) -> "Arrivals":
         """Those that came in a span of time."""
         chosen = (self.came >= start) & (self.came < end)
-        return Arrivals(self.captured[chosen], self.came[chosen])
+        return Arrivals(self.captured[chosen], self.came[chosen], self.stamps[chosen])
 
 
 class Watch:
     """Takes note of each skeleton and each pose of a rig as it comes."""
 
-    def __init__(self) -> None:
+    def __init__(self, clock: HostClock) -> None:
+        self._clock = clock
         self._lock = threading.Lock()
         self._rows: dict[str, list[tuple[float, float]]] = {
             SKELETONS.stream: [],
@@ -59,7 +63,8 @@ class Watch:
         """All that came of a topic so far."""
         with self._lock:
             rows = np.array(self._rows[topic.stream]).reshape(-1, 2)
-        return Arrivals(rows[:, 0], rows[:, 1])
+        stamps, came = rows.T
+        return Arrivals(self._clock.true_times(stamps, came), came, stamps)
 
     def _subscribe(self, session: Session, site: Site, topic: AnyTopic) -> Subscription:
         rows = self._rows[topic.stream]

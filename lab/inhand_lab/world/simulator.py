@@ -75,15 +75,15 @@ class SimulatorSource:
     def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured]:
         """Frames when they are due, rendered before that if pixels are wanted."""
         period = 1.0 / self._options.frame_rate
-        due, due_ns = time.monotonic(), time.time_ns()
+        due = time.monotonic()
         for simulation, frame in self._frames():
             ready = simulation.render(frame) if wanted() else None
             if self._closed.wait(max(0.0, due - time.monotonic())):
                 return
             if time.monotonic() - due > LONGEST_DELAY * period:
-                due, due_ns = time.monotonic(), time.time_ns()
-            yield _captured(simulation, frame, due_ns, ready)
-            due, due_ns = due + period, due_ns + round(1e9 * period)
+                due = time.monotonic()
+            yield _captured(simulation, frame, _on_the_wall(due), ready)
+            due += period
 
     def close(self) -> None:
         """End ``captures``."""
@@ -116,6 +116,12 @@ class SimulatorSource:
         )
         simulation.prepare()
         return simulation
+
+
+def _on_the_wall(moment: float) -> int:
+    """What the wall clock reads at a moment (monotonic seconds), in nanoseconds; somebody may set
+    it between two frames."""
+    return time.time_ns() + round(1e9 * (moment - time.monotonic()))
 
 
 def _captured(

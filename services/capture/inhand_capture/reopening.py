@@ -17,7 +17,8 @@ from inhand_runtime.source import (
 )
 
 FIRST_PAUSE_S = 0.5
-LONGEST_PAUSE_S = 10.0
+LONGEST_PAUSE_S = 2.0
+"""Seconds between two attempts at the most: a camera that is plugged in again is back soon after."""
 STOP_POLL_S = 0.05
 ENDS_OPENING_S = 1.5
 """Seconds in which an opening that is under way at a stop may end, to be closed in order."""
@@ -36,7 +37,7 @@ class Ending(Protocol):
 
 
 def growing_pauses() -> Iterator[float]:
-    """Seconds to wait before each attempt to open a lost source again, doubling, for ever."""
+    """Seconds to wait before each attempt to open a lost source again, growing, for ever."""
     pause = FIRST_PAUSE_S
     while True:
         yield pause

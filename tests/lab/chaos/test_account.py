@@ -3,10 +3,11 @@
 import numpy as np
 from inhand_lab.chaos.account import Unrecorded, unrecorded
 from inhand_lab.chaos.trials import Span, Trial
-from inhand_lab.chaos.watch import Recovery
+from inhand_lab.chaos.watch import Arrivals, Recovery
 
 CAPTURED = 99.0 + 0.1 * np.arange(50)
-TRIAL = Trial("kill-recorder", Span(100.0, 100.0, 112.0), Recovery(0, 0, 0), CAPTURED, 0, [], [])
+CAME = Arrivals(CAPTURED, CAPTURED + 0.01, CAPTURED)
+TRIAL = Trial("kill-recorder", Span(100.0, 100.0, 112.0), Recovery(0, 0, 0), CAME, 0, [], [])
 
 
 def test_where_all_is_recorded_nothing_is_missing() -> None:

@@ -1,6 +1,9 @@
 """How a stream comes back after a fault, by numbers that are worked out by hand."""
 
+from pathlib import Path
+
 import numpy as np
+from inhand_lab.chaos.host import HostClock
 from inhand_lab.chaos.watch import Arrivals, recovery_of
 
 BEGIN, END, UNTIL = 100.0, 104.0, 112.0
@@ -9,7 +12,7 @@ USUAL_AGE_S = 0.010
 
 def arrivals(times: np.ndarray, ages: np.ndarray | float = USUAL_AGE_S) -> Arrivals:
     """Messages that came at these times (N,), so old."""
-    return Arrivals(times - ages, times)
+    return Arrivals(times - ages, times, times - ages)
 
 
 def every_tenth(start: float, end: float) -> np.ndarray:
@@ -35,12 +38,11 @@ def test_silence_is_measured_to_the_first_message_after_it() -> None:
 
 
 def test_what_was_captured_before_the_cause_ended_brings_nothing_back() -> None:
-    backlog = Arrivals(np.linspace(101.0, 103.9, 30), np.linspace(104.1, 104.2, 30))
+    came = np.linspace(104.1, 104.2, 30)
+    backlog = arrivals(came, came - np.linspace(101.0, 103.9, 30))
     usual = arrivals(every_tenth(90.0, 100.0))
-    seen = Arrivals(
-        np.concatenate((usual.captured, backlog.captured)),
-        np.concatenate((usual.came, backlog.came)),
-    )
+    times = np.concatenate((usual.came, backlog.came))
+    seen = arrivals(times, times - np.concatenate((usual.captured, backlog.captured)))
     recovery = recovery_of(seen, BEGIN, END, UNTIL)
     assert recovery.back_s is None
     assert recovery.normal_s is None
@@ -66,3 +68,13 @@ def test_where_nothing_comes_the_silence_lasts_to_the_end() -> None:
     recovery = recovery_of(arrivals(every_tenth(90.0, 100.0)), BEGIN, END, UNTIL)
     assert recovery.silent_s == UNTIL - BEGIN
     assert recovery.back_s is None
+
+
+def test_a_clock_that_was_set_makes_nothing_look_older_or_newer(tmp_path: Path) -> None:
+    clock = HostClock(tmp_path / "clock")
+    came = np.array([100.0, 101.0, 102.0])
+    assert clock.true_times(came - 0.01, came).tolist() == (came - 0.01).tolist()
+    clock.step(3600.0)
+    clock.step(-3601.0)
+    stamps = came - 0.01 + np.array([0.0, 3600.0, -1.0])
+    assert np.allclose(clock.true_times(stamps, came), came - 0.01)
