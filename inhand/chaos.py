@@ -7,7 +7,7 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,7 @@ from inhand_lab.demonstration.preparation import train_demonstration
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED
 
-from inhand.looking import output
+from inhand.looking import output, positive_count
 from inhand.progress import progress_bar
 from inhand.results import listing, write_json
 
@@ -34,6 +34,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FAULT",
         default=list(FAULTS),
         help=f"which, in this order, of: {', '.join(FAULTS)} (default: all)",
+    )
+    parser.add_argument(
+        "--messages",
+        type=positive_count,
+        metavar="N",
+        default=DEFAULT_CHAOS.flood_messages,
+        help="number of messages of each flood (default: %(default)s)",
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
 
@@ -53,6 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
             for row in _inflict_on(
                 rig(_made(folder / name), model),
                 [one for one in arguments.faults if FAULTS[one].of_site == of_site],
+                arguments.messages,
             )
         ]
     output().print(_table(rows))
@@ -66,13 +74,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _inflict_on(
-    running: AbstractContextManager[ChaosRig], names: Sequence[str]
+    running: AbstractContextManager[ChaosRig], names: Sequence[str], messages: int
 ) -> list[tuple[Trial, Unrecorded]]:
     """Inflict faults on a rig, one after the other, and look into its recordings."""
     if not names:
         return []
     trials = []
-    with running as rig, progress_bar("inflicting faults", len(names)) as advance:
+    with running as started, progress_bar("inflicting faults", len(names)) as advance:
+        rig = replace(started, messages=messages)
         for name in names:
             trials.append(inflict(name, FAULTS[name], rig, lambda: _told(rig)))
             advance()
@@ -105,6 +114,8 @@ def _broken(trial: Trial, kept: Unrecorded) -> list[str]:
         lines.append(f"poses were back after {_seconds(poses.back_s)}")
     if poses.normal_s is None or poses.normal_s > promised.age_normal_within_s:
         lines.append(f"poses were as old as usual after {_seconds(poses.normal_s)}")
+    if trial.grown_mb > promised.most_grown_mb:
+        lines.append(f"a process has grown by {trial.grown_mb:.0f} MB")
     if kept.before_s > promised.unrecorded_before_s:
         lines.append(f"of the {kept.before_s:.1f} s before, something was not recorded")
     return lines
@@ -113,7 +124,7 @@ def _broken(trial: Trial, kept: Unrecorded) -> list[str]:
 def _table(rows: Sequence[tuple[Trial, Unrecorded]]) -> Any:
     table = listing(
         ("fault", "`inhand status` meanwhile"),
-        ("silent, s", "back, s", "age usual, s", "frames", "without pose", "unrecorded"),
+        ("silent, s", "back, s", "age usual, s", "frames", "without pose", "unrecorded", "MB more"),
     )
     for trial, kept in rows:
         table.add_row(
@@ -125,6 +136,7 @@ def _table(rows: Sequence[tuple[Trial, Unrecorded]]) -> Any:
             str(len(trial.skeletons.came)),
             str(trial.without_pose),
             str(kept.skeletons),
+            f"{trial.grown_mb:.0f}",
         )
     return table
 
@@ -145,6 +157,9 @@ def _result(trial: Trial, kept: Unrecorded) -> dict[str, Any]:
         **asdict(trial.poses),
         "frames": len(trial.skeletons.came),
         "without_pose": trial.without_pose,
+        "inflicting_s": trial.span.end - trial.span.begin,
+        "grown_mb": trial.grown_mb,
+        "malformed": trial.malformed,
         "unrecorded": kept.skeletons,
         "unrecorded_before_s": kept.before_s,
         "told": trial.told,

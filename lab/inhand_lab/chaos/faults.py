@@ -83,7 +83,7 @@ def _malformed(rig: ChaosRig) -> AbstractContextManager[None]:
             yield msgspec.msgpack.encode({"sequence": 1, "time_ns": 2**63 - 1, "people": [[[]]]})
 
     keys = itertools.cycle(_keys(rig))
-    chosen = zip(keys, payloads(), range(DEFAULT_CHAOS.flood_messages), strict=False)
+    chosen = zip(keys, payloads(), range(rig.messages), strict=False)
     return _flooded(rig, (_as_sent(key, data) for key, data, _ in chosen))
 
 
@@ -105,7 +105,7 @@ def _of_other_releases(rig: ChaosRig) -> AbstractContextManager[None]:
             yield key, payload, f"{name}.v0"
             yield key.replace(f"/@v{VERSION}/", f"/@v{VERSION + 1}/"), payload, f"{name}.v2"
 
-    return _flooded(rig, itertools.islice(sent(), DEFAULT_CHAOS.flood_messages))
+    return _flooded(rig, itertools.islice(sent(), rig.messages))
 
 
 @contextmanager
@@ -202,18 +202,16 @@ def _as_sent(key: str, payload: bytes) -> Sent:
     return key, payload, TOPICS[parse_key(key).stream].encoding
 
 
-_FLOOD = f"{DEFAULT_CHAOS.flood_messages:,}"
-
 FAULTS: dict[str, Fault] = {
     **{f"kill-{service}": _killed(service) for service in SERVICES},
     **{f"freeze-{service}": _frozen(service) for service in SERVICES},
-    "malformed": Fault(f"{_FLOOD} malformed messages on all streams", _malformed),
+    "malformed": Fault("malformed messages come on all streams", _malformed),
     "huge": Fault(
         f"{DEFAULT_CHAOS.huge_messages} messages of {DEFAULT_CHAOS.huge_bytes >> 20} MiB on each "
         "stream",
         _huge,
     ),
-    "other-releases": Fault(f"{_FLOOD} messages of former and later releases", _of_other_releases),
+    "other-releases": Fault("messages of former and later releases come", _of_other_releases),
     "stuck-reader": Fault("a reader of everything stands still for 10 s", _stuck_reader, 10.0),
     "twin": Fault("a second tracker of the same name starts", _twin, 6.0),
     "full-disk": Fault("the recorder can write nothing for 8 s", _full_disk, 8.0),

@@ -31,6 +31,8 @@ class ChaosParameters:
     """Number of malformed messages, and of those of other releases, over all streams."""
     flood_pause_every: int = 200
     """Number of messages after which a flood pauses: the rig is attacked, not the link."""
+    most_grown_mb: float = 50.0
+    """Megabytes by which a process may have grown when a fault is over."""
     huge_bytes: int = 32 << 20
     """Bytes of a message that is far too large."""
     huge_messages: int = 3

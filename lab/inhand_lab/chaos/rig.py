@@ -68,6 +68,8 @@ class ChaosRig:
     host: Host
     hub: Hub | None
     link: Link | None
+    messages: int = DEFAULT_CHAOS.flood_messages
+    """Number of messages of a flood."""
 
     @property
     def recordings(self) -> Path:
@@ -84,6 +86,10 @@ class ChaosRig:
                 continue
             found |= {service: child for service in SERVICES if service in arguments}
         return found
+
+    def resident_mb(self) -> dict[int, float]:
+        """How much memory each process takes now, in MB."""
+        return {one.pid: one.memory_info().rss / 1e6 for one in self.processes().values()}
 
     def process(self, service: str) -> psutil.Process:
         """The process of a service; raises InhandError where none runs."""

@@ -26,8 +26,9 @@ class Span:
 @dataclass(frozen=True)
 class Trial:
     """What a fault did: how ``poses`` came back, the ``skeletons`` that came, for how many of them
-    no pose came, what `inhand status` called wrong meanwhile, and which processes ended of it that
-    should not."""
+    no pose came, what `inhand status` called wrong meanwhile, which processes ended of it that
+    should not, by how much memory the others grew at the most, in MB, and how many messages were
+    counted as malformed."""
 
     name: str
     span: Span
@@ -36,6 +37,8 @@ class Trial:
     without_pose: int
     told: list[str]
     died: list[str]
+    grown_mb: float
+    malformed: int
 
 
 def inflict(name: str, fault: Fault, rig: ChaosRig, look: Callable[[], list[str]]) -> Trial:
@@ -44,7 +47,7 @@ def inflict(name: str, fault: Fault, rig: ChaosRig, look: Callable[[], list[str]
     Raises InhandError where a former fault has ended the victim for good.
     """
     time.sleep(DEFAULT_CHAOS.well_s)
-    before = rig.processes()
+    before, resident_mb, malformed = rig.processes(), rig.resident_mb(), rig.watch.malformed()
     begin = time.time()
     with fault.inflict(rig):
         end = time.time()
@@ -68,4 +71,6 @@ def inflict(name: str, fault: Fault, rig: ChaosRig, look: Callable[[], list[str]
             for service, process in before.items()
             if service != fault.victim and not process.is_running()
         ],
+        max((now - resident_mb.get(pid, now) for pid, now in rig.resident_mb().items()), default=0),
+        max(rig.watch.malformed() - malformed, 0),
     )

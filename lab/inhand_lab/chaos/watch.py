@@ -10,7 +10,7 @@ from inhand_runtime.inbox import Received
 from inhand_runtime.session import Session, Subscription, end_subscription, subscribe
 from inhand_schemas.errors import MessageError, UnknownVersionError
 from inhand_schemas.keys import Site
-from inhand_schemas.topics import POSE, SKELETONS, AnyTopic
+from inhand_schemas.topics import HEALTH, POSE, SKELETONS, AnyTopic
 from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.chaos.host import HostClock
@@ -44,6 +44,7 @@ class Watch:
     def __init__(self, clock: HostClock) -> None:
         self._clock = clock
         self._lock = threading.Lock()
+        self._malformed: dict[str, int] = {}
         self._rows: dict[str, list[tuple[float, float]]] = {
             SKELETONS.stream: [],
             POSE.stream: [],
@@ -53,6 +54,7 @@ class Watch:
     def listening(self, session: Session, site: Site) -> Iterator[None]:
         """Listen until the block ends."""
         handles = [self._subscribe(session, site, topic) for topic in (SKELETONS, POSE)]
+        handles.append(subscribe(session, HEALTH.pattern(site), HEALTH.delivery, self._note_health))
         try:
             yield
         finally:
@@ -65,6 +67,21 @@ class Watch:
             rows = np.array(self._rows[topic.stream]).reshape(-1, 2)
         stamps, came = rows.T
         return Arrivals(self._clock.true_times(stamps, came), came, stamps)
+
+    def malformed(self) -> int:
+        """How many messages the rig's processes have counted as malformed, in all they said."""
+        with self._lock:
+            return sum(self._malformed.values())
+
+    def _note_health(self, sample: Received) -> None:
+        try:
+            health = HEALTH.decode(sample.payload, sample.encoding)
+        except (MessageError, UnknownVersionError):
+            return  # one of ours: a fault sends such
+        if sample.key.endswith(f"/{health.instance}"):  # else it is forged
+            count = sum(topic.malformed for topic in health.topics.values())
+            with self._lock:
+                self._malformed[health.instance] = count
 
     def _subscribe(self, session: Session, site: Site, topic: AnyTopic) -> Subscription:
         rows = self._rows[topic.stream]

@@ -7,7 +7,9 @@ from inhand_lab.chaos.watch import Arrivals, Recovery
 
 CAPTURED = 99.0 + 0.1 * np.arange(50)
 CAME = Arrivals(CAPTURED, CAPTURED + 0.01, CAPTURED)
-TRIAL = Trial("kill-recorder", Span(100.0, 100.0, 112.0), Recovery(0, 0, 0), CAME, 0, [], [])
+TRIAL = Trial(
+    "kill-recorder", Span(100.0, 100.0, 112.0), Recovery(0, 0, 0), CAME, 0, [], [], 0.0, 0
+)
 
 
 def test_where_all_is_recorded_nothing_is_missing() -> None:
