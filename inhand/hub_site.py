@@ -45,13 +45,12 @@ def administer(arguments: Sequence[str]) -> int:
 
 def _init(chosen: argparse.Namespace) -> int:
     folder = create_site(chosen.folder, chosen.realm, chosen.rigs, chosen.hosts)
-    listen = "127.0.0.1" if set(chosen.hosts) <= set(HOSTS) else "0.0.0.0"
     print(
         f"made {folder.path}. Keep {folder.path / 'authority'} to yourself, with a backup: whoever "
         "has it can let anybody in.\n\n"
         f"Copy {folder.hub} to the hub's host, and write into its settings, hub.toml:\n\n"
         f'realm = "{chosen.realm}"\nrig = "{chosen.rigs[0]}"\n\n'
-        f'[hub.{HUB}]\nfolder = "{folder.hub}"\nlisten = ["tls/{listen}:{PORT}"]\n\n'
+        f'[hub.{HUB}]\nfolder = "{folder.hub}"\nlisten = ["{_listen(chosen.hosts)}"]\n\n'
         "Start it there: inhand hub --config hub.toml\n"
         f"Let somebody join: inhand hub add ROLE NAME --site {folder.path}"
     )
@@ -61,6 +60,10 @@ def _init(chosen: argparse.Namespace) -> int:
 def _add(chosen: argparse.Namespace) -> int:
     folder = SiteFolder(chosen.site)
     site = folder.load()
+    if chosen.role == HUB:
+        return _add_hub(chosen, folder, site)
+    if chosen.hosts or chosen.far:
+        raise SettingsError("--hosts and --far are for `inhand hub add hub`: leave them out")
     rig = chosen.rig or _only_rig(site)
     objects = tuple(dict.fromkeys(chosen.objects)) or (chosen.name,)
     if chosen.role != "tracker":
@@ -76,6 +79,32 @@ def _add(chosen: argparse.Namespace) -> int:
     return DONE
 
 
+def _add_hub(chosen: argparse.Namespace, folder: SiteFolder, site: SiteMembers) -> int:
+    if chosen.rig or chosen.objects:
+        raise SettingsError("a hub is of no rig and no object: leave --rig and --objects out")
+    hub = folder.add_hub(chosen.name, chosen.hosts or HOSTS, far=chosen.far)
+    given = folder.folder_of_hub(hub.name)
+    print(
+        f"added hub {hub.name}. Copy {given} to its host, for its user alone (chmod 700), and "
+        "write into the settings beside it:\n\n"
+        f'realm = "{site.realm}"\nrig = "{site.rigs[0]}"\n\n'
+        f'[hub.{hub.name}]\nfolder = "{given.name}"\nlisten = ["{_listen(hub.hosts)}"]\n'
+        f'connect = ["{_reached(site)}"]\n\n{_hub_hears(folder)}'
+    )
+    return DONE
+
+
+def _listen(hosts: Sequence[str]) -> str:
+    return f"tls/{'127.0.0.1' if set(hosts) <= set(HOSTS) else '0.0.0.0'}:{PORT}"
+
+
+def _reached(site: SiteMembers) -> str:
+    """The address at which others reach the first hub."""
+    hosts = [host for host in site.hosts if host not in HOSTS] or ["127.0.0.1"]
+    host = f"[{hosts[0]}]" if ":" in hosts[0] else hosts[0]
+    return f"tls/{host}:{PORT}"
+
+
 def _renew(chosen: argparse.Namespace) -> int:
     folder = SiteFolder(chosen.site)
     certificate = folder.renew(chosen.name)
@@ -88,7 +117,8 @@ def _renew(chosen: argparse.Namespace) -> int:
 def _revoke(chosen: argparse.Namespace) -> int:
     folder = SiteFolder(chosen.site)
     member = folder.revoke(chosen.name)
-    print(f"revoked {member.role} {member.place}. {_hub_hears(folder)}")
+    who = f"{member.role} {member.place}" if isinstance(member, Member) else f"hub {member.name}"
+    print(f"revoked {who}. {_hub_hears(folder)}")
     return DONE
 
 
@@ -96,14 +126,12 @@ def _hub_hears(folder: SiteFolder) -> str:
     return (
         f"A hub that runs with {folder.hub} itself sees it within a second and starts anew, which "
         "cuts everybody off for some seconds; to a hub on another host copy "
-        f"{folder.hub / MEMBERS_FILE}."
+        f"{folder.hub / MEMBERS_FILE}, the same for all hubs of the site."
     )
 
 
 def _settings(site: SiteMembers, member: Member, folder: SiteFolder) -> str:
     given = folder.folder_of(member).name
-    hosts = [host for host in site.hosts if host not in HOSTS] or ["127.0.0.1"]
-    host = f"[{hosts[0]}]" if ":" in hosts[0] else hosts[0]
     models = json.dumps([f"{name}.model" for name in member.objects])
     cameras = (one.name for one in site.members if (one.role, one.rig) == ("camera", member.rig))
     table = TABLES[member.role].format(
@@ -111,7 +139,7 @@ def _settings(site: SiteMembers, member: Member, folder: SiteFolder) -> str:
     )
     return (
         f'realm = "{site.realm}"\nrig = "{member.rig}"\n\n'
-        f'[zenoh]\nmode = "client"\nconnect = ["tls/{host}:{PORT}"]\n'
+        f'[zenoh]\nmode = "client"\nconnect = ["{_reached(site)}"]\n'
         f'certificate = "{given}/{CERTIFICATE_FILE}"\nkey = "{given}/{KEY_FILE}"\n'
         f'authority = "{given}/{AUTHORITY_FILE}"\n\n{table}'
     ).rstrip()
@@ -145,7 +173,8 @@ def _parser() -> argparse.ArgumentParser:
         help="names and addresses under which others reach the hub (default: this machine alone)",
     )
     add = actions.add_parser("add", help="let somebody join, and make its certificate")
-    add.add_argument("role", choices=tuple(ROLES), metavar="ROLE", help=", ".join(ROLES))
+    roles = (*ROLES, HUB)
+    add.add_argument("role", choices=roles, metavar="ROLE", help=", ".join(roles))
     add.add_argument("name", metavar="NAME", help="the name of its instance, a camera's for one")
     add.add_argument("--rig", help="which rig it is of, where the site has several")
     add.add_argument(
@@ -155,7 +184,17 @@ def _parser() -> argparse.ArgumentParser:
         metavar="OBJECT",
         help="whose poses a tracker publishes (default: the object of its name)",
     )
-    renew = actions.add_parser("renew", help="make a new certificate for a member, or the hub")
+    add.add_argument(
+        "--hosts",
+        nargs="+",
+        default=(),
+        metavar="HOST",
+        help="names and addresses under which others reach a further hub (default: its machine)",
+    )
+    add.add_argument(
+        "--far", action="store_true", help="no full pictures pass between it and the first hub"
+    )
+    renew = actions.add_parser("renew", help="make a new certificate for a member, or a hub")
     revoke = actions.add_parser("revoke", help="let a member do nothing any more")
     for action in (renew, revoke):
         action.add_argument("name", metavar="NAME", help="its name, or RIG/NAME; renew also: hub")

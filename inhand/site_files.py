@@ -17,7 +17,7 @@ GIVEN_BY_SYSTEMD = Path("/run/credentials")
 """Where keys are while a service runs that systemd gave them; they are kept elsewhere."""
 
 
-ADMINISTERED = ("authority", "members")
+ADMINISTERED = ("authority", "members", "hubs")
 """What the folder of a site has beside the hub's folder, where it is administered."""
 
 

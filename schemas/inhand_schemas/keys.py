@@ -54,6 +54,10 @@ class Site:
             require_name("phase", phase)
         return f"{self._claims(service, instance)}/{phase}/*"
 
+    def all_claims_pattern(self) -> str:
+        """The claims to all names of this rig, as a Zenoh key expression."""
+        return f"{self._root}/@claim/*/*/*/*"
+
     def _claims(self, service: str, instance: str) -> str:
         return self._of_service("@claim", service, "instance", instance)
 

@@ -5,7 +5,15 @@ from collections.abc import Iterable
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from inhand_hub.access import ROLES, Flow, Member, Operation, access_control, rules_of
+from inhand_hub.access import (
+    ROLES,
+    Flow,
+    Member,
+    Operation,
+    access_control,
+    link_rules,
+    rules_of,
+)
 from inhand_schemas.keys import Site, parse_key
 from inhand_schemas.procedures import PROCEDURES
 from inhand_schemas.topics import HEALTH, RGBD, SKELETONS, TOPICS
@@ -176,6 +184,27 @@ def test_each_certificate_has_the_rules_of_its_own_member(several: list[Member])
         assert policy["subjects"] == [subject["id"]]
         rules = [rule for rule in control["rules"] if rule["id"] in policy["rules"]]
         assert _keys(rules) == {key for rule in rules_of(one, REALM) for key in rule.keys}
+
+
+@pytest.mark.parametrize("far", [False, True])
+@given(members)
+def test_all_that_a_member_may_passes_between_hubs_but_pictures_over_a_far_link(
+    far: bool, one: Member
+) -> None:
+    passes = {key for rule in link_rules(REALM, (one.rig,), far=far) for key in rule.keys}
+    site = Site(REALM, one.rig)
+    stays = {site.access_key(ROLES[one.role].service or "viewer", one.name)}
+    if far:
+        stays |= {RGBD.pattern(site), *(RGBD.key(site, name) for name in (one.name, *one.objects))}
+    for key in {key for rule in rules_of(one, REALM) for key in rule.keys}:
+        assert any(includes(pattern, key) for pattern in passes) == (key not in stays), key
+
+
+def test_nothing_of_another_site_passes_between_hubs() -> None:
+    for rule in link_rules(REALM, ("kitchen", "garage"), far=False):
+        for key in rule.keys:
+            assert key.startswith((f"{REALM}/@v1/kitchen/", f"{REALM}/@v1/garage/"))
+            assert "**" not in key.removesuffix("/@adv/**")
 
 
 def _keys(rules: Iterable[dict[str, list[str]]]) -> set[str]:

@@ -45,6 +45,14 @@ def test_a_site_that_is_not_the_settings_is_refused(
         checked(site, top, name)
 
 
+def test_a_hub_that_connects_to_another_has_to_be_a_further_one(site: SiteFolder) -> None:
+    top = f'realm = "{REALM}"\nrig = "{RIG}"'
+    with pytest.raises(SettingsError, match="no further hub of that name: `inhand hub add hub"):
+        checked(site, top, listen='connect = ["tls/hub.local:7448"]')
+    with pytest.raises(SettingsError, match=r"hub\.connect.*'tcp/hub:7448' is not encrypted"):
+        checked(site, top, listen='connect = ["tcp/hub:7448"]')
+
+
 def test_a_hub_listens_to_nothing_that_is_not_encrypted(site: SiteFolder) -> None:
     with pytest.raises(SettingsError, match=r"hub\.listen.*'tcp/0.0.0.0:7447' is not encrypted"):
         checked(site, "", listen='listen = ["tcp/0.0.0.0:7447"]')

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from cryptography import x509
 from hub_site import OTHER_RIG, REALM, RIG
 from inhand_hub import site_folder
 from inhand_hub.certificates import load_issued
@@ -84,6 +85,9 @@ def test_nothing_is_overwritten(site: SiteFolder) -> None:
         (lambda site: site.add("camera", "hub", RIG, ()), "name hub is the hub's own"),
         (lambda site: site.add("camera", "f" * 60, RIG, ()), "too long for a certificate"),
         (lambda site: site.add("tracker", "second", RIG, ("pan", "mug")), "pose of mug already"),
+        (lambda site: site.add_hub("first", HOSTS, far=False), "first is there already"),
+        (lambda site: site.add_hub("hub", HOSTS, far=False), "hub is there already"),
+        (lambda site: site.add_hub("barn", ("a b",), far=False), "'a b' is no host"),
         (lambda site: site.renew("nobody"), "no member 'nobody' .*kitchen/first"),
         (lambda site: site.revoke("nobody"), "no member 'nobody'"),
     ],
@@ -129,6 +133,36 @@ def test_who_is_revoked_and_joins_again_is_another_for_the_hub(site: SiteFolder)
     assert site.load().ends_at == {}
     assert not site.folder_of(first).exists()
     assert site.add("camera", "front", RIG, ()).common_name != first.common_name
+
+
+def test_a_further_hub_has_what_it_needs_to_serve_and_to_connect(site: SiteFolder) -> None:
+    linked = site.add_hub("barn", HOSTS, far=True)
+    folder = site.folder_of_hub("barn")
+    for serves in (True, False):
+        require_usable(files_of(folder), serves=serves)
+    site.add("camera", "front", RIG, ())
+    assert (folder / "members.json").read_bytes() == (site.hub / "members.json").read_bytes()
+    key, before = (folder / "key.pem").read_bytes(), (folder / "certificate.pem").read_bytes()
+    certificate = site.renew("barn")
+    assert certificate.read_bytes() != before
+    assert (folder / "key.pem").read_bytes() == key
+    (renewed,) = site.load().hubs
+    assert (renewed.common_name, renewed.far) == (linked.common_name, True)
+    assert site.revoke("barn") == renewed
+    assert site.load().hubs == ()
+    assert not folder.exists()
+
+
+def test_each_hub_has_rules_for_those_that_it_is_linked_with(site: SiteFolder) -> None:
+    barn, shed = (site.add_hub(name, HOSTS, far=False) for name in ("barn", "shed"))
+    first = load_issued(
+        (site.hub / "certificate.pem").read_bytes(), (site.hub / "key.pem").read_bytes()
+    )
+    loaded = site.load()
+    assert set(loaded.links_of("hub")) == {barn.common_name, shed.common_name}
+    assert set(loaded.links_of("barn")) == {loaded.hub_name}
+    subject = x509.load_pem_x509_certificate(first.certificate).subject
+    assert subject.rfc4514_string() == f"CN={loaded.hub_name}"
 
 
 STEPS = ("replace", "rename", "mkdir", "unlink")

@@ -63,6 +63,24 @@ def test_a_member_connects_with_what_add_prints(
         assert list(getattr(rig_file, table)) == [arguments[1]]
 
 
+def test_a_further_hub_runs_with_what_add_prints(capsys: pytest.CaptureFixture[str]) -> None:
+    main([*INIT, "--hosts", "hub.local"])
+    main(["hub", "add", "camera", "front"])
+    capsys.readouterr()
+    assert main(["hub", "add", "hub", "barn", "--hosts", "barn.local", "--far"]) == 0
+    Path("site/hubs/barn.toml").write_text(settings_in(capsys.readouterr().out))
+    settings = load_settings(Path("site/hubs/barn.toml"), "hub", HubSettings)
+    assert settings.service.listen == ("tls/0.0.0.0:7448",)
+    assert settings.service.connect == ("tls/hub.local:7448",)
+    site = check(settings)
+    assert [one.name for one in site.members] == ["front"]
+    assert [one.far for one in site.hubs] == [True]
+    assert main(["hub", "renew", "barn"]) == 0
+    assert "copy site/hubs/barn/certificate.pem" in capsys.readouterr().out
+    assert main(["hub", "revoke", "barn"]) == 0
+    assert "revoked hub barn" in capsys.readouterr().out
+
+
 def test_renewal_and_revocation_say_what_is_to_be_done(capsys: pytest.CaptureFixture[str]) -> None:
     main(INIT)
     main(["hub", "add", "camera", "front"])
@@ -87,6 +105,8 @@ def test_renewal_and_revocation_say_what_is_to_be_done(capsys: pytest.CaptureFix
         (["hub", "add", "camera", "front", "--objects", "mug"], "publishes no poses"),
         (["hub", "add", "camera", "front", "--site", "nowhere"], "cannot read nowhere"),
         (["hub", "revoke", "nobody"], "there is no member 'nobody'"),
+        (["hub", "add", "camera", "front", "--far"], "are for `inhand hub add hub`"),
+        (["hub", "add", "hub", "barn", "--rig", "kitchen"], "a hub is of no rig"),
     ],
 )
 def test_what_cannot_be_done_is_one_line_and_code_2(

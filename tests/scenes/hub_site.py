@@ -98,6 +98,10 @@ class HubSite:
         )
         return path
 
+    def started_again(self) -> "HubSite":
+        """Start a hub that has ended, where it was."""
+        return _started(self.rig, self.folder, self.address, "hub", self.folder.hub)
+
     def restarted(self, times: int) -> None:
         """Wait until the hub has started so often."""
         eventually(
@@ -107,11 +111,22 @@ class HubSite:
 
 def start_hub(rig: RunningRig, folder: SiteFolder) -> HubSite:
     """Run a site's hub on a free port."""
-    address = free_address()
-    config = rig.folder / "hub.toml"
+    return _started(rig, folder, free_address(), "hub", folder.hub)
+
+
+def linked_hub(first: HubSite, name: str) -> HubSite:
+    """Run a further hub, which connects to the first."""
+    given, connect = first.folder.folder_of_hub(name), f'connect = ["{first.address}"]'
+    return _started(first.rig, first.folder, free_address(), name, given, connect)
+
+
+def _started(
+    rig: RunningRig, folder: SiteFolder, address: str, name: str, given: Path, lines: str = ""
+) -> HubSite:
+    config = rig.folder / f"{name}.toml"
     config.write_text(
         f'realm = "{REALM}"\nrig = "{RIG}"\n'
-        f'[hub.hub]\nfolder = "{folder.hub}"\nlisten = ["{address}"]\n'
+        f'[hub.{name}]\nfolder = "{given}"\nlisten = ["{address}"]\n{lines}\n'
     )
     hub = rig.inhand("hub", "--config", config)
     hub.said("may connect")

@@ -18,7 +18,7 @@ from inhand_runtime.source import (
 
 FIRST_PAUSE_S = 0.5
 LONGEST_PAUSE_S = 2.0
-"""Seconds between two attempts at the most: a camera that is plugged in again is back soon after."""
+"""Seconds between two attempts, at the most: who plugs a camera in waits no longer."""
 STOP_POLL_S = 0.05
 ENDS_OPENING_S = 1.5
 """Seconds in which an opening that is under way at a stop may end, to be closed in order."""

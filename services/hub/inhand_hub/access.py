@@ -5,9 +5,9 @@ A rule holds for messages that the hub takes from a member (``ingress``) or pass
 of it, so rules for reading name the pattern of a stream, and rules for publishing name keys.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from inhand_schemas.fields import Name, Text
 from inhand_schemas.keys import Site, beside
@@ -89,6 +89,21 @@ class Member(Struct, frozen=True, kw_only=True):
         return self.objects if self.role == "tracker" else (self.name,)
 
 
+class LinkedHub(Struct, frozen=True, kw_only=True):
+    """A further hub of the site, which connects to the first: its name, its certificate's common
+    name, under which hosts it is reached, and when that certificate ends, in seconds since the
+    epoch.
+
+    Over a ``far`` link no full pictures pass, in either direction.
+    """
+
+    name: Name
+    common_name: CommonName
+    hosts: tuple[Text, ...]
+    ends_at: float
+    far: bool = False
+
+
 @dataclass(frozen=True)
 class Rule:
     """These operations are allowed in one direction, on these key expressions."""
@@ -112,15 +127,34 @@ def rules_of(member: Member, realm: str) -> tuple[Rule, ...]:
     return tuple(rules)
 
 
-def access_control(realm: str, members: Iterable[Member]) -> dict[str, Any]:
-    """Return the hub's access rules as Zenoh's settings have them: who is no member may nothing."""
+def link_rules(realm: str, rigs: Iterable[str], *, far: bool) -> tuple[Rule, ...]:
+    """Return what passes between two hubs: what the members of both may do, since each hub has let
+    its own do no more. Who belongs to the site each hub says to its own members alone."""
+    keys: list[str] = []
+    for site in (Site(realm, rig) for rig in rigs):
+        topics = [one for one in TOPICS.values() if not (far and one is RGBD)]
+        keys += [topic.pattern(site) for topic in topics]
+        keys += [beside(topic.pattern(site)) for topic in topics if topic.delivery.kept]
+        keys += [procedure.key(site) for procedure in PROCEDURES]
+        keys += [site.live_pattern(), site.all_claims_pattern()]
+    return tuple(Rule(flow, get_args(Operation), tuple(keys)) for flow in get_args(Flow))
+
+
+def access_control(
+    realm: str, members: Iterable[Member], links: Mapping[str, tuple[Rule, ...]] | None = None
+) -> dict[str, Any]:
+    """Return the hub's access rules as Zenoh's settings have them: who is no member may nothing.
+
+    ``links`` are the rules of other hubs, by the common names of their certificates.
+    """
     rules: list[dict[str, Any]] = []
     subjects: list[dict[str, Any]] = []
     policies: list[dict[str, Any]] = []
-    for member in members:
+    allowed = {member.common_name: rules_of(member, realm) for member in members}
+    for common_name, its_rules in {**allowed, **(links or {})}.items():
         ids = []
-        for number, rule in enumerate(rules_of(member, realm)):
-            ids.append(f"{member.common_name} {number}")
+        for number, rule in enumerate(its_rules):
+            ids.append(f"{common_name} {number}")
             rules.append(
                 {
                     "id": ids[-1],
@@ -130,8 +164,8 @@ def access_control(realm: str, members: Iterable[Member]) -> dict[str, Any]:
                     "key_exprs": list(rule.keys),
                 }
             )
-        subjects.append({"id": member.common_name, "cert_common_names": [member.common_name]})
-        policies.append({"rules": ids, "subjects": [member.common_name]})
+        subjects.append({"id": common_name, "cert_common_names": [common_name]})
+        policies.append({"rules": ids, "subjects": [common_name]})
     return {
         "enabled": True,
         "default_permission": "deny",

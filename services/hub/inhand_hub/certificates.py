@@ -1,7 +1,7 @@
 """The certificates of a site: one authority, and what it signs for the hub and for each member.
 
-All are X.509, version 3. What an authority signs says what it is for: the hub's serves, a member's
-connects, and neither does for the other.
+All are X.509, version 3. What an authority signs says what it is for: the first hub's serves, a
+member's connects, neither does for the other, and a further hub's does both.
 """
 
 import datetime
@@ -68,9 +68,13 @@ def hub_certificate(
     key: PrivateKey,
     hosts: Sequence[str],
     validity: Validity | None = None,
+    *,
+    connects: bool = False,
 ) -> Issued:
-    """Sign what the hub serves with, under the names and addresses by which others reach it."""
-    purpose = x509.ExtendedKeyUsage([ExtendedKeyUsageOID.SERVER_AUTH])
+    """Sign what a hub serves with, under the names and addresses by which others reach it; one that
+    ``connects`` to another hub shows it the same."""
+    connecting = [ExtendedKeyUsageOID.CLIENT_AUTH] if connects else []
+    purpose = x509.ExtendedKeyUsage([ExtendedKeyUsageOID.SERVER_AUTH, *connecting])
     return _leaf(authority, common_name, key, purpose, hosts, validity)
 
 

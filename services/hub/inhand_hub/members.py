@@ -11,8 +11,10 @@ from inhand_runtime.hub_access import DAY_S
 from inhand_schemas.fields import Name, Text
 from msgspec import Meta, Struct
 
-from inhand_hub.access import Member
+from inhand_hub.access import LinkedHub, Member, Rule, link_rules
 
+LONGEST_COMMON_NAME = 64
+"""Characters that X.509 allows."""
 MEMBERS_FILE = "members.json"
 AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE = "authority.pem", "certificate.pem", "key.pem"
 """What the hub, and each member, has beside: whom it trusts, and what it shows."""
@@ -21,7 +23,8 @@ AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE = "authority.pem", "certificate.pem",
 class SiteMembers(Struct, frozen=True, kw_only=True):
     """A site: its realm, its rigs, under which hosts its hub is reached, and its members.
 
-    ``ends_at`` is when each certificate ends, by common name, in seconds since the epoch.
+    ``ends_at`` is when each certificate ends, by common name, in seconds since the epoch; ``hubs``
+    are those beside the first.
     """
 
     realm: Name
@@ -29,6 +32,25 @@ class SiteMembers(Struct, frozen=True, kw_only=True):
     hosts: tuple[Text, ...]
     members: tuple[Member, ...] = ()
     ends_at: dict[Text, float] = {}
+    hubs: tuple[LinkedHub, ...] = ()
+
+    @property
+    def hub_name(self) -> str:
+        """The common name of the first hub's certificate."""
+        return f"Inhand hub of {self.realm}"[:LONGEST_COMMON_NAME]
+
+    def hub(self, name: str) -> LinkedHub | None:
+        """Return the further hub of that name, if there is one."""
+        return next((one for one in self.hubs if one.name == name), None)
+
+    def links_of(self, name: str) -> dict[str, tuple[Rule, ...]]:
+        """Return the rules of the hubs that a hub may be linked with, by their common names: those
+        of all others for the first hub, of the first for the others."""
+        if (own := self.hub(name)) is not None:
+            return {self.hub_name: link_rules(self.realm, self.rigs, far=own.far)}
+        return {
+            one.common_name: link_rules(self.realm, self.rigs, far=one.far) for one in self.hubs
+        }
 
     def find(self, text: str) -> Member:
         """Return the member that ``RIG/NAME`` means, or ``NAME`` where only one rig has it."""
@@ -67,6 +89,17 @@ def without_member(site: SiteMembers, member: Member) -> SiteMembers:
     )
 
 
+def with_hub(site: SiteMembers, hub: LinkedHub) -> SiteMembers:
+    """Return the site with a further hub, or in the place of the one with its common name."""
+    others = tuple(one for one in site.hubs if one.common_name != hub.common_name)
+    return msgspec.structs.replace(site, hubs=(*others, hub))
+
+
+def without_hub(site: SiteMembers, hub: LinkedHub) -> SiteMembers:
+    """Return the site without one of its further hubs."""
+    return msgspec.structs.replace(site, hubs=tuple(one for one in site.hubs if one != hub))
+
+
 def encode_members(site: SiteMembers) -> bytes:
     """Return the list as its file holds it: JSON, a line a value."""
     return msgspec.json.format(msgspec.json.encode(site)) + b"\n"
@@ -90,7 +123,7 @@ def load_members(path: Path) -> SiteMembers:
 
 def _contradiction(site: SiteMembers) -> str | None:
     common_names = [one.common_name for one in site.members]
-    if twice := _repeated(common_names):
+    if twice := _repeated([*common_names, *(one.common_name for one in site.hubs)]):
         return f"{twice!r} stands there twice"
     if twice := _repeated(one.place for one in site.members):
         return f"{twice!r} stands there twice"

@@ -50,6 +50,11 @@ def check(settings: Settings[HubSettings]) -> SiteMembers:
         raise SettingsError(
             f"a member of the site is named {settings.instance}, as this hub: name it [hub.hub]"
         )
+    if settings.service.connect and settings.instance not in {one.name for one in site.hubs}:
+        raise SettingsError(
+            f"hub.{settings.instance} connects to another hub, and the site has no further hub of "
+            f"that name: `inhand hub add hub {settings.instance}`, or leave connect out"
+        )
     require_usable(_credentials(settings), serves=True)
     return site
 
@@ -146,16 +151,19 @@ class _Watch:
             days = require_usable(_credentials(self._settings), serves=True)
         except InhandError:  # files that are being changed are looked at by ``changed``
             return []
-        return [("hub", days)] if days < DEFAULT_HUB.warned_days else []
+        further = {one.name for one in self._site.hubs}
+        name = self._settings.instance if self._settings.instance in further else "hub"
+        return [(name, days)] if days < DEFAULT_HUB.warned_days else []
 
 
 @contextlib.contextmanager
 def _router(settings: Settings[HubSettings], site: SiteMembers) -> Iterator[Session]:
     """Run the router of these members, which says so to each that may be what it is."""
     given = _credentials(settings)
-    rules = access_control(site.realm, site.members)
+    rules = access_control(site.realm, site.members, site.links_of(settings.instance))
+    service = settings.service
     router = RouterSettings(
-        settings.service.listen, given.certificate, given.key, given.authority, rules
+        service.listen, service.connect, given.certificate, given.key, given.authority, rules
     )
     with open_router(router) as session:
         patterns = [Site(site.realm, rig).access_pattern() for rig in site.rigs]

@@ -21,6 +21,7 @@ class HubSettings(Section):
     """``[hub.NAME]``: the hub's ``folder``, which ``inhand hub init`` made, and where to listen.
 
     Without a word that is this machine alone; ``tls/0.0.0.0:7448`` is all of its addresses. Its
+    A further hub of the site has the addresses of the first in ``connect``. Its
     private ``key`` may be elsewhere than in the folder, as where systemd gives it to the hub alone.
     """
 
@@ -29,3 +30,4 @@ class HubSettings(Section):
     listen: Annotated[
         tuple[Annotated[Address, AfterValidator(_encrypted)], ...], Field(min_length=1)
     ] = (USUAL_ADDRESS,)
+    connect: tuple[Annotated[Address, AfterValidator(_encrypted)], ...] = ()

@@ -1,9 +1,9 @@
 """The folder of a site: its authority, and what its hub and each member are given.
 
 ``authority`` stays with who administers the site, ``hub`` goes to the hub, ``members/RIG.NAME`` to
-that member. What counts is the hub's list of members: it is written last where somebody joins, and
-first where somebody leaves, each time whole, so that a crash leaves the site as it was before, or
-as it is after.
+that member, ``hubs/NAME`` to a further hub. What counts is the hub's list of members: it is written
+last where somebody joins, and first where somebody leaves, each time whole, so that a crash leaves
+the site as it was before, or as it is after.
 """
 
 import contextlib
@@ -17,10 +17,12 @@ from pathlib import Path
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.locked_folder import locked_folder
 from inhand_runtime.private_file import new_private_file, sync_folder
+from msgspec.structs import replace
 
-from inhand_hub.access import Member, RoleName
+from inhand_hub.access import LinkedHub, Member, RoleName
 from inhand_hub.certificates import (
     Issued,
+    PrivateKey,
     hub_certificate,
     key_pem,
     load_issued,
@@ -33,19 +35,20 @@ from inhand_hub.members import (
     AUTHORITY_FILE,
     CERTIFICATE_FILE,
     KEY_FILE,
+    LONGEST_COMMON_NAME,
     MEMBERS_FILE,
     SiteMembers,
     encode_members,
     load_members,
+    with_hub,
     with_member,
+    without_hub,
     without_member,
 )
 from inhand_hub.parameters import DEFAULT_HUB
 
 HUB = "hub"
 """The hub's folder, and the name that is therefore no member's."""
-LONGEST_COMMON_NAME = 64
-"""Characters that X.509 allows."""
 PRIVATE_FOLDER = 0o700
 
 _HOST_NAME = re.compile(r"(?!-)[a-z0-9-]{1,63}(?<!-)(\.(?!-)[a-z0-9-]{1,63}(?<!-))*", re.IGNORECASE)
@@ -82,15 +85,52 @@ class SiteFolder:
             self._write(with_member(site, member, issued.ends_at))
         return member
 
+    def folder_of_hub(self, name: str) -> Path:
+        """Return the folder of what a further hub is given."""
+        return self.path / "hubs" / name
+
+    def add_hub(self, name: str, hosts: Sequence[str], *, far: bool) -> LinkedHub:
+        """Let a further hub join, which connects to the first; raises SettingsError."""
+        for host in hosts:
+            _require_host(host)
+        with self._locked():
+            site = self.load()
+            taken = {HUB, *(one.name for one in site.hubs), *(one.name for one in site.members)}
+            if name in taken:
+                raise SettingsError(f"{name} is there already: choose another name")
+            suffix = secrets.token_hex(DEFAULT_HUB.suffix_bytes)
+            common_name = _short(f"hub.{name}.{suffix}", name)
+            issued = self._linked_certificate(common_name, new_key(), hosts)
+            linked = LinkedHub(
+                name=name,
+                common_name=common_name,
+                hosts=tuple(hosts),
+                ends_at=issued.ends_at,
+                far=far,
+            )
+            folder = self.folder_of_hub(name)
+            folder.parent.mkdir(mode=PRIVATE_FOLDER, exist_ok=True)
+            with _new_folder(folder, replace=True) as unfinished:
+                _write_given(unfinished, issued, self._authority_pem())
+            self._write(with_hub(site, linked))
+        return linked
+
     def renew(self, text: str) -> Path:
-        """Give a member, or the hub, a new certificate for its key; return its file."""
+        """Give a member, or a hub, a new certificate for its key; return its file."""
         with self._locked():
             site = self.load()
             if text == HUB:
                 key = load_key((self.hub / KEY_FILE).read_bytes())
-                issued = hub_certificate(self._authority(), _hub_name(site.realm), key, site.hosts)
+                issued = hub_certificate(self._authority(), site.hub_name, key, site.hosts)
                 _write_file(self.hub / CERTIFICATE_FILE, issued.certificate)
                 return self.hub / CERTIFICATE_FILE
+            if (linked := site.hub(text)) is not None:
+                folder = self.folder_of_hub(linked.name)
+                key = load_key((folder / KEY_FILE).read_bytes())
+                issued = self._linked_certificate(linked.common_name, key, linked.hosts)
+                _write_file(folder / CERTIFICATE_FILE, issued.certificate)
+                self._write(with_hub(site, replace(linked, ends_at=issued.ends_at)))
+                return folder / CERTIFICATE_FILE
             member = site.find(text)
             folder = self.folder_of(member)
             key = load_key((folder / KEY_FILE).read_bytes())
@@ -99,17 +139,28 @@ class SiteFolder:
             self._write(with_member(site, member, issued.ends_at))
             return folder / CERTIFICATE_FILE
 
-    def revoke(self, text: str) -> Member:
-        """Let a member do nothing any more; what it was given is removed here."""
+    def revoke(self, text: str) -> Member | LinkedHub:
+        """Let a member, or a further hub, do nothing any more; what it was given goes from here."""
         with self._locked():
             site = self.load()
+            if (linked := site.hub(text)) is not None:
+                self._write(without_hub(site, linked))
+                shutil.rmtree(self.folder_of_hub(linked.name), ignore_errors=True)
+                return linked
             member = site.find(text)
             self._write(without_member(site, member))
             shutil.rmtree(self.folder_of(member), ignore_errors=True)
         return member
 
     def _write(self, site: SiteMembers) -> None:
-        _write_file(self.hub / MEMBERS_FILE, encode_members(site))
+        """Write the list of members, for the first hub before all others."""
+        for folder in (self.hub, *(self.folder_of_hub(one.name) for one in site.hubs)):
+            _write_file(folder / MEMBERS_FILE, encode_members(site))
+
+    def _linked_certificate(
+        self, common_name: str, key: PrivateKey, hosts: Sequence[str]
+    ) -> Issued:
+        return hub_certificate(self._authority(), common_name, key, hosts, connects=True)
 
     def _authority_pem(self) -> bytes:
         return (self.path / "authority" / CERTIFICATE_FILE).read_bytes()
@@ -138,7 +189,7 @@ def create_site(path: Path, realm: str, rigs: Sequence[str], hosts: Sequence[str
         _require_host(host)
     site = SiteMembers(realm=realm, rigs=tuple(dict.fromkeys(rigs)), hosts=tuple(hosts))
     authority = new_authority(f"Inhand authority of {realm}"[:LONGEST_COMMON_NAME])
-    hub = hub_certificate(authority, _hub_name(realm), new_key(), hosts)
+    hub = hub_certificate(authority, site.hub_name, new_key(), hosts)
     try:
         path.absolute().parent.mkdir(parents=True, exist_ok=True)
         with locked_folder(path.absolute().parent), _new_folder(path, replace=False) as unfinished:
@@ -160,9 +211,10 @@ def _new_member(
         raise SettingsError(f"the site has no rig {rig!r} (there are: {', '.join(site.rigs)})")
     if name == HUB:
         raise SettingsError("the name hub is the hub's own: choose another one")
-    common_name = f"{rig}.{name}.{secrets.token_hex(DEFAULT_HUB.suffix_bytes)}"
-    if len(common_name) > LONGEST_COMMON_NAME:
-        raise SettingsError(f"{rig}/{name} is too long for a certificate: choose a shorter name")
+    suffix = secrets.token_hex(DEFAULT_HUB.suffix_bytes)
+    common_name = _short(f"{rig}.{name}.{suffix}", f"{rig}/{name}")
+    if site.hub(name) is not None:
+        raise SettingsError(f"a hub is named {name} already: choose another name")
     member = Member(name=name, rig=rig, role=role, common_name=common_name, objects=tuple(objects))
     for other in site.members:
         if other.place == member.place:
@@ -177,8 +229,10 @@ def _new_member(
     return member
 
 
-def _hub_name(realm: str) -> str:
-    return f"Inhand hub of {realm}"[:LONGEST_COMMON_NAME]
+def _short(common_name: str, name: str) -> str:
+    if len(common_name) > LONGEST_COMMON_NAME:
+        raise SettingsError(f"{name} is too long for a certificate: choose a shorter name")
+    return common_name
 
 
 def _require_host(host: str) -> None:

@@ -9,7 +9,13 @@ from typing import Any
 import zenoh
 
 from inhand_runtime.errors import InhandError
-from inhand_runtime.session import HANDSHAKE_TIMEOUT_MS, Session, zenoh_config
+from inhand_runtime.session import (
+    FOR_EVER_MS,
+    HANDSHAKE_TIMEOUT_MS,
+    RETRY,
+    Session,
+    zenoh_config,
+)
 
 LARGEST_MESSAGE_BYTES = 64 << 20
 """Bytes of a message, at the most, that a router puts together: no frame is as large."""
@@ -17,10 +23,11 @@ LARGEST_MESSAGE_BYTES = 64 << 20
 
 @dataclass(frozen=True)
 class RouterSettings:
-    """Where a router listens, the files (PEM) of its certificate, key and authority, and Zenoh's
-    access rules."""
+    """Where a router listens, to which others it connects, the files (PEM) of its certificate, key
+    and authority, and Zenoh's access rules."""
 
     listen: tuple[str, ...]
+    connect: tuple[str, ...]
     certificate: Path
     key: Path
     authority: Path
@@ -38,7 +45,10 @@ def open_router(settings: RouterSettings) -> Iterator[Session]:
         "root_ca_certificate": str(settings.authority),
         "listen_certificate": str(settings.certificate),
         "listen_private_key": str(settings.key),
+        "connect_certificate": str(settings.certificate),
+        "connect_private_key": str(settings.key),
         "enable_mtls": True,
+        "verify_name_on_connect": True,
         "close_link_on_expiration": True,
     }
     config = zenoh_config(
@@ -46,6 +56,10 @@ def open_router(settings: RouterSettings) -> Iterator[Session]:
             "mode": "router",
             "listen/endpoints": list(settings.listen),
             "listen/exit_on_failure": True,
+            "connect/endpoints": list(settings.connect),
+            "connect/timeout_ms": FOR_EVER_MS,
+            "connect/exit_on_failure": False,
+            "connect/retry": RETRY,
             "scouting/gossip/enabled": False,
             "adminspace/enabled": False,
             "transport/unicast/accept_timeout": HANDSHAKE_TIMEOUT_MS,

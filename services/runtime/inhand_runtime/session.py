@@ -42,6 +42,8 @@ MOST_KEPT_KEYS = 1024
 CLIENT_TIMEOUT_MS = 3_000
 HANDSHAKE_TIMEOUT_MS = 1_500
 FOR_EVER_MS = -1
+RETRY = {"period_init_ms": 100, "period_max_ms": 1000}
+"""How soon a connection is tried again."""
 LIVELINESS_TIMEOUT_S = 0.5
 LEASE_MS = 10_000
 """Milliseconds without a sign of life after which a link is closed, whatever waits for it: a
@@ -147,7 +149,7 @@ def _config(
         "connect/endpoints": list(connect),
         "connect/timeout_ms": CLIENT_TIMEOUT_MS if client else FOR_EVER_MS,
         "connect/exit_on_failure": client,
-        "connect/retry": {"period_init_ms": 100, "period_max_ms": 1000},
+        "connect/retry": RETRY,
     }
     if settings.credentials is not None:
         values["transport/link/tls"] = {
