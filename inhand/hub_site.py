@@ -11,6 +11,7 @@ from inhand_hub.members import (
     CERTIFICATE_FILE,
     KEY_FILE,
     MEMBERS_FILE,
+    PASSWORD_FILE,
     SiteMembers,
 )
 from inhand_hub.settings import PORT
@@ -62,15 +63,18 @@ def _add(chosen: argparse.Namespace) -> int:
     site = folder.load()
     if chosen.role == HUB:
         return _add_hub(chosen, folder, site)
-    if chosen.hosts or chosen.far:
-        raise SettingsError("--hosts and --far are for `inhand hub add hub`: leave them out")
+    if chosen.hosts or chosen.far or chosen.passwords:
+        raise SettingsError(
+            "--hosts, --far and --passwords are for `inhand hub add hub`: leave them out"
+        )
     rig = chosen.rig or _only_rig(site)
     objects = tuple(dict.fromkeys(chosen.objects)) or (chosen.name,)
     if chosen.role != "tracker":
         if chosen.objects:
             raise SettingsError(f"a {chosen.role} publishes no poses: leave --objects out")
         objects = ()
-    member = folder.add(chosen.role, chosen.name, rig, objects)
+    member = folder.add(chosen.role, chosen.name, rig, objects, by_password=chosen.password)
+    site = folder.load()
     print(
         f"added {chosen.role} {member.place}. Copy {folder.folder_of(member)} to its host, for its "
         "user alone (chmod 700), and write into the settings beside it:\n\n"
@@ -80,16 +84,21 @@ def _add(chosen: argparse.Namespace) -> int:
 
 
 def _add_hub(chosen: argparse.Namespace, folder: SiteFolder, site: SiteMembers) -> int:
-    if chosen.rig or chosen.objects:
-        raise SettingsError("a hub is of no rig and no object: leave --rig and --objects out")
-    hub = folder.add_hub(chosen.name, chosen.hosts or HOSTS, far=chosen.far)
+    if chosen.rig or chosen.objects or chosen.password:
+        raise SettingsError(
+            "a hub is of no rig and no object, and has a certificate: leave --rig, --objects and "
+            "--password out"
+        )
+    hub = folder.add_hub(
+        chosen.name, chosen.hosts or HOSTS, far=chosen.far, passwords=chosen.passwords
+    )
     given = folder.folder_of_hub(hub.name)
     print(
         f"added hub {hub.name}. Copy {given} to its host, for its user alone (chmod 700), and "
         "write into the settings beside it:\n\n"
         f'realm = "{site.realm}"\nrig = "{site.rigs[0]}"\n\n'
         f'[hub.{hub.name}]\nfolder = "{given.name}"\nlisten = ["{_listen(hub.hosts)}"]\n'
-        f'connect = ["{_reached(site)}"]\n\n{_hub_hears(folder)}'
+        f'connect = ["{_reached(site.hosts)}"]\n\n{_hub_hears(folder)}'
     )
     return DONE
 
@@ -98,9 +107,9 @@ def _listen(hosts: Sequence[str]) -> str:
     return f"tls/{'127.0.0.1' if set(hosts) <= set(HOSTS) else '0.0.0.0'}:{PORT}"
 
 
-def _reached(site: SiteMembers) -> str:
-    """The address at which others reach the first hub."""
-    hosts = [host for host in site.hosts if host not in HOSTS] or ["127.0.0.1"]
+def _reached(named: Sequence[str]) -> str:
+    """The address at which others reach a hub of these hosts."""
+    hosts = [host for host in named if host not in HOSTS] or ["127.0.0.1"]
     host = f"[{hosts[0]}]" if ":" in hosts[0] else hosts[0]
     return f"tls/{host}:{PORT}"
 
@@ -126,12 +135,18 @@ def _hub_hears(folder: SiteFolder) -> str:
     return (
         f"A hub that runs with {folder.hub} itself sees it within a second and starts anew, which "
         "cuts everybody off for some seconds; to a hub on another host copy "
-        f"{folder.hub / MEMBERS_FILE}, the same for all hubs of the site."
+        f"{folder.hub / MEMBERS_FILE}, the same for all hubs of the site; one with passwords gets "
+        "its users."
     )
 
 
 def _settings(site: SiteMembers, member: Member, folder: SiteFolder) -> str:
     given = folder.folder_of(member).name
+    hosts = site.hosts
+    shown = f'certificate = "{given}/{CERTIFICATE_FILE}"\nkey = "{given}/{KEY_FILE}"\n'
+    if member.by_password:
+        hosts = next(one.hosts for one in site.hubs if one.passwords)
+        shown = f'user = "{member.common_name}"\npassword = "{given}/{PASSWORD_FILE}"\n'
     models = json.dumps([f"{name}.model" for name in member.objects])
     cameras = (one.name for one in site.members if (one.role, one.rig) == ("camera", member.rig))
     table = TABLES[member.role].format(
@@ -139,8 +154,7 @@ def _settings(site: SiteMembers, member: Member, folder: SiteFolder) -> str:
     )
     return (
         f'realm = "{site.realm}"\nrig = "{member.rig}"\n\n'
-        f'[zenoh]\nmode = "client"\nconnect = ["{_reached(site)}"]\n'
-        f'certificate = "{given}/{CERTIFICATE_FILE}"\nkey = "{given}/{KEY_FILE}"\n'
+        f'[zenoh]\nmode = "client"\nconnect = ["{_reached(hosts)}"]\n{shown}'
         f'authority = "{given}/{AUTHORITY_FILE}"\n\n{table}'
     ).rstrip()
 
@@ -193,6 +207,16 @@ def _parser() -> argparse.ArgumentParser:
     )
     add.add_argument(
         "--far", action="store_true", help="no full pictures pass between it and the first hub"
+    )
+    add.add_argument(
+        "--passwords",
+        action="store_true",
+        help="it lets those in that have a password, and nobody by certificate",
+    )
+    add.add_argument(
+        "--password",
+        action="store_true",
+        help="a member that joins by user and password, at a hub with passwords",
     )
     renew = actions.add_parser("renew", help="make a new certificate for a member, or a hub")
     revoke = actions.add_parser("revoke", help="let a member do nothing any more")

@@ -60,6 +60,7 @@ def site_files(values: Mapping[str, Any], config: Path) -> SiteFiles:
     rig_file = _checked(values, RigFile, config, ())
     zenoh = rig_file.zenoh
     named: list[Path | None] = [config, zenoh.certificate, zenoh.key, zenoh.authority]
+    named.append(zenoh.password)
     folders: list[Path] = []
     for service in SERVICES:
         for name, table in getattr(rig_file, service).items():

@@ -56,13 +56,16 @@ def test_the_commands_of_the_hub_s_page_do_what_it_shows(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     page = (ROOT / "docs/hub.md").read_text()
-    hub, member = blocks("hub.md", "toml")
+    hub, member, guest = blocks("hub.md", "toml")
     printed = {}
     for line in re.findall(r"^inhand (hub (?:init|add|renew|revoke) .*)$", page, re.MULTILINE):
         assert main(line.split()) == 0
         printed[line] = capsys.readouterr().out
     added = printed["hub add camera front"]
     assert all(line in added for line in member.splitlines()[1:])
+    added = printed["hub add viewer tom --password"]
+    written = re.sub(r"tom\.[0-9a-f]{8}", "tom.1f0c2a97", added).replace(":7448", ":7449")
+    assert all(line in written for line in guest.splitlines())
     made = printed["hub init site --realm home --rigs kitchen --hosts hub.local 192.168.1.10"]
     assert tomllib.loads(hub)["hub"]["hub"]["listen"][0] in made
     Path("hub.toml").write_text(hub)

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 from inhand_hub.service import check
 from inhand_hub.settings import HubSettings
-from inhand_runtime.session import require_usable
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.hub_access import require_client, require_usable
 from inhand_runtime.settings import load_rig_file, load_settings
 
 from inhand.__main__ import main
@@ -79,6 +80,58 @@ def test_a_further_hub_runs_with_what_add_prints(capsys: pytest.CaptureFixture[s
     assert "copy site/hubs/barn/certificate.pem" in capsys.readouterr().out
     assert main(["hub", "revoke", "barn"]) == 0
     assert "revoked hub barn" in capsys.readouterr().out
+
+
+def test_a_member_with_a_password_connects_with_what_add_prints(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    main(INIT)
+    assert main(["hub", "add", "viewer", "anna", "--password"]) == 2
+    assert "`inhand hub add hub NAME --passwords`" in capsys.readouterr().err
+    main(["hub", "add", "hub", "guests", "--hosts", "hub.local", "--passwords"])
+    capsys.readouterr()
+    assert main(["hub", "add", "viewer", "anna", "--password"]) == 0
+    printed = capsys.readouterr().out
+    folder = Path("site/members/kitchen.anna")
+    password = (folder / "password").read_text().strip()
+    assert len(password) >= 32
+    assert password not in printed
+    assert sorted(one.name for one in folder.iterdir()) == ["authority.pem", "password"]
+    (folder.parent / "anna.toml").write_text(settings_in(printed))
+    zenoh = load_rig_file(folder.parent / "anna.toml").zenoh
+    assert zenoh.connect == ("tls/hub.local:7448",)
+    require_client(zenoh)
+    users = Path("site/hubs/guests/users").read_text().splitlines()
+    assert f"{zenoh.user}:{password}" in users
+    assert main(["hub", "renew", "anna"]) == 0
+    assert password not in Path("site/hubs/guests/users").read_text()
+    assert main(["hub", "revoke", "anna"]) == 0
+    assert len(Path("site/hubs/guests/users").read_text().splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("users", "words"),
+    [
+        (None, "cannot read .*users: No such file"),
+        ("nobody:x\n", "has no password of kitchen.anna"),
+    ],
+)
+def test_a_hub_whose_users_are_not_its_members_does_not_start(
+    users: str | None, words: str
+) -> None:
+    main(INIT)
+    main(["hub", "add", "hub", "guests", "--passwords"])
+    main(["hub", "add", "viewer", "anna", "--password"])
+    path = Path("site/hubs/guests/users")
+    if users is None:
+        path.unlink()
+    else:
+        path.write_text(users)
+    Path("hub.toml").write_text(
+        'realm = "home"\nrig = "kitchen"\n[hub.guests]\nfolder = "site/hubs/guests"\n'
+    )
+    with pytest.raises(SettingsError, match=words):
+        check(load_settings(Path("hub.toml"), "hub", HubSettings))
 
 
 def test_renewal_and_revocation_say_what_is_to_be_done(capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,6 +10,7 @@ from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import (
     Credentials,
     FilePath,
+    Login,
     Section,
     Settings,
     load_rig_file,
@@ -290,6 +291,18 @@ def test_a_missing_file_is_named() -> None:
 FILES = 'certificate = "c.pem"\nkey = "k.pem"\nauthority = "a.pem"\n'
 
 
+LOGIN = 'user = "home.anna"\npassword = "password"\nauthority = "a.pem"\n'
+
+
+def test_a_client_s_password_stands_beside_the_settings(tmp_path: Path) -> None:
+    path = tmp_path / "rig.toml"
+    path.write_text(f'[zenoh]\nmode = "client"\nconnect = ["tls/hub.local:7448"]\n{LOGIN}')
+    zenoh = load_rig_file(path).zenoh
+    assert zenoh.login == Login("home.anna", tmp_path / "password", tmp_path / "a.pem")
+    assert zenoh.credentials is None
+    assert zenoh.joins_hub
+
+
 def test_a_client_s_files_stand_beside_the_settings(load: Load, tmp_path: Path) -> None:
     zenoh = f'[zenoh]\nmode = "client"\nconnect = ["tls/hub.local:7448"]\n{FILES}'
     given = load(f"{zenoh}[capture.front]\nsource = 'replay'").zenoh.credentials
@@ -312,6 +325,9 @@ def test_a_client_s_files_stand_beside_the_settings(load: Load, tmp_path: Path) 
         ('mode = "client"\nconnect = ["tls/hub:7448"]\n', "tls/hub:7448 needs certificate"),
         (f'mode = "client"\nconnect = ["tcp/hub:7447"]\n{FILES}', "begin with tls/"),
         (FILES, 'are for mode = "client"'),
+        (LOGIN.replace("password", "# "), "belong together: password is missing"),
+        (f'{LOGIN}key = "k.pem"\n', "a certificate or a password: leave one out"),
+        (LOGIN, 'user, password and authority are for mode = "client"'),
     ],
 )
 def test_a_client_s_files_that_do_nothing_are_refused(load: Load, zenoh: str, words: str) -> None:

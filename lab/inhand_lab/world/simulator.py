@@ -76,14 +76,17 @@ class SimulatorSource:
         """Frames when they are due, rendered before that if pixels are wanted."""
         period = 1.0 / self._options.frame_rate
         due = time.monotonic()
+        due_ns = _on_the_wall(due)
         for simulation, frame in self._frames():
             ready = simulation.render(frame) if wanted() else None
             if self._closed.wait(max(0.0, due - time.monotonic())):
                 return
             if time.monotonic() - due > LONGEST_DELAY * period:
                 due = time.monotonic()
-            yield _captured(simulation, frame, _on_the_wall(due), ready)
-            due += period
+            if abs(due_ns - _on_the_wall(due)) > 1e9 * LONGEST_DELAY * period:
+                due_ns = _on_the_wall(due)
+            yield _captured(simulation, frame, due_ns, ready)
+            due, due_ns = due + period, due_ns + round(1e9 * period)
 
     def close(self) -> None:
         """End ``captures``."""
@@ -119,7 +122,7 @@ class SimulatorSource:
 
 
 def _on_the_wall(moment: float) -> int:
-    """What the wall clock reads at a moment (monotonic seconds), in nanoseconds; somebody may set
+    """What the wall clock reads at a moment (monotonic seconds), in nanoseconds: somebody may set
     it between two frames."""
     return time.time_ns() + round(1e9 * (moment - time.monotonic()))
 

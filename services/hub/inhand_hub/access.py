@@ -69,7 +69,8 @@ ROLES: dict[RoleName, Role] = {
 class Member(Struct, frozen=True, kw_only=True):
     """Who may take part: its name in its rig, its role, and its certificate's common name.
 
-    A camera publishes under its own name, a tracker the poses of its ``objects``.
+    A camera publishes under its own name, a tracker the poses of its ``objects``. One that joins
+    ``by_password`` has no certificate, and the common name as its user.
     """
 
     name: Name
@@ -77,6 +78,7 @@ class Member(Struct, frozen=True, kw_only=True):
     role: RoleName
     common_name: CommonName
     objects: tuple[Name, ...] = ()
+    by_password: bool = False
 
     @property
     def place(self) -> Text:
@@ -94,7 +96,8 @@ class LinkedHub(Struct, frozen=True, kw_only=True):
     name, under which hosts it is reached, and when that certificate ends, in seconds since the
     epoch.
 
-    Over a ``far`` link no full pictures pass, in either direction.
+    Over a ``far`` link no full pictures pass, in either direction. A hub with ``passwords`` lets
+    those members in that have one, and nobody by certificate.
     """
 
     name: Name
@@ -102,6 +105,7 @@ class LinkedHub(Struct, frozen=True, kw_only=True):
     hosts: tuple[Text, ...]
     ends_at: float
     far: bool = False
+    passwords: bool = False
 
 
 @dataclass(frozen=True)
@@ -141,15 +145,17 @@ def link_rules(realm: str, rigs: Iterable[str], *, far: bool) -> tuple[Rule, ...
 
 
 def access_control(
-    realm: str, members: Iterable[Member], links: Mapping[str, tuple[Rule, ...]] | None = None
+    realm: str, members: Sequence[Member], links: Mapping[str, tuple[Rule, ...]] | None = None
 ) -> dict[str, Any]:
     """Return the hub's access rules as Zenoh's settings have them: who is no member may nothing.
 
-    ``links`` are the rules of other hubs, by the common names of their certificates.
+    All ``members`` show a certificate, or all a password. ``links`` are the rules of other hubs, by
+    the common names of their certificates.
     """
     rules: list[dict[str, Any]] = []
     subjects: list[dict[str, Any]] = []
     policies: list[dict[str, Any]] = []
+    users = {member.common_name for member in members if member.by_password}
     allowed = {member.common_name: rules_of(member, realm) for member in members}
     for common_name, its_rules in {**allowed, **(links or {})}.items():
         ids = []
@@ -164,7 +170,8 @@ def access_control(
                     "key_exprs": list(rule.keys),
                 }
             )
-        subjects.append({"id": common_name, "cert_common_names": [common_name]})
+        shows = "usernames" if common_name in users else "cert_common_names"
+        subjects.append({"id": common_name, shows: [common_name]})
         policies.append({"rules": ids, "subjects": [common_name]})
     return {
         "enabled": True,

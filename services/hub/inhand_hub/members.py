@@ -16,6 +16,8 @@ from inhand_hub.access import LinkedHub, Member, Rule, link_rules
 LONGEST_COMMON_NAME = 64
 """Characters that X.509 allows."""
 MEMBERS_FILE = "members.json"
+USERS_FILE, PASSWORD_FILE = "users", "password"
+"""The names and passwords that a hub with passwords takes, and what such a member is given."""
 AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE = "authority.pem", "certificate.pem", "key.pem"
 """What the hub, and each member, has beside: whom it trusts, and what it shows."""
 
@@ -43,6 +45,12 @@ class SiteMembers(Struct, frozen=True, kw_only=True):
         """Return the further hub of that name, if there is one."""
         return next((one for one in self.hubs if one.name == name), None)
 
+    def members_of(self, name: str) -> tuple[Member, ...]:
+        """Return the members that a hub lets in."""
+        hub = self.hub(name)
+        passwords = hub is not None and hub.passwords
+        return tuple(one for one in self.members if one.by_password == passwords)
+
     def links_of(self, name: str) -> dict[str, tuple[Rule, ...]]:
         """Return the rules of the hubs that a hub may be linked with, by their common names: those
         of all others for the first hub, of the first for the others."""
@@ -66,17 +74,19 @@ class SiteMembers(Struct, frozen=True, kw_only=True):
     def ending(self, within_days: float) -> list[tuple[Member, float]]:
         """Return the members whose certificate ends within some days, with the days that remain."""
         now = time.time()
-        days = [(one, (self.ends_at[one.common_name] - now) / DAY_S) for one in self.members]
+        ends = ((one, self.ends_at.get(one.common_name)) for one in self.members)
+        days = [(one, (end - now) / DAY_S) for one, end in ends if end is not None]
         return [(member, left) for member, left in days if left < within_days]
 
 
-def with_member(site: SiteMembers, member: Member, ends_at: float) -> SiteMembers:
-    """Return the site with a member added, or in the place of the one with its common name."""
+def with_member(site: SiteMembers, member: Member, ends_at: float | None) -> SiteMembers:
+    """Return the site with a member added, or in the place of the one with its common name; its
+    certificate, if it has one, ends at a time."""
     others = tuple(one for one in site.members if one.common_name != member.common_name)
     return msgspec.structs.replace(
         site,
         members=(*others, member),
-        ends_at={**site.ends_at, member.common_name: ends_at},
+        ends_at=site.ends_at if ends_at is None else {**site.ends_at, member.common_name: ends_at},
     )
 
 
@@ -127,7 +137,8 @@ def _contradiction(site: SiteMembers) -> str | None:
         return f"{twice!r} stands there twice"
     if twice := _repeated(one.place for one in site.members):
         return f"{twice!r} stands there twice"
-    if set(site.ends_at) != set(common_names):
+    certified = {one.common_name for one in site.members if not one.by_password}
+    if set(site.ends_at) != certified:
         return "members and ends of their certificates do not fit"
     if strangers := {one.rig for one in site.members} - set(site.rigs):
         return f"{min(strangers)!r} is no rig of the site"

@@ -4,8 +4,9 @@ import contextlib
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError, SettingsError
@@ -18,12 +19,13 @@ from inhand_runtime.signals import set_on_signals
 from inhand_runtime.wording import counted
 from inhand_schemas.keys import Site
 
-from inhand_hub.access import access_control
+from inhand_hub.access import Member, access_control
 from inhand_hub.members import (
     AUTHORITY_FILE,
     CERTIFICATE_FILE,
     KEY_FILE,
     MEMBERS_FILE,
+    USERS_FILE,
     SiteMembers,
     load_members,
 )
@@ -55,8 +57,23 @@ def check(settings: Settings[HubSettings]) -> SiteMembers:
             f"hub.{settings.instance} connects to another hub, and the site has no further hub of "
             f"that name: `inhand hub add hub {settings.instance}`, or leave connect out"
         )
+    hub = site.hub(settings.instance)
+    if hub is not None and hub.passwords:
+        _require_users(settings.service.folder / USERS_FILE, site.members_of(hub.name))
     require_usable(_credentials(settings), serves=True)
     return site
+
+
+def _require_users(path: Path, members: Sequence[Member]) -> None:
+    """Check that each member has a password; Zenoh lets all in where a file names nobody."""
+    try:
+        users = {line.partition(":")[0] for line in path.read_text(encoding="utf-8").splitlines()}
+    except OSError as error:
+        raise SettingsError(f"cannot read {path}: {error.strerror}: copy it again") from None
+    if missing := {one.common_name for one in members} - users:
+        raise SettingsError(f"{path} has no password of {min(missing)}: copy it again")
+    if not users:
+        raise SettingsError(f"{path} names nobody: copy it again")
 
 
 def run(settings: Settings[HubSettings]) -> None:
@@ -84,7 +101,7 @@ def _run_until_changed(
     with running_daemon("hub", settings, _router(settings, site)) as daemon:
         log.info(
             "%s of realm %s may connect to %s",
-            counted(len(site.members), "member"),
+            counted(len(site.members_of(settings.instance)), "member"),
             site.realm,
             ", ".join(settings.service.listen),
         )
@@ -160,10 +177,18 @@ class _Watch:
 def _router(settings: Settings[HubSettings], site: SiteMembers) -> Iterator[Session]:
     """Run the router of these members, which says so to each that may be what it is."""
     given = _credentials(settings)
-    rules = access_control(site.realm, site.members, site.links_of(settings.instance))
-    service = settings.service
+    service, hub = settings.service, site.hub(settings.instance)
+    rules = access_control(
+        site.realm, site.members_of(settings.instance), site.links_of(settings.instance)
+    )
     router = RouterSettings(
-        service.listen, service.connect, given.certificate, given.key, given.authority, rules
+        service.listen,
+        service.connect,
+        given.certificate,
+        given.key,
+        given.authority,
+        rules,
+        users=service.folder / USERS_FILE if hub is not None and hub.passwords else None,
     )
     with open_router(router) as session:
         patterns = [Site(site.realm, rig).access_pattern() for rig in site.rigs]
@@ -186,7 +211,8 @@ def _state(settings: Settings[HubSettings]) -> State:
     given = _credentials(settings)
     members = settings.service.folder / MEMBERS_FILE
     states: list[tuple[int, int, int] | None] = []
-    for path in (members, given.certificate, given.key, given.authority):
+    users = settings.service.folder / USERS_FILE
+    for path in (members, users, given.certificate, given.key, given.authority):
         try:
             status = path.stat()
         except OSError:

@@ -37,6 +37,8 @@ from inhand_hub.members import (
     KEY_FILE,
     LONGEST_COMMON_NAME,
     MEMBERS_FILE,
+    PASSWORD_FILE,
+    USERS_FILE,
     SiteMembers,
     encode_members,
     load_members,
@@ -50,6 +52,8 @@ from inhand_hub.parameters import DEFAULT_HUB
 HUB = "hub"
 """The hub's folder, and the name that is therefore no member's."""
 PRIVATE_FOLDER = 0o700
+PASSWORD_BYTES = 24
+"""Random bytes of a password."""
 
 _HOST_NAME = re.compile(r"(?!-)[a-z0-9-]{1,63}(?<!-)(\.(?!-)[a-z0-9-]{1,63}(?<!-))*", re.IGNORECASE)
 
@@ -72,11 +76,31 @@ class SiteFolder:
         """Return the folder of what a member is given."""
         return self.path / "members" / f"{member.rig}.{member.name}"
 
-    def add(self, role: RoleName, name: str, rig: str, objects: Sequence[str]) -> Member:
+    def add(
+        self,
+        role: RoleName,
+        name: str,
+        rig: str,
+        objects: Sequence[str],
+        *,
+        by_password: bool = False,
+    ) -> Member:
         """Let somebody join; raises SettingsError for a name or an object that another has."""
         with self._locked():
             site = self.load()
             member = _new_member(site, role, name, rig, objects)
+            if by_password:
+                if not any(one.passwords for one in site.hubs):
+                    raise SettingsError(
+                        "no hub of the site takes passwords: make one by `inhand hub add hub NAME "
+                        "--passwords`"
+                    )
+                member = replace(member, by_password=True)
+                with _new_folder(self.folder_of(member), replace=True) as unfinished:
+                    _write_password(unfinished)
+                    _write_file(unfinished / AUTHORITY_FILE, self._authority_pem())
+                self._write(with_member(site, member, None))
+                return member
             key = new_key()
             issued = member_certificate(self._authority(), member.common_name, key)
             folder = self.folder_of(member)
@@ -89,7 +113,9 @@ class SiteFolder:
         """Return the folder of what a further hub is given."""
         return self.path / "hubs" / name
 
-    def add_hub(self, name: str, hosts: Sequence[str], *, far: bool) -> LinkedHub:
+    def add_hub(
+        self, name: str, hosts: Sequence[str], *, far: bool = False, passwords: bool = False
+    ) -> LinkedHub:
         """Let a further hub join, which connects to the first; raises SettingsError."""
         for host in hosts:
             _require_host(host)
@@ -107,6 +133,7 @@ class SiteFolder:
                 hosts=tuple(hosts),
                 ends_at=issued.ends_at,
                 far=far,
+                passwords=passwords,
             )
             folder = self.folder_of_hub(name)
             folder.parent.mkdir(mode=PRIVATE_FOLDER, exist_ok=True)
@@ -116,7 +143,8 @@ class SiteFolder:
         return linked
 
     def renew(self, text: str) -> Path:
-        """Give a member, or a hub, a new certificate for its key; return its file."""
+        """Give a member, or a hub, a new certificate for its key, or a new password; return its
+        file."""
         with self._locked():
             site = self.load()
             if text == HUB:
@@ -133,6 +161,10 @@ class SiteFolder:
                 return folder / CERTIFICATE_FILE
             member = site.find(text)
             folder = self.folder_of(member)
+            if member.by_password:
+                _write_password(folder)
+                self._write(site)
+                return folder / PASSWORD_FILE
             key = load_key((folder / KEY_FILE).read_bytes())
             issued = member_certificate(self._authority(), member.common_name, key)
             _write_file(folder / CERTIFICATE_FILE, issued.certificate)
@@ -154,8 +186,21 @@ class SiteFolder:
 
     def _write(self, site: SiteMembers) -> None:
         """Write the list of members, for the first hub before all others."""
+        for hub in site.hubs:
+            if hub.passwords:
+                _write_file(self.folder_of_hub(hub.name) / USERS_FILE, self._users(site))
         for folder in (self.hub, *(self.folder_of_hub(one.name) for one in site.hubs)):
             _write_file(folder / MEMBERS_FILE, encode_members(site))
+
+    def _users(self, site: SiteMembers) -> bytes:
+        """Return names and passwords as Zenoh reads them, with one that nobody has: where there is
+        none, it asks for none."""
+        lines = [f"nobody:{secrets.token_urlsafe(PASSWORD_BYTES)}"]
+        for member in site.members:
+            if member.by_password:
+                password = (self.folder_of(member) / PASSWORD_FILE).read_text().strip()
+                lines.append(f"{member.common_name}:{password}")
+        return "".join(f"{line}\n" for line in lines).encode()
 
     def _linked_certificate(
         self, common_name: str, key: PrivateKey, hosts: Sequence[str]
@@ -241,6 +286,10 @@ def _require_host(host: str) -> None:
         return
     if not _HOST_NAME.fullmatch(host) or len(host) > 253:
         raise SettingsError(f"{host!r} is no host: write a name such as hub.local, or an address")
+
+
+def _write_password(folder: Path) -> None:
+    _write_file(folder / PASSWORD_FILE, f"{secrets.token_urlsafe(PASSWORD_BYTES)}\n".encode())
 
 
 def _write_given(folder: Path, issued: Issued, authority: bytes) -> None:

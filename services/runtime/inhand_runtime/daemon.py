@@ -228,7 +228,7 @@ def running_daemon(
     opened = open_session(settings.zenoh) if router is None else router
     with set_on_signals(stop), opened as session:
         site, instance = settings.site, settings.instance
-        if router is None and settings.zenoh.credentials is not None:
+        if router is None and settings.zenoh.joins_hub:
             require_known(session, settings, service, stop)
         with claimed_name(session, site, service, instance, stop, prepare) as elders:
             daemon = Daemon(session, site, service, instance, stop)

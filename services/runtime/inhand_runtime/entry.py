@@ -9,7 +9,7 @@ from typing import TypeVar
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
 from inhand_runtime.extras import missing_extra
-from inhand_runtime.hub_access import require_usable
+from inhand_runtime.hub_access import require_client
 from inhand_runtime.settings import Section, Settings, load_settings
 
 S = TypeVar("S", bound=Section)
@@ -47,8 +47,7 @@ def daemon_main(
         }
         settings = load_settings(chosen.config, service, model, chosen.name, given)
         if chosen.check_config:
-            if settings.zenoh.credentials is not None:
-                require_usable(settings.zenoh.credentials)
+            require_client(settings.zenoh)
             if check is not None:
                 check(settings)
             print(f"{service} {settings.instance}: the settings are valid")

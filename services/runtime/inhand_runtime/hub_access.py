@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from inhand_runtime.errors import InhandError, SettingsError
-from inhand_runtime.settings import Credentials, ZenohSettings
+from inhand_runtime.settings import Credentials, Login, ZenohSettings
 from inhand_runtime.wording import counted
 
 log = logging.getLogger(__name__)
@@ -77,12 +77,36 @@ def require_usable(given: Credentials, *, serves: bool = False) -> float:
     return days
 
 
+def require_client(settings: ZenohSettings) -> None:
+    """Look at what a client shows a hub, as the hub will; raises SettingsError or InhandError."""
+    if settings.credentials is not None:
+        require_usable(settings.credentials)
+    if settings.login is not None:
+        _trusting(settings.login.authority)
+        read_password(settings.login)
+
+
+def read_password(login: Login) -> str:
+    """Read a client's password; raises SettingsError for a file that holds none."""
+    _require_readable("password", login.password)
+    if login.password.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH):
+        log.warning("other users of this machine may read %s: chmod 600", login.password)
+    words = login.password.read_text(encoding="utf-8", errors="replace").split()
+    if len(words) != 1:
+        raise SettingsError(
+            f"password {login.password} holds no password, which is one word: copy the file that "
+            "`inhand hub add` made"
+        )
+    return words[0]
+
+
 def why_closed(settings: ZenohSettings) -> str:
     """Return why no hub lets this process in, as far as each of its addresses says."""
-    return "; ".join(_why_closed(address, settings.credentials) for address in settings.connect)
+    given = settings.credentials or settings.login
+    return "; ".join(_why_closed(address, given) for address in settings.connect)
 
 
-def _why_closed(address: str, given: Credentials | None) -> str:
+def _why_closed(address: str, given: Credentials | Login | None) -> str:
     protocol, _, place = address.partition("/")
     host, _, port = place.partition("#")[0].partition("?")[0].rpartition(":")
     host = host.strip("[]")
@@ -98,8 +122,12 @@ def _why_closed(address: str, given: Credentials | None) -> str:
         return f"no hub answers at {address}: check that it runs, the address, and firewalls"
 
 
-def _tls_refusal(connection: socket.socket, host: str, given: Credentials) -> str:
-    context = _context(ssl.PROTOCOL_TLS_CLIENT, given)
+def _tls_refusal(connection: socket.socket, host: str, given: Credentials | Login) -> str:
+    by_password = isinstance(given, Login)
+    if isinstance(given, Login):
+        context = _trusting(given.authority)
+    else:
+        context = _context(ssl.PROTOCOL_TLS_CLIENT, given)
     try:
         with context.wrap_socket(connection, server_hostname=host) as secured:
             # A server of TLS 1.3 looks at the client's certificate after the client is through.
@@ -110,13 +138,27 @@ def _tls_refusal(connection: socket.socket, host: str, given: Credentials) -> st
             "address is one that `inhand hub init` was given as a host"
         )
     except ssl.SSLError as error:
+        if by_password:
+            return (
+                f"it lets nobody in by password ({error.reason}): the address is to be that of a "
+                "hub with passwords"
+            )
         for name, text in _REFUSALS.items():
             if name in (error.reason or ""):
                 return text
         return f"it refuses the connection ({error.reason}): is it a hub that speaks TLS?"
     except TimeoutError:
-        return "it takes this certificate, and does not answer: is it overloaded, or stopped?"
-    return "it ends the connection: is it a hub of Inhand, and of this release?"
+        it_takes = "" if by_password else "takes this certificate, and "
+        return f"it {it_takes}does not answer: is it overloaded, or stopped?"
+    if by_password:
+        return (
+            "it does not take this user with this password: was it renewed, or revoked? Copy the "
+            "file that `inhand hub` made"
+        )
+    return (
+        "it ends the connection: is it a hub of Inhand, of this release, and not one for members "
+        "with passwords?"
+    )
 
 
 def _context(protocol: int, given: Credentials) -> ssl.SSLContext:
@@ -135,14 +177,26 @@ def _context(protocol: int, given: Credentials) -> ssl.SSLContext:
             f"certificate {given.certificate} and key {given.key} are no pair of PEM files: "
             f"{error.reason or 'nothing in them can be read'}"
         ) from None
+    _trust(context, given.authority)
+    return context
+
+
+def _trusting(authority: Path) -> ssl.SSLContext:
+    """Return TLS of a client that shows no certificate; raises SettingsError."""
+    _require_readable("authority", authority)
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    _trust(context, authority)
+    return context
+
+
+def _trust(context: ssl.SSLContext, authority: Path) -> None:
     try:
-        context.load_verify_locations(given.authority)
+        context.load_verify_locations(authority)
     except ssl.SSLError as error:
         raise SettingsError(
-            f"authority {given.authority} is no certificate (PEM): "
+            f"authority {authority} is no certificate (PEM): "
             f"{error.reason or 'nothing in it can be read'}"
         ) from None
-    return context
 
 
 def _require_readable(name: str, path: Path) -> None:

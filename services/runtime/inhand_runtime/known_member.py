@@ -6,11 +6,17 @@ import time
 from inhand_runtime.errors import InhandError
 from inhand_runtime.questions import ask
 from inhand_runtime.session import Session
-from inhand_runtime.settings import Section, Settings
+from inhand_runtime.settings import Section, Settings, ZenohSettings
 
 WITHIN_S = 3.0
 """Seconds in which a hub answers an instance that it knows: the hub may just have started."""
 REPLY_S, POLL_S = 1.0, 0.1
+
+
+def _shown(settings: ZenohSettings) -> str:
+    if settings.login is not None:
+        return f"the user {settings.login.user}"
+    return f"the certificate {settings.certificate}"
 
 
 def require_known(
@@ -25,8 +31,8 @@ def require_known(
     while not (stop.is_set() or any(True for _ in ask(session, key, b"", REPLY_S))):
         if time.monotonic() > end:
             raise InhandError(
-                f"the hub at {', '.join(settings.zenoh.connect)} lets the certificate "
-                f"{settings.zenoh.certificate} do nothing as {service} {settings.instance} of rig "
+                f"the hub at {', '.join(settings.zenoh.connect)} lets "
+                f"{_shown(settings.zenoh)} do nothing as {service} {settings.instance} of rig "
                 f"{site.rig!r}, realm {site.realm!r}: it was revoked, or is of another role, name, "
                 "rig or realm; `inhand hub add` says what to write"
             )

@@ -24,7 +24,10 @@ LARGEST_MESSAGE_BYTES = 64 << 20
 @dataclass(frozen=True)
 class RouterSettings:
     """Where a router listens, to which others it connects, the files (PEM) of its certificate, key
-    and authority, and Zenoh's access rules."""
+    and authority, and Zenoh's access rules.
+
+    Clients show certificates, or where there is a file of ``users`` a name and password of it.
+    """
 
     listen: tuple[str, ...]
     connect: tuple[str, ...]
@@ -32,6 +35,7 @@ class RouterSettings:
     key: Path
     authority: Path
     access_control: Mapping[str, Any]
+    users: Path | None = None
 
 
 @contextlib.contextmanager
@@ -47,16 +51,17 @@ def open_router(settings: RouterSettings) -> Iterator[Session]:
         "listen_private_key": str(settings.key),
         "connect_certificate": str(settings.certificate),
         "connect_private_key": str(settings.key),
-        "enable_mtls": True,
+        "enable_mtls": settings.users is None,
         "verify_name_on_connect": True,
         "close_link_on_expiration": True,
     }
+    by_name = {} if settings.users is None else {"dictionary_file": str(settings.users)}
     config = zenoh_config(
         {
             "mode": "router",
             "listen/endpoints": list(settings.listen),
             "listen/exit_on_failure": True,
-            "connect/endpoints": list(settings.connect),
+            "connect/endpoints": [f"{one}#enable_mtls=true" for one in settings.connect],
             "connect/timeout_ms": FOR_EVER_MS,
             "connect/exit_on_failure": False,
             "connect/retry": RETRY,
@@ -65,6 +70,7 @@ def open_router(settings: RouterSettings) -> Iterator[Session]:
             "transport/unicast/accept_timeout": HANDSHAKE_TIMEOUT_MS,
             "transport/link/protocols": ["tls"],
             "transport/link/tls": tls,
+            "transport/auth/usrpwd": by_name,
             "transport/link/rx/max_message_size": LARGEST_MESSAGE_BYTES,
             "access_control": dict(settings.access_control),
         }

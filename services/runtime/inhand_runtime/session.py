@@ -21,7 +21,7 @@ from inhand_schemas.messages import Message
 from inhand_schemas.topics import Delivery, Topic
 
 from inhand_runtime.errors import InhandError, SettingsError
-from inhand_runtime.hub_access import require_usable, why_closed
+from inhand_runtime.hub_access import read_password, require_client, why_closed
 from inhand_runtime.inbox import Received
 from inhand_runtime.reconnection import Links, Reconnection
 from inhand_runtime.settings import ZenohSettings
@@ -82,8 +82,7 @@ def open_session(settings: ZenohSettings) -> Iterator[Session]:
 def _open_client(settings: ZenohSettings) -> Session:
     if not settings.connect:
         raise SettingsError('zenoh.mode = "client" needs zenoh.connect, the addresses of hubs')
-    if settings.credentials is not None:
-        require_usable(settings.credentials)
+    require_client(settings)
     config = _config(settings, listen=(), connect=settings.connect)
     try:
         return zenoh.open(config)
@@ -157,6 +156,14 @@ def _config(
             "connect_certificate": str(settings.credentials.certificate),
             "connect_private_key": str(settings.credentials.key),
             "enable_mtls": True,
+            "verify_name_on_connect": True,
+            "close_link_on_expiration": True,
+        }
+    if settings.login is not None:
+        password = read_password(settings.login)
+        values["transport/auth/usrpwd"] = {"user": settings.login.user, "password": password}
+        values["transport/link/tls"] = {
+            "root_ca_certificate": str(settings.login.authority),
             "verify_name_on_connect": True,
             "close_link_on_expiration": True,
         }

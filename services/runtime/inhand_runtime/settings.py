@@ -71,12 +71,23 @@ class Credentials:
     authority: Path
 
 
+@dataclass(frozen=True)
+class Login:
+    """By what a client and a hub know each other where the client has no certificate: the client's
+    user, the file of its password, and the authority (PEM) of the hub's certificate."""
+
+    user: str
+    password: Path
+    authority: Path
+
+
 class ZenohSettings(Section):
     """How to reach the other processes.
 
     A ``peer`` meets the others at ``meeting``, an address of this machine that the first one
     takes; ``listen`` and ``connect`` add addresses. A ``client`` connects to hubs only, at ``tls``
-    addresses with the files that ``inhand hub add`` made: ``certificate``, ``key``, ``authority``.
+    addresses with what ``inhand hub add`` made: ``certificate``, ``key`` and ``authority``, or
+    ``user``, ``password`` (a file) and ``authority``.
     """
 
     mode: Literal["peer", "client"] = "peer"
@@ -86,23 +97,31 @@ class ZenohSettings(Section):
     certificate: FilePath | None = None
     key: FilePath | None = None
     authority: FilePath | None = None
+    user: str | None = None
+    password: FilePath | None = None
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        files = {"certificate": self.certificate, "key": self.key, "authority": self.authority}
+        files: dict[str, Path | str | None] = {
+            "certificate": self.certificate,
+            "key": self.key,
+            "authority": self.authority,
+        }
+        if self.user is not None or self.password is not None:
+            if self.certificate is not None or self.key is not None:
+                raise ValueError("a client shows a certificate or a password: leave one out")
+            files = {"user": self.user, "password": self.password, "authority": self.authority}
+        names = list(files)
+        together = f"{names[0]}, {names[1]} and {names[2]}"
         missing = [name for name, path in files.items() if path is None]
         secured = [address for address in self.connect if address.startswith("tls/")]
         if missing and len(missing) < len(files):
-            raise ValueError(
-                f"certificate, key and authority belong together: {missing[0]} is missing"
-            )
+            raise ValueError(f"{together} belong together: {missing[0]} is missing")
         if missing and secured:
-            raise ValueError(
-                f"{secured[0]} needs certificate, key and authority, which `inhand hub add` makes"
-            )
+            raise ValueError(f"{secured[0]} needs {together}, which `inhand hub add` makes")
         if not missing and (self.mode != "client" or len(secured) < len(self.connect)):
             raise ValueError(
-                'certificate, key and authority are for mode = "client" and addresses in connect '
+                f'{together} are for mode = "client" and addresses in connect '
                 "that begin with tls/: nothing else would be encrypted"
             )
         return self
@@ -113,6 +132,18 @@ class ZenohSettings(Section):
         if self.certificate is None or self.key is None or self.authority is None:
             return None
         return Credentials(self.certificate, self.key, self.authority)
+
+    @property
+    def joins_hub(self) -> bool:
+        """Whether it shows a hub who it is."""
+        return self.credentials is not None or self.login is not None
+
+    @property
+    def login(self) -> Login | None:
+        """The user and password of a client, if it has any."""
+        if self.user is None or self.password is None or self.authority is None:
+            return None
+        return Login(self.user, self.password, self.authority)
 
 
 class LogSettings(Section):
