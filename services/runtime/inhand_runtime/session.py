@@ -50,7 +50,7 @@ LEASE_MS = 10_000
 process that stands still for less loses none."""
 SIGNS_IN_A_LEASE = 10
 """Number of signs of life that are sent in that time."""
-GO_BETWEEN = "60be"
+GO_BETWEEN = "60be60be60be"
 """The first digits of the id of a session that only brings others together."""
 LONGEST_QUEUE = 16
 """Batches of 64 KiB that may wait for a link: some frames, or bursts of small messages, which share
@@ -121,7 +121,7 @@ def _reconnected(session: Session, settings: ZenohSettings) -> Iterator[None]:
 @contextlib.contextmanager
 def _go_between(settings: ZenohSettings) -> Iterator[Callable[[], Links]]:
     config = _config(settings, listen=(), connect=(settings.meeting, *settings.connect))
-    config.insert_json5("id", json.dumps(GO_BETWEEN + secrets.token_hex(14)))
+    config.insert_json5("id", json.dumps(GO_BETWEEN + secrets.token_hex(10)))
     config.insert_json5("open/return_conditions/connect_scouted", "false")
     with zenoh.open(config) as session:
         yield lambda: _links(session)
