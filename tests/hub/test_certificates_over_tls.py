@@ -62,7 +62,7 @@ def test_a_certificate_that_the_hub_does_not_take_gets_nobody_in(
     site: HubSite, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The files are not looked at before: the hub itself must refuse them.
-    monkeypatch.setattr(runtime_session, "require_usable", lambda _given: None)
+    monkeypatch.setattr(runtime_session, "require_client", lambda _settings: None)
     monkeypatch.setattr(runtime_session, "CLIENT_TIMEOUT_MS", 500)
     authority, name = authority_of(site), site.member("front").common_name
     foreign, key = new_authority("Another one"), new_key()
