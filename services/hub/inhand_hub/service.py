@@ -183,11 +183,11 @@ def _router(settings: Settings[HubSettings], site: SiteMembers) -> Iterator[Sess
     )
     router = RouterSettings(
         service.listen,
-        service.connect,
         given.certificate,
         given.key,
         given.authority,
         rules,
+        connect=service.connect,
         users=service.folder / USERS_FILE if hub is not None and hub.passwords else None,
     )
     with open_router(router) as session:

@@ -23,18 +23,18 @@ LARGEST_MESSAGE_BYTES = 64 << 20
 
 @dataclass(frozen=True)
 class RouterSettings:
-    """Where a router listens, to which others it connects, the files (PEM) of its certificate, key
-    and authority, and Zenoh's access rules.
+    """Where a router listens, the files (PEM) of its certificate, key and authority, Zenoh's access
+    rules, and to which other routers it connects.
 
     Clients show certificates, or where there is a file of ``users`` a name and password of it.
     """
 
     listen: tuple[str, ...]
-    connect: tuple[str, ...]
     certificate: Path
     key: Path
     authority: Path
     access_control: Mapping[str, Any]
+    connect: tuple[str, ...] = ()
     users: Path | None = None
 
 
