@@ -129,6 +129,9 @@ class RecognitionParameters:
     looks_at_once: float = 2.5
     """Number of looks' worth of evidence that the last looks at images are together, beside what
     adds up over time."""
+    against_at_once: float = 0.5
+    """Share of a movement's log evidence against an action that counts at once beside it, where
+    images are looked at; chosen on people of seed 91."""
 
     # What images are evidence of (presence).
     usual_support_present: float = 24.0

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from inhand_tracker.body.reader import Body
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.recognition.arm_courses import CourseFollower
@@ -69,7 +71,7 @@ class MovementRecogniser:
 
         ``seen`` (K + 1,) is the log evidence of the last looks at images, None where there is
         none. It counts over time, as any other evidence, and at once: and so does then what the
-        movement says now, so that what only looks like an object is none.
+        movement says against an action, so that what only looks like its object is none.
         """
         self.remember(time_ns, body)
         home, movement = self._movement_evidence(seeing=seen is not None)
@@ -80,8 +82,9 @@ class MovementRecogniser:
         if seen is None:
             return self._filter.step(time_ns, evidence)
         over_time = self._filter.step(time_ns, evidence + seen)
-        rest = (1.0 - self._temper) * home * movement
-        return reweighted(over_time, rest + self._parameters.looks_at_once * seen)
+        against = home * np.minimum(movement - movement[-1], 0.0)
+        at_once = self._parameters.against_at_once * against
+        return reweighted(over_time, at_once + self._parameters.looks_at_once * seen)
 
     def remember(self, time_ns: int, body: Body) -> None:
         """Take a frame in which nothing is to be recognised; the movement counts later."""
