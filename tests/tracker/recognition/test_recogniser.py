@@ -98,17 +98,41 @@ def test_who_comes_next_starts_without_a_history() -> None:
     np.testing.assert_array_equal(recogniser.step(0, body(FIRST)), first)
 
 
-def test_where_a_body_is_unlike_all_that_were_learned_the_arms_decide() -> None:
+def strange_classes(owner: int) -> tuple[MovementClasses, list[tuple[int, np.ndarray]]]:
+    """Classes of which every body is far, with one course of an action, and the poses of it."""
     poses = arm_poses(LIFT_AND_SWEEP)
     reader = ArmReader()
     taught = np.array([one for time_ns, pose in poses for one in reader.read(time_ns, pose)])
-    arms = ArmCourses(taught, np.array([len(taught)]), np.array([1]))
-    strange = replace(CLASSES, limits=np.full(2, 1e-3))
+    arms = ArmCourses(taught, np.array([len(taught)]), np.array([owner]))
+    return replace(CLASSES, limits=np.full(2, 1e-9), arms=arms), poses
+
+
+def test_where_a_body_is_unlike_all_that_were_learned_the_arms_decide() -> None:
+    strange, poses = strange_classes(owner=1)
     known = []
-    for classes in (strange, replace(strange, arms=arms), replace(CLASSES, arms=arms)):
+    for classes in (
+        replace(strange, arms=None),
+        strange,
+        replace(strange, limits=CLASSES.limits),
+    ):
         recogniser = MovementRecogniser(classes, 0.4)
         for time_ns, pose in poses:
             probabilities = recogniser.step(time_ns, body(pose))
         known.append(recognised_action(probabilities[:-1]))
     assert known[:2] == [None, 1]
     assert known[2] != 1
+
+
+def test_a_body_unlike_all_that_were_learned_whose_arms_do_nothing_needs_a_clear_look() -> None:
+    strange, poses = strange_classes(owner=1)
+
+    def last(poses: list[tuple[int, np.ndarray]], look: float) -> int | None:
+        recogniser = MovementRecogniser(strange, 0.1)
+        for time_ns, pose in poses:
+            probabilities = recogniser.step(time_ns, body(pose), np.array([0.0, look, 0.0]))
+        return recognised_action(probabilities[:-1])
+
+    still = [(frame * FRAME_NS, poses[0][1]) for frame in range(300)]
+    assert last(still, 1.3) is None
+    assert last(still, 3.5) == 1
+    assert last(poses, 1.5) == 1

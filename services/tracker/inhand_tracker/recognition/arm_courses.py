@@ -82,11 +82,16 @@ class CourseFollower:
     def evidence(self) -> Array:
         """Log evidence (K + 1,) of a frame for each action and, last, for none."""
         arms = self._parameters.arms
-        evidence = np.zeros(self._actions + 1)
-        evidence[:-1] = np.clip(
-            arms.gain * (self.scores() - arms.score), -arms.most_against, arms.most_for
-        )
-        return evidence
+        return np.clip(self._beyond(), -arms.most_against, arms.most_for)
+
+    def doubts(self) -> Array:
+        """Log evidence (K + 1,) against each action, however little its arms move alike."""
+        return np.minimum(self._beyond(), 0.0)
+
+    def _beyond(self) -> Array:
+        """By how much (K + 1,) the scores exceed what speaks for an action, as log evidence."""
+        arms = self._parameters.arms
+        return np.append(arms.gain * (self.scores() - arms.score), 0.0)
 
     def scores(self) -> Array:
         """Scores (K,) of the actions up to now."""

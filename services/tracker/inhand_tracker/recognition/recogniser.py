@@ -76,15 +76,15 @@ class MovementRecogniser:
         self.remember(time_ns, body)
         home, movement = self._movement_evidence(seeing=seen is not None)
         evidence = home * movement
+        doubts = home * self._parameters.against_at_once * np.minimum(movement - movement[-1], 0.0)
+        looks = self._parameters.looks_at_once
         if self._arms is not None and home < 1.0:
             # All of it is new: scores have added up what goes before.
             evidence = evidence + (1.0 - home) * self._arms.evidence() / self._temper
+            doubts = doubts + (1.0 - home) * looks * self._arms.doubts()
         if seen is None:
             return self._filter.step(time_ns, evidence)
-        over_time = self._filter.step(time_ns, evidence + seen)
-        against = home * np.minimum(movement - movement[-1], 0.0)
-        at_once = self._parameters.against_at_once * against
-        return reweighted(over_time, at_once + self._parameters.looks_at_once * seen)
+        return reweighted(self._filter.step(time_ns, evidence + seen), doubts + looks * seen)
 
     def remember(self, time_ns: int, body: Body) -> None:
         """Take a frame in which nothing is to be recognised; the movement counts later."""
