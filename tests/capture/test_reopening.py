@@ -65,7 +65,7 @@ def test_pauses_grow_until_a_moment_comes() -> None:
     assert capture.pauses == [1, 2, 3, 1]
 
 
-def test_pauses_double_up_to_ten_seconds() -> None:
+def test_pauses_grow_up_to_two_seconds() -> None:
     assert list(itertools.islice(growing_pauses(), 7)) == [0.5, 1, 2, 2, 2, 2, 2]
 
 

@@ -23,7 +23,7 @@ from inhand_schemas.messages import (
 )
 from inhand_schemas.topics import EVENT, INFO, LABEL, POSE, RGBD, SKELETONS, AnyTopic
 from msgspec.structs import replace
-from running_rig import RunningRig, eventually
+from running_rig import Process, RunningRig, eventually
 from wire import Wire
 
 PEER = Path(__file__).with_name("peer.py")
@@ -41,12 +41,18 @@ def test_peers_that_start_together_find_each_other(rig: RunningRig) -> None:
         peer.said("knows 2")
 
 
-def test_peers_find_a_new_one_after_the_first_was_killed(rig: RunningRig) -> None:
+def three_peers(rig: RunningRig) -> tuple[Process, list[Process]]:
+    """The peer that has the meeting address, and two others, when all know each other."""
     first = rig.python(PEER, rig.meeting)
     first.said("knows 0")
     others = [rig.python(PEER, rig.meeting) for _ in range(2)]
     for peer in (first, *others):
         peer.said("knows 2")
+    return first, others
+
+
+def test_peers_find_a_new_one_after_the_first_was_killed(rig: RunningRig) -> None:
+    first, others = three_peers(rig)
     first.stop(signal.SIGKILL)
     for peer in others:
         peer.said("knows 2\nknows 1")
@@ -56,11 +62,7 @@ def test_peers_find_a_new_one_after_the_first_was_killed(rig: RunningRig) -> Non
 
 
 def test_two_peers_whose_link_breaks_find_each_other_again(rig: RunningRig) -> None:
-    first = rig.python(PEER, rig.meeting)
-    first.said("knows 0")
-    others = [rig.python(PEER, rig.meeting) for _ in range(2)]
-    for peer in (first, *others):
-        peer.said("knows 2")
+    first, others = three_peers(rig)
     others[0].popen.send_signal(signal.SIGUSR1)
     for peer in others:
         peer.said("knows 2\nknows 1\nknows 2")

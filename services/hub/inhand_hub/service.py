@@ -52,12 +52,12 @@ def check(settings: Settings[HubSettings]) -> SiteMembers:
         raise SettingsError(
             f"a member of the site is named {settings.instance}, as this hub: name it [hub.hub]"
         )
-    if settings.service.connect and settings.instance not in {one.name for one in site.hubs}:
+    hub = site.hub(settings.instance)
+    if settings.service.connect and hub is None:
         raise SettingsError(
             f"hub.{settings.instance} connects to another hub, and the site has no further hub of "
             f"that name: `inhand hub add hub {settings.instance}`, or leave connect out"
         )
-    hub = site.hub(settings.instance)
     if hub is not None and hub.passwords:
         _require_users(settings.service.folder / USERS_FILE, site.members_of(hub.name))
     require_usable(_credentials(settings), serves=True)
@@ -168,8 +168,8 @@ class _Watch:
             days = require_usable(_credentials(self._settings), serves=True)
         except InhandError:  # files that are being changed are looked at by ``changed``
             return []
-        further = {one.name for one in self._site.hubs}
-        name = self._settings.instance if self._settings.instance in further else "hub"
+        hub = self._site.hub(self._settings.instance)
+        name = "hub" if hub is None else hub.name
         return [(name, days)] if days < DEFAULT_HUB.warned_days else []
 
 

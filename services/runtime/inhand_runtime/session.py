@@ -11,6 +11,7 @@ import json
 import secrets
 import time
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import zenoh
@@ -152,22 +153,25 @@ def _config(
     }
     if settings.credentials is not None:
         values["transport/link/tls"] = {
-            "root_ca_certificate": str(settings.credentials.authority),
+            **_known_by(settings.credentials.authority),
             "connect_certificate": str(settings.credentials.certificate),
             "connect_private_key": str(settings.credentials.key),
             "enable_mtls": True,
-            "verify_name_on_connect": True,
-            "close_link_on_expiration": True,
         }
     if settings.login is not None:
         password = read_password(settings.login)
         values["transport/auth/usrpwd"] = {"user": settings.login.user, "password": password}
-        values["transport/link/tls"] = {
-            "root_ca_certificate": str(settings.login.authority),
-            "verify_name_on_connect": True,
-            "close_link_on_expiration": True,
-        }
+        values["transport/link/tls"] = _known_by(settings.login.authority)
     return zenoh_config(values)
+
+
+def _known_by(authority: Path) -> dict[str, Any]:
+    """Zenoh's settings of TLS by which a client knows its hub."""
+    return {
+        "root_ca_certificate": str(authority),
+        "verify_name_on_connect": True,
+        "close_link_on_expiration": True,
+    }
 
 
 def zenoh_config(values: Mapping[str, Any]) -> zenoh.Config:

@@ -98,17 +98,17 @@ def test_who_comes_next_starts_without_a_history() -> None:
     np.testing.assert_array_equal(recogniser.step(0, body(FIRST)), first)
 
 
-def strange_classes(owner: int) -> tuple[MovementClasses, list[tuple[int, np.ndarray]]]:
-    """Classes of which every body is far, with one course of an action, and the poses of it."""
+def strange_classes() -> tuple[MovementClasses, list[tuple[int, np.ndarray]]]:
+    """Classes of which every body is far, with one course of action 1, and the poses of it."""
     poses = arm_poses(LIFT_AND_SWEEP)
     reader = ArmReader()
     taught = np.array([one for time_ns, pose in poses for one in reader.read(time_ns, pose)])
-    arms = ArmCourses(taught, np.array([len(taught)]), np.array([owner]))
+    arms = ArmCourses(taught, np.array([len(taught)]), np.array([1]))
     return replace(CLASSES, limits=np.full(2, 1e-9), arms=arms), poses
 
 
 def test_where_a_body_is_unlike_all_that_were_learned_the_arms_decide() -> None:
-    strange, poses = strange_classes(owner=1)
+    strange, poses = strange_classes()
     known = []
     for classes in (
         replace(strange, arms=None),
@@ -124,7 +124,7 @@ def test_where_a_body_is_unlike_all_that_were_learned_the_arms_decide() -> None:
 
 
 def test_a_body_unlike_all_that_were_learned_whose_arms_do_nothing_needs_a_clear_look() -> None:
-    strange, poses = strange_classes(owner=1)
+    strange, poses = strange_classes()
 
     def last(poses: list[tuple[int, np.ndarray]], look: float) -> int | None:
         recogniser = MovementRecogniser(strange, 0.1)
