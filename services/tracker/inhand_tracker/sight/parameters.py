@@ -134,6 +134,14 @@ class SightParameters:
     """Metres that a pose may be off before the first step, where no prior says more."""
     reach_rad: float = 0.2
     """Radians that a pose may be off before the first step, where no prior says more."""
+    exact_steps: int = 3
+    exact_reach: float = 4.0
+    least_contrast: float = 40.0
+    exact_noise: float = 0.1
+    exact_gain: float = 3.0
+    exact_thickness: float = 4.5
+    exact_depth_gain: float = 1.0
+    common_pixels: float = 0.5
     outline_point_weight: float = 0.2
     """Share of its information that a point of the outline keeps; neighbours are not
     independent."""

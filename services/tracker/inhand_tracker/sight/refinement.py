@@ -116,6 +116,19 @@ class PoseRefiner:
                 self._settings(view, trust * self._thinness(outlines)),
                 information,
             )
+        if parameters.exact_steps:
+            refine(
+                moved,
+                priors,
+                Steps(np.full(parameters.exact_steps, self._shares[-1]), reaches, self._damping),
+                self._outlines,
+                view.pixels,
+                self._settings(view, trust)._replace(
+                    exact=True,
+                    surface_weight=trust * parameters.surface_point_weight * parameters.exact_depth_gain,
+                ),
+                information,
+            )
         return Moved(*moved, parameters.information_share * information)
 
     def _thinness(self, outlines: Outlines) -> float:
@@ -162,4 +175,11 @@ def _usual_settings(wanted: Flags, returned: float, parameters: SightParameters)
         behind_per_m=parameters.behind_per_m,
         colour_weight=parameters.surface_colour_weight,
         limb_factor=parameters.surface_limb_factor,
+        exact=False,
+        exact_reach=parameters.exact_reach,
+        least_contrast=parameters.least_contrast,
+        exact_noise=parameters.exact_noise,
+        common_pixels=parameters.common_pixels,
+        exact_gain=parameters.exact_gain,
+        exact_thickness=parameters.exact_thickness,
     )

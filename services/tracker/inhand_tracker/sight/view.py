@@ -39,6 +39,7 @@ class SightView:
             self.colour_scores,
             self.limbs,
             np.zeros(size, np.float32) if depth is None else depth,
+            np.zeros((*size, 3), np.uint8) if frame.colour is None else frame.colour,
         )
 
 

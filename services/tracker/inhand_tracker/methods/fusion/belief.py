@@ -122,12 +122,14 @@ class BodyExpectation:
 @dataclass(frozen=True)
 class Belief:
     """The end of a frame: what the body alone made likely, and what was believed at last;
-    ``earlier`` is the frame before it, where there is one."""
+    ``earlier`` is the frame before it, where there is one. Where the body leapt, and has the object
+    elsewhere than is believed since, ``steady`` is the last frame before that."""
 
     expected: Expected
     believed: PoseGaussian
     time_ns: int
     earlier: "Belief | None" = None
+    steady: "Belief | None" = None
 
 
 def carry_over(
@@ -146,14 +148,14 @@ def carry_over(
     than what it makes likely.
     """
     elapsed_s = (time_ns - before.time_ns) / 1e9
-    was, now = before.expected.whole, expected.whole
-    if before.expected.alternatives is not None and expected.alternatives is not None:
-        was, now = before.expected.alternatives[0], expected.alternatives[0]
-    stays = _stays(was, before.believed, now, elapsed_s, persistence_s, parameters.forgetting_s)
+    steady = steady_before(before, expected, time_ns, parameters)
+    leaps = steady is not None
+    again = before.steady is not None and _leaps(before, expected, elapsed_s, parameters)
+    stays = _stays(steady or before, expected, time_ns, persistence_s, parameters.forgetting_s)
     afresh = expect_afresh(expected)
     parts = [stays, *afresh.parts]
     shares = [parameters.stays_share, *(parameters.afresh_share * afresh.weights)]
-    of_body, leaps = len(parts), _leaps(before, expected, elapsed_s, parameters)
+    of_body = len(parts)
     if parameters.leaves:
         parts.append(_left(before.believed, parameters))
         shares.append(parameters.left_share)
@@ -165,9 +167,25 @@ def carry_over(
     if leaps and len(parts) > of_body:
         by_body = np.arange(len(parts)) < of_body
         weights = np.array(shares)
-        weights[by_body] *= (1.0 - parameters.leap_doubt) / weights[by_body].sum()
-        weights[~by_body] *= parameters.leap_doubt / weights[~by_body].sum()
+        # A body that leaps again may be back.
+        doubt = parameters.leap_doubt if steady is before or not again else 0.5
+        weights[by_body] *= (1.0 - doubt) / weights[by_body].sum()
+        weights[~by_body] *= doubt / weights[~by_body].sum()
     return PoseMixture(tuple(parts), weights)
+
+
+def steady_before(
+    before: Belief, expected: Expected, time_ns: int, parameters: FusionParameters
+) -> Belief | None:
+    """Return the last frame before the body leapt, where it has the object elsewhere than was
+    believed since; None where it did not leap, or too long ago."""
+    steady = before.steady
+    if _leaps(before, expected, (time_ns - before.time_ns) / 1e9, parameters):
+        return before if steady is None else steady
+    if steady is None or time_ns - steady.time_ns > 1e9 * parameters.leap_lasts_s:
+        return None
+    apart = float(np.linalg.norm(expected.whole.centre - before.believed.centre))
+    return steady if apart > parameters.leap_apart_m else None
 
 
 def _leaps(
@@ -193,27 +211,30 @@ def expect_afresh(expected: Expected) -> PoseMixture:
 
 
 def _stays(
-    was: PoseGaussian,
-    believed: PoseGaussian,
-    expected: PoseGaussian,
-    elapsed_s: float,
+    before: Belief,
+    expected: Expected,
+    time_ns: int,
     persistence_s: float,
     forgetting_s: float,
 ) -> PoseGaussian:
-    """The pose that differs from the expected one as what was believed did from what ``was``
-    expected, a little less."""
+    """The pose that differs from the expected one as what was believed ``before`` did from what
+    was expected then, a little less."""
+    elapsed_s = (time_ns - before.time_ns) / 1e9
+    was, now, believed = before.expected.whole, expected.whole, before.believed
+    if before.expected.alternatives is not None and expected.alternatives is not None:
+        was, now = before.expected.alternatives[0], expected.alternatives[0]
     kept = float(np.exp(-elapsed_s / persistence_s))
     inverse = rotations.conjugate(was.rotation)
     moved = rotations.rotate(inverse, believed.centre - was.centre)
     turned = rotations.to_vector(rotations.multiply(inverse, believed.rotation))
-    rotation = rotations.multiply(expected.rotation, rotations.from_vector(kept * turned))
+    rotation = rotations.multiply(now.rotation, rotations.from_vector(kept * turned))
     turn = rotations.multiply(rotation, rotations.conjugate(believed.rotation))
     turned_covariance = turn_blocks(believed.covariance, rotations.to_matrix(turn))
     sure = float(np.exp(-elapsed_s / forgetting_s)) ** 2
     return PoseGaussian(
-        expected.centre + rotations.rotate(expected.rotation, kept * moved),
+        now.centre + rotations.rotate(now.rotation, kept * moved),
         rotation,
-        sure * turned_covariance + (1.0 - sure) * expected.covariance,
+        sure * turned_covariance + (1.0 - sure) * now.covariance,
     )
 
 

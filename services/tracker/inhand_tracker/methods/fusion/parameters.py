@@ -52,12 +52,17 @@ class FusionParameters:
     """Metres a second, beside those, by which what a body makes likely goes at the most."""
     leap_doubt: float = 0.7
     """Probability that a body that leaps is wrong, and the object stays or goes on as it went."""
+    leap_lasts_s: float = 0.5
+    leap_apart_m: float = 0.1
     forgetting_s: float = 0.3
     """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
 
     # How an image is searched (search, posterior).
     hypotheses: int = 120
     """Number of hypotheses; cost grows with it (`inhand bench tracker`)."""
+    even_share: float = 0.4
+    sharp: float = 0.3
+    unconvincing: float = 16.0
     fewest_hypotheses: int = 25
     """Number of hypotheses that are tried with however little effort."""
     refines: bool = True
@@ -66,14 +71,14 @@ class FusionParameters:
     """Number of hypotheses, best first, that are refined, beside the mean of each part believed."""
     least_refined_weight: float = 0.02
     """Weight of a part of the belief below which its mean is not refined."""
-    image_temper: float = 0.4
+    image_temper: float = 0.8
     """Share of an image's log-likelihood that counts: one frame's errors are the next one's too."""
-    refinement_temper: float = 0.1
+    refinement_temper: float = 0.15
     """Share of the image's information that refinement keeps; neighbouring pixels are not
     independent."""
     least_sharpness: float = 1e-3
     """Sharpness below which no image is taken to be, so that none is divided by nothing."""
-    blurred_pixels: float = 20.0
+    blurred_pixels: float = 40.0
     """Pixels that an object goes from frame to frame where its image counts half: its outline is a
     smear. Decided on real bodies (`inhand simulate --bodies`), where a fast club misled."""
     region_margin: float = 1.3
@@ -97,7 +102,7 @@ class FusionParameters:
     """Log-likelihood ratio by which an image must support an estimate to teach its colours."""
 
     # What is stated (tracker).
-    seen_covariance_scale: float = 0.8
+    seen_covariance_scale: float = 0.5
     """Factor on the covariance of an estimate that used an image: Laplace's approximation is too
     wide. The share of truths within the 90 % region shows it (`inhand evaluate`)."""
     confidence_samples: int = 256

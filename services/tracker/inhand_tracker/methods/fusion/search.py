@@ -60,7 +60,7 @@ class ImageSearch:
         """
         self._support = None
         parameters = self._parameters.with_effort(effort)
-        hypotheses = belief.sample(parameters.hypotheses, self._random)
+        hypotheses = belief.sample(parameters.hypotheses, self._random, parameters.even_share)
         region = self._region(self._sphere.middles(*hypotheses), image.camera)
         if region is None:
             self._found = self.tried = None
@@ -74,6 +74,14 @@ class ImageSearch:
         if thoroughly:
             self.tried = narrow(posterior, self.tried, self._random)
         modes, seen = posterior.modes(*self._starts(posterior, self.tried))
+        if (
+            not thoroughly
+            and sharpness >= parameters.sharp
+            and seen.max() < parameters.unconvincing
+        ):
+            self.tried = narrow(posterior, self.tried, self._random)
+            posterior = replace(posterior, thorough=True)
+            modes, seen = posterior.modes(*self._starts(posterior, self.tried))
         weighed = posterior.weigh(modes, seen)
         if self._looks % parameters.looks_to_learn == 0:
             best = int(np.argmax(weighed.weights))

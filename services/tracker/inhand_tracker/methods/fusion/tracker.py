@@ -27,6 +27,7 @@ from inhand_tracker.methods.fusion.belief import (
     Expected,
     carry_over,
     expect_afresh,
+    steady_before,
 )
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
 from inhand_tracker.methods.fusion.search import ImageSearch
@@ -151,7 +152,9 @@ class FusionFollower(Follower):
         before = self._before
         if before is None or not continues(before.time_ns, time_ns):
             return Belief(expected, believed, time_ns)
-        return Belief(expected, believed, time_ns, replace(before, earlier=None))
+        steady = steady_before(before, expected, time_ns, self._parameters)
+        earlier = replace(before, earlier=None, steady=None)
+        return Belief(expected, believed, time_ns, earlier, steady and replace(steady, earlier=None))
 
     def _carry_over(self, expected: Expected, time_ns: int) -> PoseMixture:
         """What is believed before the image is seen; after a gap, what the body says alone."""

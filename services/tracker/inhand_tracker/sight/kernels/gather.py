@@ -35,6 +35,13 @@ class GatherSettings(NamedTuple):
     behind_per_m: float
     colour_weight: float
     limb_factor: float
+    exact: bool
+    exact_reach: float
+    least_contrast: float
+    exact_noise: float
+    common_pixels: float
+    exact_gain: float
+    exact_thickness: float
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
@@ -97,6 +104,8 @@ def _gather_outline(
     fx, fy = lens[0], lens[1]
     height, width = pixels.limbs.shape
     weight = settings.outline_weight * outlines.lengths[view]
+    common = np.zeros(6)
+    common_weight = common_residual = 0.0
     for point in range(outlines.points.shape[2]):
         a, b, c = outlines.points[view, :, point]
         arm, (px, py, pz), (u, v) = _placed(turn, place, (a, b, c), lens)
@@ -112,18 +121,41 @@ def _gather_outline(
         if length < 1e-9:
             continue
         nx, ny = nx / length, ny / length
-        step = max(reach * fx / pz / settings.samples, settings.least_step_pixels)
         sides = outlines.inside[view, point] * fx / pz, outlines.outside[view, point] * fx / pz
-        _sample_across((u, v, nx, ny), step, sides, pixels, settings, buffers)
-        mean, variance = _outline_offset(step, settings.samples, buffers)
-        variance += np.square(settings.contour_error_m * fx / pz)
-        flat = settings.samples * (settings.samples + 1) * step * step / 3.0
-        certainty = 1.0 / variance - 1.0 / flat
-        if certainty <= 0.0:
-            continue
+        if settings.exact and min(sides[0], sides[1]) > settings.exact_thickness:
+            ok, mean, certainty = _mixed_offset((u, v, nx, ny), sides, pixels, settings)
+            if not ok:
+                continue
+            variance = 1.0 / certainty + np.square(settings.contour_error_m * fx / pz)
+            certainty = settings.exact_gain / variance
+        else:
+            step = max(reach * fx / pz / settings.samples, settings.least_step_pixels)
+            _sample_across((u, v, nx, ny), step, sides, pixels, settings, buffers)
+            mean, variance = _outline_offset(step, settings.samples, buffers, sides[0])
+            variance += np.square(settings.contour_error_m * fx / pz)
+            flat = settings.samples * (settings.samples + 1) * step * step / 3.0
+            certainty = 1.0 / variance - 1.0 / flat
+            if certainty <= 0.0:
+                continue
         # The pixel's displacement along (nx, ny) by a displacement of the point.
         across = nx * fx / pz, ny * fy / pz, -(nx * fx * px + ny * fy * py) / (pz * pz)
         add(equation, across, arm, mean, weight * certainty)
+        w = weight * certainty
+        common_weight += w
+        common_residual += w * mean
+        common[0] += w * across[0]
+        common[1] += w * across[1]
+        common[2] += w * across[2]
+        common[3] += w * (arm[1] * across[2] - arm[2] * across[1])
+        common[4] += w * (arm[2] * across[0] - arm[0] * across[2])
+        common[5] += w * (arm[0] * across[1] - arm[1] * across[0])
+    if settings.common_pixels > 0.0:
+        whole = common_weight + 1.0 / (settings.common_pixels * settings.common_pixels)
+        information, gradient = equation
+        for i in range(6):
+            gradient[i] -= common[i] * common_residual / whole
+            for j in range(6):
+                information[i, j] -= common[i] * common[j] / whole
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
@@ -152,7 +184,7 @@ def _sample_across(
         if not projection.in_image(su, sv, width, height):
             continue
         column, row = int(su), int(sv)
-        if settings.wanted[1] and -away < sides[0] and away < sides[1]:
+        if settings.wanted[1] and away < sides[1]:
             within[sample] = step * pixels.colour_scores[row, column, 0]
             beside[sample] = step * pixels.colour_scores[row, column, 1]
         if (
@@ -165,28 +197,118 @@ def _sample_across(
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
+def _mixed_offset(
+    line: tuple[float, float, float, float],
+    sides: tuple[float, float],
+    pixels: ScoredPixels,
+    settings: GatherSettings,
+) -> tuple[bool, float, float]:
+    """Where the outline lies by the colours' mixture."""
+    u, v, nx, ny = line
+    height, width = pixels.limbs.shape
+    reach = settings.exact_reach
+    low, high = min(sides[0] - 0.75, reach), min(sides[1] - 0.75, reach)
+    if low < 1.0 or high < 1.0:
+        return False, 0.0, 0.0
+    if not projection.in_image(u - low * nx - 1.0, v - low * ny - 1.0, width, height):
+        return False, 0.0, 0.0
+    if not projection.in_image(u + high * nx + 1.0, v + high * ny + 1.0, width, height):
+        return False, 0.0, 0.0
+    if not projection.in_image(u - low * nx + 1.0, v - low * ny + 1.0, width, height):
+        return False, 0.0, 0.0
+    if not projection.in_image(u + high * nx - 1.0, v + high * ny - 1.0, width, height):
+        return False, 0.0, 0.0
+    count = 12
+    step = (low + high) / count
+    inner_gap, outer_gap = min(1.25, 0.6 * low), min(1.25, 0.6 * high)
+    red, green, blue = np.empty(count + 1), np.empty(count + 1), np.empty(count + 1)
+    fr = fg = fb = br = bg = bb = 0.0
+    fn = bn = 0.0
+    odds_in = odds_out = 0.0
+    for sample in range(count + 1):
+        away = sample * step - low
+        x, y = u + away * nx - 0.5, v + away * ny - 0.5
+        column, row = int(np.floor(x)), int(np.floor(y))
+        column, row = min(max(column, 0), width - 2), min(max(row, 0), height - 2)
+        p, q = x - column, y - row
+        w00, w10, w01, w11 = (1 - p) * (1 - q), p * (1 - q), (1 - p) * q, p * q
+        c = pixels.colour
+        r = w00 * c[row, column, 0] + w10 * c[row, column + 1, 0] + w01 * c[row + 1, column, 0] + w11 * c[row + 1, column + 1, 0]
+        g = w00 * c[row, column, 1] + w10 * c[row, column + 1, 1] + w01 * c[row + 1, column, 1] + w11 * c[row + 1, column + 1, 1]
+        b = w00 * c[row, column, 2] + w10 * c[row, column + 1, 2] + w01 * c[row + 1, column, 2] + w11 * c[row + 1, column + 1, 2]
+        red[sample], green[sample], blue[sample] = r, g, b
+        if away <= -inner_gap:
+            fr += r
+            fg += g
+            fb += b
+            fn += 1.0
+            odds_in += pixels.colour_scores[int(y + 0.5), int(x + 0.5), 0] - pixels.colour_scores[int(y + 0.5), int(x + 0.5), 1]
+        elif away >= outer_gap:
+            br += r
+            bg += g
+            bb += b
+            bn += 1.0
+            odds_out += pixels.colour_scores[int(y + 0.5), int(x + 0.5), 0] - pixels.colour_scores[int(y + 0.5), int(x + 0.5), 1]
+    if fn < 1.0 or bn < 1.0:
+        return False, 0.0, 0.0
+    odds_in /= fn
+    odds_out /= bn
+    if odds_in < 0.0 or odds_out > 0.0:
+        return False, 0.0, 0.0
+    fr, fg, fb = fr / fn, fg / fn, fb / fn
+    br, bg, bb = br / bn, bg / bn, bb / bn
+    gr, gg, gb = fr - br, fg - bg, fb - bb
+    contrast = gr * gr + gg * gg + gb * gb
+    if contrast < settings.least_contrast * settings.least_contrast:
+        return False, 0.0, 0.0
+    total = off = 0.0
+    for sample in range(count + 1):
+        share = ((red[sample] - br) * gr + (green[sample] - bg) * gg + (blue[sample] - bb) * gb) / contrast
+        # what is neither
+        er = red[sample] - br - share * gr
+        eg = green[sample] - bg - share * gg
+        eb = blue[sample] - bb - share * gb
+        off += (er * er + eg * eg + eb * eb) / contrast
+        share = min(max(share, -0.25), 1.25)
+        total += share * (0.5 if sample == 0 or sample == count else 1.0)
+        model = 1.0 if sample * step - low < 0 else 0.0
+    mean = step * total - low
+    variance = settings.exact_noise + 2.0 * off / (count + 1) + 0.1 * mean * mean
+    return True, mean, 1.0 / variance
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
 def _outline_offset(
-    step: float, samples: int, buffers: tuple[Array, Array, Array]
+    step: float, samples: int, buffers: tuple[Array, Array, Array], thickness: float
 ) -> tuple[float, float]:
-    """Return the mean and variance, in pixels, of where the outline lies across a point of it.
+    """Return the mean and variance, in pixels, of where the outline lies across a point of it,
+    where the silhouette is so many pixels thick.
 
     The ``buffers`` of ``_sample_across`` are used up.
     """
     log_posterior, within, beside = buffers
+    count = 2 * samples + 1
     before = 0.0
-    most = -1e30
-    for sample in range(2 * samples + 1):
+    for sample in range(count):
         # Half of the pixel that the outline runs through is on either side.
         middle = 0.5 * (within[sample] - beside[sample])
-        log_posterior[sample] += before + middle
+        within[sample] = before + middle
         before += 2.0 * middle
+    most = -1e30
+    for sample in range(count):
+        # The object lies between this outline and the one on its other side.
+        other = sample - thickness / step
+        score = within[sample]
+        if other > 0.0:
+            index = int(other)
+            part = other - index
+            score -= (1.0 - part) * within[index] + part * within[index + 1]
+        log_posterior[sample] += score
         most = max(most, log_posterior[sample])
-    for sample in range(2 * samples + 1):
-        within[sample] = exponential(log_posterior[sample] - most)
     mass = mean = square = 0.0
-    for sample in range(2 * samples + 1):
+    for sample in range(count):
         away = (sample - samples) * step
-        share = within[sample]
+        share = exponential(log_posterior[sample] - most)
         mass += share
         mean += share * away
         square += share * away * away

@@ -39,6 +39,7 @@ class ScoredPixels(NamedTuple):
     colour_scores: Singles
     limbs: Bytes
     depth: Singles
+    colour: Bytes
 
 
 class Sensor(NamedTuple):

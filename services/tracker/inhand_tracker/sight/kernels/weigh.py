@@ -61,7 +61,7 @@ def weigh(
     What is not wanted is not read, and its scores are 0.
     """
     grid, directions, points, normals, inside, outside, surface_points, _, sizes, lengths = outlines
-    lens, edges, edge_scores, colour_scores, limbs, depth = pixels
+    lens, edges, edge_scores, colour_scores, limbs, depth, _ = pixels
     wanted, depth_scores, sensor = settings.wanted, settings.depth_scores, settings.sensor
     limb_weight, scale_per_pixel = settings.limb_weight, settings.scale_per_pixel
     least_outline, most_outline = settings.least_outline_scale, settings.most_outline_scale
