@@ -51,6 +51,7 @@ def pixels(depth: float = 0.5, spread: float = 0.04) -> ScoredPixels:
         random.normal(size=(HEIGHT, WIDTH, 2)).astype(np.float32),
         (random.random((HEIGHT, WIDTH)) < 0.2).astype(np.uint8),
         np.where(random.random(depths.shape) < 0.1, 0.0, depths).astype(np.float32),
+        random.integers(0, 256, (HEIGHT, WIDTH, 3)).astype(np.uint8),
     )
 
 

@@ -134,14 +134,6 @@ class SightParameters:
     """Metres that a pose may be off before the first step, where no prior says more."""
     reach_rad: float = 0.2
     """Radians that a pose may be off before the first step, where no prior says more."""
-    exact_steps: int = 3
-    exact_reach: float = 4.0
-    least_contrast: float = 40.0
-    exact_noise: float = 0.1
-    exact_gain: float = 3.0
-    exact_thickness: float = 4.5
-    exact_depth_gain: float = 1.0
-    common_pixels: float = 0.5
     outline_point_weight: float = 0.2
     """Share of its information that a point of the outline keeps; neighbours are not
     independent."""
@@ -156,6 +148,22 @@ class SightParameters:
     contour_error_m: float = 0.002
     """Standard deviation, in metres, of an outline that is taken from the nearest direction, and
     as if seen from far away."""
+    common_pixels: float = 0.5
+    """Standard deviation, in pixels, of an error that all of an outline has, outwards or inwards:
+    blur and shade, which make an object nearer or farther away."""
+    mixed_steps: int = 3
+    """Number of further steps, in which the outline of what is wide enough is where the colours on
+    its two sides mix (kernels/mixed_offset)."""
+    mixed_reach_pixels: float = 4.0
+    """How far these colours are looked at, in pixels, on either side."""
+    mixed_least_pixels: float = 4.5
+    """Least width, in pixels, of an object and of the gap beside it whose colours show unmixed."""
+    mixed_contrast: float = 40.0
+    """Least distance of these colours, in levels of red, green and blue."""
+    mixed_variance: float = 0.1
+    """Variance, in pixels², of where they mix, on lines without anything else."""
+    mixed_gain: float = 3.0
+    """How much more that counts than where an outline is by histograms and edges."""
     in_front_per_m: float = 3.0
     """Density, for each metre, of other surfaces that are measured just before the object's."""
     behind_per_m: float = 1.5

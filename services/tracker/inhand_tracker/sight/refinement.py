@@ -13,6 +13,7 @@ from inhand_tracker.geometry.kernels.pose_normals import inverses, squares_by_in
 from inhand_tracker.sight.depth_table import sensor_of
 from inhand_tracker.sight.kernels.gather import GatherSettings
 from inhand_tracker.sight.kernels.inputs import Outlines
+from inhand_tracker.sight.kernels.mixed_offset import Mixing
 from inhand_tracker.sight.kernels.refine import Priors, Steps, refine
 from inhand_tracker.sight.parameters import SightParameters
 from inhand_tracker.sight.view import SightView
@@ -102,31 +103,20 @@ class PoseRefiner:
         moved = poses[0].astype(np.float64), poses[1].astype(np.float64)
         priors, reaches = self._priors(prior, count)
         information = np.zeros((count, 6, 6))
-        first = parameters.thin_steps
-        for outlines, shares in (
-            (self._thin, self._shares[:first]),
-            (self._outlines, self._shares[first:]),
+        first, last = parameters.thin_steps, self._shares[-1]
+        for outlines, shares, mixes in (
+            (self._thin, self._shares[:first], False),
+            (self._outlines, self._shares[first:], False),
+            (self._outlines, np.full(parameters.mixed_steps, last), True),
         ):
+            settings = self._settings(view, trust * self._thinness(outlines))
             refine(
                 moved,
                 priors,
                 Steps(shares, reaches, self._damping),
                 outlines,
                 view.pixels,
-                self._settings(view, trust * self._thinness(outlines)),
-                information,
-            )
-        if parameters.exact_steps:
-            refine(
-                moved,
-                priors,
-                Steps(np.full(parameters.exact_steps, self._shares[-1]), reaches, self._damping),
-                self._outlines,
-                view.pixels,
-                self._settings(view, trust)._replace(
-                    exact=True,
-                    surface_weight=trust * parameters.surface_point_weight * parameters.exact_depth_gain,
-                ),
+                settings._replace(mixes=mixes and view.frame.colour is not None),
                 information,
             )
         return Moved(*moved, parameters.information_share * information)
@@ -175,11 +165,13 @@ def _usual_settings(wanted: Flags, returned: float, parameters: SightParameters)
         behind_per_m=parameters.behind_per_m,
         colour_weight=parameters.surface_colour_weight,
         limb_factor=parameters.surface_limb_factor,
-        exact=False,
-        exact_reach=parameters.exact_reach,
-        least_contrast=parameters.least_contrast,
-        exact_noise=parameters.exact_noise,
         common_pixels=parameters.common_pixels,
-        exact_gain=parameters.exact_gain,
-        exact_thickness=parameters.exact_thickness,
+        mixing=Mixing(
+            parameters.mixed_reach_pixels,
+            parameters.mixed_least_pixels,
+            parameters.mixed_contrast,
+            parameters.mixed_variance,
+            parameters.mixed_gain,
+        ),
+        mixes=False,
     )

@@ -17,6 +17,7 @@ from inhand_tracker.methods.fusion.belief import (
     Expected,
     carry_over,
     expect_afresh,
+    steady_before,
 )
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION
 from people import (
@@ -133,6 +134,33 @@ def test_a_body_that_was_on_its_way_or_had_time_does_not_leap() -> None:
     assert len(leapt(0.35, moving)) == 3
     assert len(leapt(0.35, frames=10)) == 3
     assert len(leapt(0.35, replace(AT_REST, earlier=None))) == 3
+
+
+def believed_apart(metres: float, *, after_ns: int = FRAME_NS) -> Belief:
+    """A frame in which the object was believed to have stayed, as the body had it so far away; so
+    long after it leapt."""
+    far = replace(EXPECTED, centre=BELIEVED.centre + np.array([metres, 0.0, 0.0]))
+    steady = replace(AT_REST, earlier=None, time_ns=SECOND - after_ns)
+    return replace(AT_REST, expected=Expected(far), steady=steady)
+
+
+def test_a_body_that_stays_away_where_it_leapt_to_may_be_wrong_until_it_is_back_or_long_away() -> (
+    None
+):
+    """A wrist that is lost jumps, and stays off for several frames."""
+    away = believed_apart(0.4)
+    now = Expected(replace(EXPECTED, centre=away.expected.whole.centre + 0.01))
+    mixed = carry_over(away, now, SECOND + FRAME_NS, FOR_EVER_S, DEFAULT_FUSION)
+    assert mixed.weights[2:].sum() == pytest.approx(DEFAULT_FUSION.leap_doubt)
+    # If the body is right, the object differs from it as it did before the leap.
+    of_body = mixed.parts[0].centre - now.whole.centre
+    assert np.linalg.norm(of_body) < 1.5 * np.linalg.norm(BELIEVED.centre - EXPECTED.centre)
+    near = Expected(replace(EXPECTED, centre=BELIEVED.centre + 0.02))
+    assert steady_before(away, near, SECOND + FRAME_NS, DEFAULT_FUSION) is not None
+    slow = replace(away, expected=near)
+    assert steady_before(slow, near, SECOND + FRAME_NS, DEFAULT_FUSION) is None
+    late = believed_apart(0.4, after_ns=SECOND)
+    assert steady_before(late, now, SECOND + FRAME_NS, DEFAULT_FUSION) is None
 
 
 # --- Postures unlike all that were learned

@@ -31,9 +31,8 @@ def test_a_score_is_the_belief_and_the_tempered_image(sharpness: float) -> None:
     poses = alone(TRUE).sample(10, np.random.default_rng(0))
     scores, seen = posterior(WIDE, sharpness=sharpness).scores(*poses)
     np.testing.assert_allclose(seen, SIGHT.log_likelihood(*poses, View(None, None)))
-    np.testing.assert_allclose(
-        scores, 0.4 * sharpness * seen + alone(WIDE).log_densities(*poses)[0]
-    )
+    tempered = DEFAULT_FUSION.image_temper * sharpness * seen
+    np.testing.assert_allclose(scores, tempered + alone(WIDE).log_densities(*poses)[0])
 
 
 def test_starts_that_lead_to_one_place_give_one_mode() -> None:
@@ -41,7 +40,8 @@ def test_starts_that_lead_to_one_place_give_one_mode() -> None:
     (mode,), seen = posterior(WIDE).modes(*starts)
     np.testing.assert_allclose(mode.centre, TRUE.centre)
     np.testing.assert_allclose(seen, 5.0)
-    information = np.linalg.inv(WIDE.covariance) + 0.1 * np.linalg.inv(TRUE.covariance)
+    kept = DEFAULT_FUSION.refinement_temper
+    information = np.linalg.inv(WIDE.covariance) + kept * np.linalg.inv(TRUE.covariance)
     np.testing.assert_allclose(mode.covariance, np.linalg.inv(information), rtol=1e-9)
 
 

@@ -64,7 +64,8 @@ def test_an_image_counts_by_its_temper_and_never_for_nothing() -> None:
     sight = GaussianSight()
     for sharpness in (1.0, 0.5, 0.0):
         looked(sight, sharpness=sharpness)
-    assert sight.trusts == pytest.approx([0.4, 0.2, 0.4e-3])
+    temper = DEFAULT_FUSION.image_temper
+    assert sight.trusts == pytest.approx([temper, 0.5 * temper, 1e-3 * temper])
 
 
 def weighed_with(effort: float, parameters: FusionParameters = DEFAULT_FUSION) -> int:
@@ -157,19 +158,36 @@ def test_images_in_the_light_of_training_are_searched_as_they_are() -> None:
     np.testing.assert_array_equal(*looks)
 
 
-def test_a_thorough_search_narrows_its_hypotheses_down() -> None:
-    """Without refinement the pose is that of the best hypotheses: it lies closer to the truth."""
+def median_distance(bonus: float, sharpness: float = 1.0, *, thoroughly: bool = False) -> float:
+    """How far off, in metres, the best hypotheses are, in a search without refinement."""
     parameters = replace(DEFAULT_FUSION, refines=False)
-    distances = []
-    for thoroughly in (False, True):
-        found = [
-            ImageSearch(GaussianSight(refines=False), SPHERE, parameters, seed).look(
-                belief(TRUE.centre + 2.0 * AWAY), BLANK, JOINTS, 1.0, thoroughly=thoroughly
-            )
-            for seed in range(5)
-        ]
-        distances.append(np.median([away(one) for one in found if one is not None]))
-    assert distances[1] < 0.7 * distances[0]
+    found = [
+        ImageSearch(GaussianSight(bonus, refines=False), SPHERE, parameters, seed).look(
+            belief(TRUE.centre + 2.0 * AWAY), BLANK, JOINTS, sharpness, thoroughly=thoroughly
+        )
+        for seed in range(5)
+    ]
+    return float(np.median([away(one) for one in found if one is not None]))
+
+
+def test_a_thorough_search_narrows_its_hypotheses_down() -> None:
+    assert median_distance(200.0, thoroughly=True) < 0.7 * median_distance(200.0)
+
+
+def test_a_sharp_image_that_supports_no_pose_is_searched_again() -> None:
+    assert median_distance(5.0) == median_distance(5.0, thoroughly=True)
+    assert median_distance(5.0, 0.25) > median_distance(5.0, 0.25, thoroughly=True)
+
+
+def test_even_an_unlikely_part_of_the_belief_is_looked_at() -> None:
+    near = belief(TRUE.centre).parts[0]
+    far = replace(near, centre=TRUE.centre + np.array([0.4, 0.0, 0.0]))
+    mixed = PoseMixture((far, near), np.array([0.999, 0.001]))
+    one = search(GaussianSight(bonus=40.0))
+    one.look(mixed, BLANK, STANDING, 1.0)
+    assert one.tried is not None
+    close = np.linalg.norm(one.tried.centres - near.centre, axis=1) < 0.2
+    assert close.sum() > 0.1 * len(close)
 
 
 def test_with_less_effort_a_thorough_search_tries_fewer_hypotheses_too() -> None:

@@ -416,7 +416,7 @@ def sharpness_while(
 def test_a_smear_counts_less_but_in_a_strange_posture_it_says_more_than_the_body(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    assert min(sharpness_while(0.0, monkeypatch)) < 0.9
+    assert min(sharpness_while(0.0, monkeypatch)) < 0.95
     assert sharpness_while(0.3, monkeypatch) == [1.0] * 8
 
 

@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 from inhand_tracker.sight.kernels.equations import Equations
 from inhand_tracker.sight.kernels.gather import GatherSettings, gather
+from inhand_tracker.sight.kernels.mixed_offset import Mixing
 
 REACH = 0.02, 0.1
 SETTINGS = GatherSettings(
@@ -19,6 +20,9 @@ SETTINGS = GatherSettings(
     behind_per_m=1.5,
     colour_weight=0.5,
     limb_factor=20.0,
+    common_pixels=0.5,
+    mixing=Mixing(4.0, 4.5, 40.0, 0.1, 3.0),
+    mixes=False,
 )
 OUTLINES, PIXELS = arrays.outlines(), arrays.pixels()
 Pose = tuple[np.ndarray, np.ndarray]
@@ -36,14 +40,22 @@ def gathered(
     return equations
 
 
-def summed(measurements: list[Measurement]) -> tuple[np.ndarray, np.ndarray]:
-    """The equation of measurements: arm, direction, residual, and weight of each."""
-    information, gradient = np.zeros((6, 6)), np.zeros(6)
-    for arm, across, residual, weight in measurements:
-        row = np.concatenate((across, np.cross(arm, across)))
-        information += weight * np.outer(row, row)
-        gradient += weight * residual * row
-    return information, gradient
+def summed(
+    measurements: list[Measurement], deviation: float | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """The equation of measurements: arm, direction, residual, and weight of each; of a standard
+    ``deviation`` where all have the same error beside their own."""
+    rows = [np.concatenate((across, np.cross(arm, across))) for arm, across, _, _ in measurements]
+    if not rows:
+        return np.zeros((6, 6)), np.zeros(6)
+    residuals, weights = (np.array([one[part] for one in measurements]) for part in (2, 3))
+    seen = weights > 0.0
+    matrix, residuals = np.array(rows)[seen], residuals[seen]
+    covariance = np.diag(1.0 / weights[seen])
+    if deviation is not None:
+        covariance += deviation**2
+    certainty = np.linalg.inv(covariance)
+    return matrix.T @ certainty @ matrix, matrix.T @ certainty @ residuals
 
 
 def reach_at(arm: np.ndarray) -> float:
@@ -61,12 +73,14 @@ def across_outline(
     away = step * np.arange(-SETTINGS.samples, SETTINGS.samples + 1)
     line = where[:, None] + normal[:, None] * away
     colours = arrays.look_up(PIXELS.colour_scores, line)
-    counts = (-away < sides[0]) & (away < sides[1])
-    odds = step * np.where(counts, colours[:, 0] - colours[:, 1], 0.0)
+    odds = step * np.where(away < sides[1], colours[:, 0] - colours[:, 1], 0.0)
     channel = int(arrays.channels(normal[:, None])[0])
     edges = PIXELS.edge_scores[channel, arrays.look_up(PIXELS.edges[channel], line).astype(int)]
     free = arrays.is_inside(line) & (arrays.look_up(PIXELS.limbs, line) == 0.0)
-    scores = np.cumsum(odds) - odds / 2.0 + np.where(free & (step < 2.5), edges, 0.0)
+    within = np.cumsum(odds) - odds / 2.0
+    # What lies beyond the other side of the object is beside it, too; nothing is known further in.
+    beyond = np.where(away - sides[0] > away[0], np.interp(away - sides[0], away, within), 0.0)
+    scores = within - beyond + np.where(free & (step < 2.5), edges, 0.0)
     shares = np.exp(scores - scores.max())
     shares /= shares.sum()
     mean = float(shares @ away)
@@ -121,15 +135,20 @@ def surface(pose: Pose) -> list[Measurement]:
 @pytest.mark.parametrize(
     ("wanted", "definition"),
     [
-        ((True, True, False), outline),
-        ((True, True, True), lambda pose: outline(pose) + surface(pose)),
+        ((True, True, False), lambda pose: summed(outline(pose), SETTINGS.common_pixels)),
+        (
+            (True, True, True),
+            lambda pose: tuple(
+                map(sum, zip(summed(outline(pose), 0.5), summed(surface(pose)), strict=True))
+            ),
+        ),
     ],
 )
 def test_equations_are_those_of_the_definition(wanted, definition) -> None:  # type: ignore[no-untyped-def]
     equations = gathered(SETTINGS._replace(wanted=np.array(wanted)))
     assert (equations.information[:, 0, 0] > 0.0).sum() > 12
     for index, pose in enumerate(zip(*arrays.poses(), strict=True)):
-        information, gradient = summed(definition(pose))
+        information, gradient = definition(pose)
         scale = np.abs(information).max() + 1.0
         np.testing.assert_allclose(equations.information[index], information, atol=1e-3 * scale)
         np.testing.assert_allclose(equations.gradients[index], gradient, atol=1e-3 * scale)

@@ -145,12 +145,10 @@ def carry_over(
     ``parameters.leaves``, the object stays where it was; and, where the posture is strange or the
     body leaps, it goes on as it went. ``persistence_s`` is the time constant with which a
     difference fades. Of a body that leaps a joint is likely wrong, and so the last two are likelier
-    than what it makes likely.
+    than what it makes likely, until it is back, or long enough away to be believed.
     """
     elapsed_s = (time_ns - before.time_ns) / 1e9
     steady = steady_before(before, expected, time_ns, parameters)
-    leaps = steady is not None
-    again = before.steady is not None and _leaps(before, expected, elapsed_s, parameters)
     stays = _stays(steady or before, expected, time_ns, persistence_s, parameters.forgetting_s)
     afresh = expect_afresh(expected)
     parts = [stays, *afresh.parts]
@@ -159,18 +157,16 @@ def carry_over(
     if parameters.leaves:
         parts.append(_left(before.believed, parameters))
         shares.append(parameters.left_share)
-    if (expected.strange or leaps) and before.earlier is not None:
+    if (expected.strange or steady is not None) and before.earlier is not None:
         parts.append(_goes_on(before.earlier, before, elapsed_s, parameters))
         shares.append(parameters.goes_on_share)
     off = np.array([expected.whole.square_distance(part) for part in parts])
     weights = normalised_weights(np.log(shares) - 0.5 * off / parameters.doubt)
-    if leaps and len(parts) > of_body:
+    if steady is not None and len(parts) > of_body:
         by_body = np.arange(len(parts)) < of_body
         weights = np.array(shares)
-        # A body that leaps again may be back.
-        doubt = parameters.leap_doubt if steady is before or not again else 0.5
-        weights[by_body] *= (1.0 - doubt) / weights[by_body].sum()
-        weights[~by_body] *= doubt / weights[~by_body].sum()
+        weights[by_body] *= (1.0 - parameters.leap_doubt) / weights[by_body].sum()
+        weights[~by_body] *= parameters.leap_doubt / weights[~by_body].sum()
     return PoseMixture(tuple(parts), weights)
 
 

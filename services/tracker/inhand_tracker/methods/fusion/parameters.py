@@ -53,7 +53,9 @@ class FusionParameters:
     leap_doubt: float = 0.7
     """Probability that a body that leaps is wrong, and the object stays or goes on as it went."""
     leap_lasts_s: float = 0.5
+    """Seconds for which such a body may stay wrong."""
     leap_apart_m: float = 0.1
+    """Metres from where the object is believed to be within which such a body is right again."""
     forgetting_s: float = 0.3
     """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
 
@@ -61,8 +63,7 @@ class FusionParameters:
     hypotheses: int = 120
     """Number of hypotheses; cost grows with it (`inhand bench tracker`)."""
     even_share: float = 0.4
-    sharp: float = 0.3
-    unconvincing: float = 16.0
+    """Share of the hypotheses of which each part of the belief has as many, however unlikely."""
     fewest_hypotheses: int = 25
     """Number of hypotheses that are tried with however little effort."""
     refines: bool = True
@@ -102,13 +103,18 @@ class FusionParameters:
     """Log-likelihood ratio by which an image must support an estimate to teach its colours."""
 
     # What is stated (tracker).
-    seen_covariance_scale: float = 0.5
+    seen_covariance_scale: float = 0.7
     """Factor on the covariance of an estimate that used an image: Laplace's approximation is too
     wide. The share of truths within the 90 % region shows it (`inhand evaluate`)."""
     confidence_samples: int = 256
     """Number of poses drawn from an estimate to find its confidence."""
 
-    # How an image is searched where a posture is strange, and the body says little.
+    # How an image is searched where a posture is strange, and the body says little; or where no
+    # pose was found that the image supports.
+    unconvincing_log_likelihood: float = 16.0
+    """Log-likelihood ratio below which an image does not support any pose that was found."""
+    least_narrowed_sharpness: float = 0.3
+    """Sharpness below which no image does, wherever it is searched."""
     narrowing_rounds: int = 3
     """Number of rounds in which more hypotheses scatter about the best ones so far (narrowing)."""
     narrowing_share: float = 0.4

@@ -56,7 +56,8 @@ class ImageSearch:
 
         ``joints`` (20, 3) in the camera frame; an image counts by ``sharpness``, from 0 to 1; fewer
         hypotheses are tried with less ``effort`` than 1. ``thoroughly`` where bodies say little of
-        the object: hypotheses are narrowed down then.
+        the object: hypotheses are narrowed down then, as they are where a sharp image supports none
+        of the poses that were found.
         """
         self._support = None
         parameters = self._parameters.with_effort(effort)
@@ -66,22 +67,15 @@ class ImageSearch:
             self._found = self.tried = None
             return None
         view = self._open(belief.parts[0], image, region, joints)
-        posterior = ImagePosterior(
-            self._sight, self._sphere, view, belief, sharpness, parameters, thoroughly
-        )
+        posterior = ImagePosterior(self._sight, self._sphere, view, belief, sharpness, parameters)
         posterior, scores = self._compare_unseen(posterior, *hypotheses)
         self.tried = Hypotheses(*hypotheses, scores)
-        if thoroughly:
-            self.tried = narrow(posterior, self.tried, self._random)
-        modes, seen = posterior.modes(*self._starts(posterior, self.tried))
-        if (
-            not thoroughly
-            and sharpness >= parameters.sharp
-            and seen.max() < parameters.unconvincing
-        ):
+        found = None if thoroughly else self._modes(posterior, self.tried)
+        if found is None or _unconvincing(found[1], posterior):
             self.tried = narrow(posterior, self.tried, self._random)
             posterior = replace(posterior, thorough=True)
-            modes, seen = posterior.modes(*self._starts(posterior, self.tried))
+            found = self._modes(posterior, self.tried)
+        modes, seen = found
         weighed = posterior.weigh(modes, seen)
         if self._looks % parameters.looks_to_learn == 0:
             best = int(np.argmax(weighed.weights))
@@ -142,16 +136,18 @@ class ImageSearch:
         posterior = replace(posterior, view=view)
         return posterior, posterior.scores_by(weighed, centres, orientations)[0]
 
-    def _starts(self, posterior: ImagePosterior, hypotheses: Hypotheses) -> tuple[Array, Array]:
-        """Poses (S, 3), (S, 4) to refine: the means of parts that are believed, and the likeliest
-        of hypotheses."""
+    def _modes(
+        self, posterior: ImagePosterior, tried: Hypotheses
+    ) -> tuple[list[PoseGaussian], Array]:
+        """The ``modes`` near the means of parts that are believed, and near the likeliest of the
+        hypotheses that were ``tried``."""
         means, turns = posterior.belief.means
-        believed = posterior.belief.weights >= posterior.parameters.least_refined_weight
         parameters = posterior.parameters
-        likeliest = hypotheses.best(
+        believed = posterior.belief.weights >= parameters.least_refined_weight
+        likeliest = tried.best(
             parameters.narrowed_refined if posterior.thorough else parameters.refined_hypotheses
         )
-        return (
+        return posterior.modes(
             np.concatenate((means[believed], likeliest.centres)),
             np.concatenate((turns[believed], likeliest.orientations)),
         )
@@ -183,6 +179,15 @@ class ImageSearch:
         by_learning = self._sight.log_likelihoods_by_term(*pose, found.view)
         recoloured = float(by_learning["interior"][0]) - by_training["interior"]
         return Support(**by_training, recoloured=recoloured)
+
+
+def _unconvincing(seen: Array, posterior: ImagePosterior) -> bool:
+    """Whether a sharp image supports none of the poses that were found, by its log-likelihoods."""
+    parameters = posterior.parameters
+    return bool(
+        posterior.sharpness >= parameters.least_narrowed_sharpness
+        and seen.max() < parameters.unconvincing_log_likelihood
+    )
 
 
 @dataclass(frozen=True)

@@ -153,8 +153,10 @@ class FusionFollower(Follower):
         if before is None or not continues(before.time_ns, time_ns):
             return Belief(expected, believed, time_ns)
         steady = steady_before(before, expected, time_ns, self._parameters)
+        if steady is not None:
+            steady = replace(steady, earlier=None)
         earlier = replace(before, earlier=None, steady=None)
-        return Belief(expected, believed, time_ns, earlier, steady and replace(steady, earlier=None))
+        return Belief(expected, believed, time_ns, earlier, steady)
 
     def _carry_over(self, expected: Expected, time_ns: int) -> PoseMixture:
         """What is believed before the image is seen; after a gap, what the body says alone."""

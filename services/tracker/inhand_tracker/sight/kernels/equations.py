@@ -32,17 +32,12 @@ def exponential(x: float) -> float:
 
 
 @njit(cache=True, nogil=True, inline="always", fastmath=FAST)
-def add(
-    equation: tuple[Array, Array],
-    across: tuple[float, float, float],
-    arm: tuple[float, float, float],
-    residual: float,
-    weight: float,
-) -> None:
-    """Add one measurement: the point at ``arm`` from the origin is off by ``residual`` along
-    ``across``."""
-    information, gradient = equation
-    row = (
+def row_of(
+    across: tuple[float, float, float], arm: tuple[float, float, float]
+) -> tuple[float, float, float, float, float, float]:
+    """Return by how much a point at ``arm`` from the origin moves along ``across``, by each element
+    of a step."""
+    return (
         across[0],
         across[1],
         across[2],
@@ -50,7 +45,44 @@ def add(
         arm[2] * across[0] - arm[0] * across[2],
         arm[0] * across[1] - arm[1] * across[0],
     )
+
+
+@njit(cache=True, nogil=True, inline="always", fastmath=FAST)
+def add(
+    equation: tuple[Array, Array],
+    row: tuple[float, float, float, float, float, float],
+    residual: float,
+    weight: float,
+) -> None:
+    """Add one measurement: a point is off by ``residual`` in the direction of its ``row_of``."""
+    information, gradient = equation
     for i in range(6):
         gradient[i] += weight * residual * row[i]
         for j in range(6):
             information[i, j] += weight * row[i] * row[j]
+
+
+@njit(cache=True, nogil=True, inline="always", fastmath=FAST)
+def add_common(
+    common: Array,
+    row: tuple[float, float, float, float, float, float],
+    residual: float,
+    weight: float,
+) -> None:
+    """Add a measurement to ``common`` (8,), the sums of weights times rows, residuals, and one."""
+    for i in range(6):
+        common[i] += weight * row[i]
+    common[6] += weight * residual
+    common[7] += weight
+
+
+@njit(cache=True, nogil=True, inline="always", fastmath=FAST)
+def take_common(equation: tuple[Array, Array], common: Array, deviation: float) -> None:
+    """Take out of an equation what an error explains that all of the ``common`` (8,) measurements
+    share, of a standard ``deviation`` (the error is marginalised)."""
+    information, gradient = equation
+    whole = common[7] + 1.0 / (deviation * deviation)
+    for i in range(6):
+        gradient[i] -= common[i] * common[6] / whole
+        for j in range(6):
+            information[i, j] -= common[i] * common[j] / whole

@@ -12,15 +12,24 @@ from inhand_runtime.compiled import njit
 
 from inhand_tracker.geometry.arrays import Array, Flags, Singles
 from inhand_tracker.sight.kernels import projection
-from inhand_tracker.sight.kernels.equations import FAST, Equations, add, exponential
+from inhand_tracker.sight.kernels.equations import (
+    FAST,
+    Equations,
+    add,
+    add_common,
+    exponential,
+    row_of,
+    take_common,
+)
 from inhand_tracker.sight.kernels.inputs import Outlines, ScoredPixels, Sensor
+from inhand_tracker.sight.kernels.mixed_offset import Mixing, mixed_offset
 from inhand_tracker.sight.kernels.projection import Matrix
 
 
 class GatherSettings(NamedTuple):
     """Which of edges, colours and depth are ``wanted`` (3,), which share of the surface returns
-    depth, how much a point of the outline and of the surface counts, and numbers of
-    ``SightParameters``."""
+    depth, how much a point of the outline and of the surface counts, numbers of
+    ``SightParameters``, and whether the outline is looked for by how colours mix across it."""
 
     wanted: Flags
     returned: float
@@ -35,13 +44,9 @@ class GatherSettings(NamedTuple):
     behind_per_m: float
     colour_weight: float
     limb_factor: float
-    exact: bool
-    exact_reach: float
-    least_contrast: float
-    exact_noise: float
     common_pixels: float
-    exact_gain: float
-    exact_thickness: float
+    mixing: Mixing
+    mixes: bool
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
@@ -104,8 +109,7 @@ def _gather_outline(
     fx, fy = lens[0], lens[1]
     height, width = pixels.limbs.shape
     weight = settings.outline_weight * outlines.lengths[view]
-    common = np.zeros(6)
-    common_weight = common_residual = 0.0
+    common = np.zeros(8)
     for point in range(outlines.points.shape[2]):
         a, b, c = outlines.points[view, :, point]
         arm, (px, py, pz), (u, v) = _placed(turn, place, (a, b, c), lens)
@@ -122,47 +126,32 @@ def _gather_outline(
             continue
         nx, ny = nx / length, ny / length
         sides = outlines.inside[view, point] * fx / pz, outlines.outside[view, point] * fx / pz
-        if settings.exact and min(sides[0], sides[1]) > settings.exact_thickness:
-            ok, mean, certainty = _mixed_offset((u, v, nx, ny), sides, pixels, settings)
-            if not ok:
-                continue
-            variance = 1.0 / certainty + np.square(settings.contour_error_m * fx / pz)
-            certainty = settings.exact_gain / variance
+        line, contour_error = (u, v, nx, ny), np.square(settings.contour_error_m * fx / pz)
+        if settings.mixes and min(sides) > settings.mixing.least_pixels:
+            mean, variance = mixed_offset(line, sides, pixels, settings.mixing)
+            certainty = settings.mixing.gain / (variance + contour_error)
         else:
             step = max(reach * fx / pz / settings.samples, settings.least_step_pixels)
-            _sample_across((u, v, nx, ny), step, sides, pixels, settings, buffers)
-            mean, variance = _outline_offset(step, settings.samples, buffers, sides[0])
-            variance += np.square(settings.contour_error_m * fx / pz)
+            _sample_across(line, step, sides[1], pixels, settings, buffers)
+            mean, variance = _outline_offset(step, settings.samples, sides[0], buffers)
             flat = settings.samples * (settings.samples + 1) * step * step / 3.0
-            certainty = 1.0 / variance - 1.0 / flat
-            if certainty <= 0.0:
-                continue
+            certainty = 1.0 / (variance + contour_error) - 1.0 / flat
+        if certainty <= 0.0:
+            continue
         # The pixel's displacement along (nx, ny) by a displacement of the point.
         across = nx * fx / pz, ny * fy / pz, -(nx * fx * px + ny * fy * py) / (pz * pz)
-        add(equation, across, arm, mean, weight * certainty)
-        w = weight * certainty
-        common_weight += w
-        common_residual += w * mean
-        common[0] += w * across[0]
-        common[1] += w * across[1]
-        common[2] += w * across[2]
-        common[3] += w * (arm[1] * across[2] - arm[2] * across[1])
-        common[4] += w * (arm[2] * across[0] - arm[0] * across[2])
-        common[5] += w * (arm[0] * across[1] - arm[1] * across[0])
-    if settings.common_pixels > 0.0:
-        whole = common_weight + 1.0 / (settings.common_pixels * settings.common_pixels)
-        information, gradient = equation
-        for i in range(6):
-            gradient[i] -= common[i] * common_residual / whole
-            for j in range(6):
-                information[i, j] -= common[i] * common[j] / whole
+        row = row_of(across, arm)
+        add(equation, row, mean, weight * certainty)
+        add_common(common, row, mean, weight * certainty)
+    # Blur and shade move all of an outline in or out.
+    take_common(equation, common, settings.common_pixels)
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
 def _sample_across(
     line: tuple[float, float, float, float],
     step: float,
-    sides: tuple[float, float],
+    gap: float,
     pixels: ScoredPixels,
     settings: GatherSettings,
     buffers: tuple[Array, Array, Array],
@@ -170,8 +159,7 @@ def _sample_across(
     """Fill the ``buffers`` with each sample's edge score, and its colour's scores within and
     beside the object, from inside out across the ``line`` (u, v, and its normal).
 
-    Colours count as far as the silhouette goes on inwards, and so far that it does not begin
-    anew outwards (``sides``).
+    Outwards colours count within the ``gap``, in pixels, where the silhouette begins anew.
     """
     u, v, nx, ny = line
     log_posterior, within, beside = buffers
@@ -184,7 +172,7 @@ def _sample_across(
         if not projection.in_image(su, sv, width, height):
             continue
         column, row = int(su), int(sv)
-        if settings.wanted[1] and away < sides[1]:
+        if settings.wanted[1] and away < gap:
             within[sample] = step * pixels.colour_scores[row, column, 0]
             beside[sample] = step * pixels.colour_scores[row, column, 1]
         if (
@@ -197,89 +185,8 @@ def _sample_across(
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
-def _mixed_offset(
-    line: tuple[float, float, float, float],
-    sides: tuple[float, float],
-    pixels: ScoredPixels,
-    settings: GatherSettings,
-) -> tuple[bool, float, float]:
-    """Where the outline lies by the colours' mixture."""
-    u, v, nx, ny = line
-    height, width = pixels.limbs.shape
-    reach = settings.exact_reach
-    low, high = min(sides[0] - 0.75, reach), min(sides[1] - 0.75, reach)
-    if low < 1.0 or high < 1.0:
-        return False, 0.0, 0.0
-    if not projection.in_image(u - low * nx - 1.0, v - low * ny - 1.0, width, height):
-        return False, 0.0, 0.0
-    if not projection.in_image(u + high * nx + 1.0, v + high * ny + 1.0, width, height):
-        return False, 0.0, 0.0
-    if not projection.in_image(u - low * nx + 1.0, v - low * ny + 1.0, width, height):
-        return False, 0.0, 0.0
-    if not projection.in_image(u + high * nx - 1.0, v + high * ny - 1.0, width, height):
-        return False, 0.0, 0.0
-    count = 12
-    step = (low + high) / count
-    inner_gap, outer_gap = min(1.25, 0.6 * low), min(1.25, 0.6 * high)
-    red, green, blue = np.empty(count + 1), np.empty(count + 1), np.empty(count + 1)
-    fr = fg = fb = br = bg = bb = 0.0
-    fn = bn = 0.0
-    odds_in = odds_out = 0.0
-    for sample in range(count + 1):
-        away = sample * step - low
-        x, y = u + away * nx - 0.5, v + away * ny - 0.5
-        column, row = int(np.floor(x)), int(np.floor(y))
-        column, row = min(max(column, 0), width - 2), min(max(row, 0), height - 2)
-        p, q = x - column, y - row
-        w00, w10, w01, w11 = (1 - p) * (1 - q), p * (1 - q), (1 - p) * q, p * q
-        c = pixels.colour
-        r = w00 * c[row, column, 0] + w10 * c[row, column + 1, 0] + w01 * c[row + 1, column, 0] + w11 * c[row + 1, column + 1, 0]
-        g = w00 * c[row, column, 1] + w10 * c[row, column + 1, 1] + w01 * c[row + 1, column, 1] + w11 * c[row + 1, column + 1, 1]
-        b = w00 * c[row, column, 2] + w10 * c[row, column + 1, 2] + w01 * c[row + 1, column, 2] + w11 * c[row + 1, column + 1, 2]
-        red[sample], green[sample], blue[sample] = r, g, b
-        if away <= -inner_gap:
-            fr += r
-            fg += g
-            fb += b
-            fn += 1.0
-            odds_in += pixels.colour_scores[int(y + 0.5), int(x + 0.5), 0] - pixels.colour_scores[int(y + 0.5), int(x + 0.5), 1]
-        elif away >= outer_gap:
-            br += r
-            bg += g
-            bb += b
-            bn += 1.0
-            odds_out += pixels.colour_scores[int(y + 0.5), int(x + 0.5), 0] - pixels.colour_scores[int(y + 0.5), int(x + 0.5), 1]
-    if fn < 1.0 or bn < 1.0:
-        return False, 0.0, 0.0
-    odds_in /= fn
-    odds_out /= bn
-    if odds_in < 0.0 or odds_out > 0.0:
-        return False, 0.0, 0.0
-    fr, fg, fb = fr / fn, fg / fn, fb / fn
-    br, bg, bb = br / bn, bg / bn, bb / bn
-    gr, gg, gb = fr - br, fg - bg, fb - bb
-    contrast = gr * gr + gg * gg + gb * gb
-    if contrast < settings.least_contrast * settings.least_contrast:
-        return False, 0.0, 0.0
-    total = off = 0.0
-    for sample in range(count + 1):
-        share = ((red[sample] - br) * gr + (green[sample] - bg) * gg + (blue[sample] - bb) * gb) / contrast
-        # what is neither
-        er = red[sample] - br - share * gr
-        eg = green[sample] - bg - share * gg
-        eb = blue[sample] - bb - share * gb
-        off += (er * er + eg * eg + eb * eb) / contrast
-        share = min(max(share, -0.25), 1.25)
-        total += share * (0.5 if sample == 0 or sample == count else 1.0)
-        model = 1.0 if sample * step - low < 0 else 0.0
-    mean = step * total - low
-    variance = settings.exact_noise + 2.0 * off / (count + 1) + 0.1 * mean * mean
-    return True, mean, 1.0 / variance
-
-
-@njit(cache=True, nogil=True, fastmath=FAST)
 def _outline_offset(
-    step: float, samples: int, buffers: tuple[Array, Array, Array], thickness: float
+    step: float, samples: int, thickness: float, buffers: tuple[Array, Array, Array]
 ) -> tuple[float, float]:
     """Return the mean and variance, in pixels, of where the outline lies across a point of it,
     where the silhouette is so many pixels thick.
@@ -358,7 +265,7 @@ def _gather_surface(
         residual = share * (across[0] * px + across[1] * py + across[2] * pz)
         spread = deviation * max(abs(across[2]), 0.2)
         certainty = near / (near + other) / (spread * spread)
-        add(equation, across, arm, residual, settings.surface_weight * certainty)
+        add(equation, row_of(across, arm), residual, settings.surface_weight * certainty)
 
 
 @njit(cache=True, nogil=True, inline="always", fastmath=FAST)

@@ -31,7 +31,8 @@ class Outlines(NamedTuple):
 class ScoredPixels(NamedTuple):
     """A frame's pixels with the scores of one object's colours: ``lens`` (fx, fy, cx, cy),
     distances to ``edges`` (4, H, W) with ``edge_scores`` (4, 8), ``colour_scores`` (H, W, 2) for a
-    pixel's being within or beside the object, ``limbs`` (H, W) and ``depth`` (H, W)."""
+    pixel's being within or beside the object, ``limbs`` (H, W), ``depth`` (H, W) and ``colour``
+    (H, W, 3)."""
 
     lens: Singles
     edges: Bytes
