@@ -52,6 +52,11 @@ class Follower(ABC):
     def estimate(self, body: Body, time_ns: int, image: Image | None) -> Estimate:
         """Estimate the object's pose in a frame in which the body is seen."""
 
+    def watch(self, time_ns: int, image: Image | None) -> Estimate | None:
+        """Estimate the object's pose in a frame in which the body is not seen; None where its image
+        does not show the object, and of a method that needs bodies."""
+        return None
+
     @abstractmethod
     def remember(self, body: Body, time_ns: int) -> None:
         """Take a frame in which the object is not looked for."""
@@ -63,11 +68,14 @@ class Follower(ABC):
     def step_body(self, body: Body | None, time_ns: int, image: Image | None) -> Estimate:
         self._looked = False
         self.estimated = body is not None
-        if body is None:
+        estimate = (
+            self.watch(time_ns, image) if body is None else self.estimate(body, time_ns, image)
+        )
+        if estimate is None:
             return self._coast(time_ns)
-        self._estimate = self.estimate(body, time_ns, image)
+        self._estimate = estimate
         self._time_ns = time_ns
-        return self._estimate
+        return estimate
 
     def remember_joints(self, joints: Array, time_ns: int) -> None:
         body = self._reader.read(joints, self.convention)
@@ -107,7 +115,7 @@ class FollowingTracker(ABC):
         """Take a frame: the person's joints (20, 3) in the camera frame, or None, and an image.
 
         Missing joints are NaN. While the body is not seen the last pose stands for a second, as
-        predicted; then the object is lost.
+        predicted; then the object is lost. Some methods follow it by the image alone before.
         """
         self._follower.effort = self.effort
         self._follower.convention = self.convention

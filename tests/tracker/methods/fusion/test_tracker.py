@@ -389,6 +389,32 @@ def test_a_model_of_an_older_release_says_to_train_again() -> None:
         FusionTracker(old)
 
 
+# --- Bodies that are lost for a while
+
+
+def followed_without_a_body(shown: Sequence[Image | None]) -> list[Estimate]:
+    """Estimates while the wedge is waved, of which the body is not seen from the sixth frame on."""
+    one = tracker()
+    follow(one, unseen_wave(5), images()[:5])
+    return [one.step(None, (6 + number) * FRAME_NS, image) for number, image in enumerate(shown)]
+
+
+def test_while_no_body_is_seen_an_object_is_followed_by_the_image_that_shows_it() -> None:
+    shown = images()[5:15]
+    places = held(unseen_wave(FRAMES), seed=7)[0][5:15]
+    by_image = followed_without_a_body(shown)
+    assert {one.state for one in by_image} == {"tracked"}
+    assert errors(by_image, places).max() < 0.04
+    blind = followed_without_a_body([None] * 10)
+    assert {one.state for one in blind} == {"predicted"}
+    assert errors(by_image, places).mean() < 0.5 * errors(blind, places).mean()
+
+
+def test_while_no_body_is_seen_an_image_without_the_object_shows_nothing() -> None:
+    wall = draw(np.array([0.0, 0.0, 50.0]), np.array([1.0, 0.0, 0.0, 0.0]))
+    assert {one.state for one in followed_without_a_body([wall] * 5)} == {"predicted"}
+
+
 # --- Postures unlike all that were learned
 
 

@@ -170,6 +170,18 @@ def carry_over(
     return PoseMixture(tuple(parts), weights)
 
 
+def carry_on(before: Belief, time_ns: int, parameters: FusionParameters) -> PoseMixture:
+    """Return what is believed where no body is seen: the object stays where it was, and, where it
+    is known how it went, goes on so."""
+    left = _left(before.believed, parameters)
+    if before.earlier is None:
+        return PoseMixture((left,), np.ones(1))
+    elapsed_s = (time_ns - before.time_ns) / 1e9
+    goes_on = _goes_on(before.earlier, before, elapsed_s, parameters)
+    shares = np.array([parameters.left_share, parameters.goes_on_share])
+    return PoseMixture((left, goes_on), shares / shares.sum())
+
+
 def steady_before(
     before: Belief, expected: Expected, time_ns: int, parameters: FusionParameters
 ) -> Belief | None:

@@ -39,6 +39,8 @@ class ImageSearch:
         self._looks = 0
         self._found: _Found | None = None
         self._support: Support | None = None
+        self.convinces = False
+        """Whether the last image supports the pose that was found."""
         self.tried: Hypotheses | None = None
         """The last look's hypotheses; None where the object was out of the image."""
 
@@ -65,6 +67,7 @@ class ImageSearch:
         region = self._region(self._sphere.middles(*hypotheses), image.camera)
         if region is None:
             self._found = self.tried = None
+            self.convinces = False
             return None
         view = self._open(belief.parts[0], image, region, joints)
         posterior = ImagePosterior(self._sight, self._sphere, view, belief, sharpness, parameters)
@@ -84,6 +87,8 @@ class ImageSearch:
             self._learn_colours(modes[best], view.frame, of_object=rate)
         self._looks += 1
         self._found = _Found(modes, posterior.view, self._colours, joints)
+        best = seen[int(np.argmax(weighed.weights))]
+        self.convinces = best >= parameters.unconvincing_log_likelihood
         return weighed.moments()
 
     @property

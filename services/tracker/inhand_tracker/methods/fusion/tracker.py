@@ -25,6 +25,7 @@ from inhand_tracker.methods.fusion.belief import (
     Belief,
     BodyExpectation,
     Expected,
+    carry_on,
     carry_over,
     expect_afresh,
     steady_before,
@@ -36,6 +37,8 @@ from inhand_tracker.sight.sight import SIGHT_TERMS, Sight, SightTerm, blank_imag
 from inhand_tracker.sight.support import Support
 
 USUAL_HEIGHT_M = 1.7
+_NOBODY = np.full((20, 3), np.nan)
+"""The joints of a body that is not seen."""
 
 
 class FusionTracker(FollowingTracker):
@@ -129,6 +132,22 @@ class FusionFollower(Follower):
         believed = belief.parts[0] if seen is None else seen
         self._before = self._after(expected, believed, time_ns)
         return self._state(believed, seen=seen is not None)
+
+    def watch(self, time_ns: int, image: Image | None) -> Estimate | None:
+        """A body may be lost while an object that was followed is plainly seen: it stays where it
+        was, or goes on as it went, as far as the image supports it."""
+        before = self._before
+        if before is None or self._search is None or image is None:
+            return None
+        if not continues(before.time_ns, time_ns):
+            return None
+        belief = carry_on(before, time_ns, self._parameters)
+        sharpness = self._sharpness(Expected(belief.parts[-1]), image)
+        seen = self._search.look(belief, image, _NOBODY, sharpness, self.effort)
+        if seen is None or not self._search.convinces:
+            return None
+        self._before = self._after(Expected(seen), seen, time_ns)
+        return self._state(seen, seen=True)
 
     def considered(self) -> Considered | None:
         if self._body is None:
