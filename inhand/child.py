@@ -1,17 +1,16 @@
 """A child process that is started again after a failure, and killed where it hangs."""
 
-import ctypes
 import logging
 import os
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
+from inhand_runtime.exit_codes import DONE, WRONG_USAGE
 from inhand_runtime.service_manager import without_manager
+from inhand_runtime.supervisor_watch import SUPERVISOR_VARIABLE
 
 from inhand.heartbeats import Heartbeats
 from inhand.last_words import Told, how_it_ended
@@ -28,8 +27,6 @@ again."""
 STOP_WITHIN_S = 10.0
 """What a daemon promises (2 s), and time for a busy machine on which it has just begun."""
 LONGEST_TICK_S = 1.0
-
-_PR_SET_PDEATHSIG = 1
 
 
 class Child:
@@ -71,11 +68,11 @@ class Child:
                         **without_manager(os.environ),
                         **self._heartbeats.environment(HANGS_AFTER_S / 10),
                         **self._environment(),
+                        SUPERVISOR_VARIABLE: str(os.getpid()),
                     },
                     stdin=subprocess.DEVNULL,
                     stderr=subprocess.PIPE,
                     process_group=0,
-                    preexec_fn=_ending_with(os.getpid()),
                 )
                 assert self._process.stderr is not None
                 self._told = Told(self._process.stderr)
@@ -180,17 +177,3 @@ class Child:
         if self._heartbeats is not None:
             self._heartbeats.close()
             self._heartbeats = None
-
-
-def _ending_with(parent: int) -> Callable[[], None] | None:
-    """What a child does first, so that not even a killed supervisor leaves it behind."""
-    if sys.platform != "linux":
-        return None
-    libc = ctypes.CDLL(None)
-
-    def prepare() -> None:
-        libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-        if os.getppid() != parent:
-            os._exit(FAILED)
-
-    return prepare

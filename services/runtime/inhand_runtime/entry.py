@@ -11,6 +11,7 @@ from inhand_runtime.exit_codes import DONE, FAILED, WRONG_USAGE
 from inhand_runtime.extras import missing_extra
 from inhand_runtime.hub_access import require_client
 from inhand_runtime.settings import Section, Settings, load_settings
+from inhand_runtime.supervisor_watch import end_with_supervisor
 
 S = TypeVar("S", bound=Section)
 
@@ -31,8 +32,9 @@ def daemon_main(
     it raises SettingsError for all that can be known before a start. ``instead`` are options that
     do something else and end: by their name what the help says, and what returns the exit code.
     ``folders`` are settings that the command line may have in place of the file's, with their help.
-    Wrong arguments end the process with 2.
+    Wrong arguments end the process with 2. It ends when a supervisor that started it is gone.
     """
+    end_with_supervisor()
     instead, folders = instead or {}, folders or {}
     parser = _parser(service, {name: text for name, (text, _) in instead.items()}, folders)
     chosen = parser.parse_args(arguments)

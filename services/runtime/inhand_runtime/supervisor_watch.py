@@ -1,0 +1,34 @@
+"""Ends this process when the supervisor that started it is gone, however that one ended.
+
+A process that was killed ends nobody, and daemons that it leaves behind keep their names from those
+that come after. So each looks itself whether its supervisor still lives, which works on every
+system and leaves the start of a child as plain as it can be.
+"""
+
+import os
+import signal
+import threading
+import time
+
+from inhand_runtime.exit_codes import FAILED
+
+SUPERVISOR_VARIABLE = "INHAND_SUPERVISOR"
+"""The variable that names the process of the supervisor; it is for its own children alone."""
+POLL_S = 0.5
+ENDS_WITHIN_S = 10.0
+"""Seconds that this process has to end as on SIGTERM, after which it ends where it stands."""
+
+
+def end_with_supervisor() -> None:
+    """Watch the supervisor that the environment names from now on; without one nothing is done."""
+    named = os.environ.pop(SUPERVISOR_VARIABLE, "")
+    if named:
+        threading.Thread(target=_watch, args=(int(named),), name="supervisor", daemon=True).start()
+
+
+def _watch(supervisor: int) -> None:
+    while os.getppid() == supervisor:
+        time.sleep(POLL_S)
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(ENDS_WITHIN_S)
+    os._exit(FAILED)
