@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import shutil
 import stat
 from collections.abc import Callable
 from pathlib import Path
@@ -205,6 +206,50 @@ def test_a_crash_at_any_step_leaves_the_site_as_it_was_or_as_it_is_to_be(
     if names == before:
         acts[act]()  # nothing that is left is in its way
     assert {one.name for one in site.load().members} == after
+
+
+@pytest.mark.parametrize(
+    "act",
+    [
+        lambda site: site.add("viewer", "new", RIG, (), by_password=True),
+        lambda site: site.renew("guest"),
+        lambda site: site.revoke("guest"),
+        lambda site: site.revoke("shed"),
+    ],
+    ids=["add", "renew", "revoke", "revoke hub"],
+)
+def test_what_a_crash_left_old_of_other_hubs_is_put_right_by_what_is_done_next(
+    site: SiteFolder, monkeypatch: pytest.MonkeyPatch, act: Callable[[SiteFolder], object]
+) -> None:
+    for name, passwords in (("barn", False), ("door", True), ("shed", False)):
+        site.add_hub(name, HOSTS, passwords=passwords)
+    site.add("viewer", "guest", RIG, (), by_password=True)
+    whole = site.path.with_name("whole")
+    shutil.copytree(site.path, whole)
+    crashed, step = True, 0
+    while crashed:
+        shutil.rmtree(site.path)
+        shutil.copytree(whole, site.path)
+        with monkeypatch.context() as broken:
+            crash_at(broken, step)
+            try:
+                act(site)
+                crashed = False
+            except CrashError:
+                step += 1
+        site.renew("hub")
+        members = (site.hub / "members.json").read_bytes()
+        there = site.load()
+        for hub in there.hubs:
+            assert (site.folder_of_hub(hub.name) / "members.json").read_bytes() == members
+        users = (site.folder_of_hub("door") / "users").read_text().splitlines()
+        assert users[0].startswith("nobody:")
+        passwords = {
+            one.common_name: (site.folder_of(one) / "password").read_text().strip()
+            for one in there.members
+        }
+        assert dict(line.split(":") for line in users[1:]) == passwords
+    assert step > 2
 
 
 def crash_at(monkeypatch: pytest.MonkeyPatch, step: int) -> None:

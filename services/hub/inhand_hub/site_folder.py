@@ -3,11 +3,13 @@
 ``authority`` stays with who administers the site, ``hub`` goes to the hub, ``members/RIG.NAME`` to
 that member, ``hubs/NAME`` to a further hub. What counts is the hub's list of members: it is written
 last where somebody joins, and first where somebody leaves, each time whole, so that a crash leaves
-the site as it was before, or as it is after.
+the site as it was before, or as it is after. What a crash left old in the folders of further hubs is
+put right by whatever is done to the site next.
 """
 
 import contextlib
 import ipaddress
+import logging
 import re
 import secrets
 import shutil
@@ -48,6 +50,8 @@ from inhand_hub.members import (
     without_member,
 )
 from inhand_hub.parameters import DEFAULT_HUB
+
+log = logging.getLogger(__name__)
 
 HUB = "hub"
 """The hub's folder, and the name that is therefore no member's."""
@@ -188,19 +192,46 @@ class SiteFolder:
         """Write the list of members, for the first hub before all others."""
         for hub in site.hubs:
             if hub.passwords:
-                _write_file(self.folder_of_hub(hub.name) / USERS_FILE, self._users(site))
+                self._write_users(hub, self._users(site))
         for folder in (self.hub, *(self.folder_of_hub(one.name) for one in site.hubs)):
             _write_file(folder / MEMBERS_FILE, encode_members(site))
 
-    def _users(self, site: SiteMembers) -> bytes:
-        """Return names and passwords as Zenoh reads them, with one that nobody has: where there is
-        none, it asks for none."""
-        lines = [f"nobody:{secrets.token_urlsafe(PASSWORD_BYTES)}"]
-        for member in site.members:
-            if member.by_password:
-                password = (self.folder_of(member) / PASSWORD_FILE).read_text().strip()
-                lines.append(f"{member.common_name}:{password}")
-        return "".join(f"{line}\n" for line in lines).encode()
+    def _put_right(self) -> None:
+        """Write what a crash left old: lists of members and users that are not the first hub's."""
+        site = self.load()
+        members = (self.hub / MEMBERS_FILE).read_bytes()
+        for hub in site.hubs:
+            folder = self.folder_of_hub(hub.name)
+            if not folder.is_dir():  # somebody keeps it elsewhere
+                continue
+            old = []
+            if hub.passwords and _lines(folder / USERS_FILE)[1:] != self._users(site):
+                self._write_users(hub, self._users(site))
+                old.append(USERS_FILE)
+            if _lines(folder / MEMBERS_FILE) != members.splitlines():
+                _write_file(folder / MEMBERS_FILE, members)
+                old.append(MEMBERS_FILE)
+            if old:
+                log.warning(
+                    "%s of hub %s was old, as after a crash, and is put right: copy it to its host",
+                    " and ".join(old),
+                    hub.name,
+                )
+
+    def _users(self, site: SiteMembers) -> list[bytes]:
+        """Return names and passwords as Zenoh reads them, a line each."""
+        return [
+            f"{one.common_name}:{(self.folder_of(one) / PASSWORD_FILE).read_text().strip()}".encode()
+            for one in site.members
+            if one.by_password
+        ]
+
+    def _write_users(self, hub: LinkedHub, users: Sequence[bytes]) -> None:
+        """Write who has a password, with a first one that nobody has: where there is none, Zenoh
+        asks for none."""
+        nobody = f"nobody:{secrets.token_urlsafe(PASSWORD_BYTES)}".encode()
+        lines = b"".join(line + b"\n" for line in (nobody, *users))
+        _write_file(self.folder_of_hub(hub.name) / USERS_FILE, lines)
 
     def _linked_certificate(
         self, common_name: str, key: PrivateKey, hosts: Sequence[str]
@@ -221,6 +252,7 @@ class SiteFolder:
     def _locked(self) -> Iterator[None]:
         try:
             with locked_folder(self.path):
+                self._put_right()
                 yield
         except ValueError as error:
             raise SettingsError(f"{self.path}: {error}: get it back from a backup") from None
@@ -319,6 +351,10 @@ def _new_folder(path: Path, *, replace: bool) -> Iterator[Path]:
         sync_folder(path.absolute().parent)
     finally:
         shutil.rmtree(unfinished, ignore_errors=True)
+
+
+def _lines(path: Path) -> list[bytes]:
+    return path.read_bytes().splitlines() if path.exists() else []
 
 
 def _write_file(path: Path, data: bytes) -> None:
