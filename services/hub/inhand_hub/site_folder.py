@@ -3,8 +3,8 @@
 ``authority`` stays with who administers the site, ``hub`` goes to the hub, ``members/RIG.NAME`` to
 that member, ``hubs/NAME`` to a further hub. What counts is the hub's list of members: it is written
 last where somebody joins, and first where somebody leaves, each time whole, so that a crash leaves
-the site as it was before, or as it is after. What a crash left old in the folders of further hubs is
-put right by whatever is done to the site next.
+the site as it was before, or as it is after. What it left old in the folders of further hubs is put
+right by whatever is done to the site next.
 """
 
 import contextlib
@@ -220,11 +220,12 @@ class SiteFolder:
 
     def _users(self, site: SiteMembers) -> list[bytes]:
         """Return names and passwords as Zenoh reads them, a line each."""
-        return [
-            f"{one.common_name}:{(self.folder_of(one) / PASSWORD_FILE).read_text().strip()}".encode()
-            for one in site.members
-            if one.by_password
-        ]
+        users = []
+        for one in site.members:
+            if one.by_password:
+                password = (self.folder_of(one) / PASSWORD_FILE).read_text().strip()
+                users.append(f"{one.common_name}:{password}".encode())
+        return users
 
     def _write_users(self, hub: LinkedHub, users: Sequence[bytes]) -> None:
         """Write who has a password, with a first one that nobody has: where there is none, Zenoh
