@@ -26,6 +26,7 @@ from inhand_hub.certificates import (
 )
 from inhand_runtime import session as runtime_session
 from inhand_runtime.errors import InhandError
+from inhand_runtime.inbox import Received
 from inhand_runtime.settings import ZenohSettings
 from inhand_schemas.keys import Site
 from inhand_schemas.topics import (
@@ -161,7 +162,8 @@ def test_the_revoked_does_nothing_any_more_and_the_others_go_on(
 ) -> None:
     site.folder.add("camera", "lent", RIG, ())
     site.restarted(2)
-    copied = shutil.copytree(site.folder.folder_of(site.member("lent")), tmp_path / "copied")
+    member = site.member("lent")
+    copied = shutil.copytree(site.folder.folder_of(member), tmp_path / "copied")
     thief = site.settings_of(copied)
     with site.joined_by(thief) as lent, site.joined("front") as camera, site.joined("disk") as disk:
         heard = disk.hear(SKELETONS)
@@ -182,6 +184,19 @@ def test_the_revoked_does_nothing_any_more_and_the_others_go_on(
         more = len(heard) + 20
         eventually("more of the other", lambda: came() and len(heard) >= more)
         assert short_keys(heard) == {"skeletons/front"}
+        strange = f"{member.common_name}, which is no member"
+        health = disk.hear(HEALTH)
+        eventually("its name in the hub's health", lambda: strange in _troubles(health))
+    with site.joined("disk") as disk:
+        health = disk.hear(HEALTH)
+        eventually("a health without it", lambda: health and strange not in _troubles(health[-1:]))
+
+
+def _troubles(healths: list[Received]) -> str:
+    """All that healths call troubles."""
+    return "\n".join(
+        trouble for one in healths for trouble in HEALTH.decode(one.payload, one.encoding).troubles
+    )
 
 
 def test_nothing_secret_is_said(site: HubSite) -> None:
@@ -202,11 +217,7 @@ def test_a_list_that_cannot_be_read_changes_nothing_and_is_a_trouble(site: HubSi
         heard = viewer.hear(HEALTH)
         eventually(
             "the trouble in its health",
-            lambda: any(
-                "is no list of members" in trouble
-                for one in heard
-                for trouble in HEALTH.decode(one.payload, one.encoding).troubles
-            ),
+            lambda: "is no list of members" in _troubles(heard),
         )
     path.write_bytes(whole)
     site.restarted(starts + 1)

@@ -86,6 +86,7 @@ def test_instances_are_seen_over_the_link(linked: tuple[HubSite, HubSite, bool])
     with house.joined("desk") as desk:
         eventually("both hubs", lambda: {"hub/hub", "hub/garage"} <= set(desk.live()))
     assert garage.hub.popen.poll() is None
+    assert "no member" not in house.hub.stderr + garage.hub.stderr
 
 
 def test_a_link_is_back_after_the_first_hub_was_away(

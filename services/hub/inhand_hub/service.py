@@ -110,6 +110,7 @@ def _run_until_changed(
         while not (daemon.stop.wait(DEFAULT_HUB.poll_s) or stop.is_set()):
             daemon.health.came_round()
             watch.look_at_ends()
+            watch.look_at_strangers()
             if (changed := watch.changed()) is not None:
                 log.info("members or certificates changed: the hub starts anew, members return")
                 return changed
@@ -117,7 +118,7 @@ def _run_until_changed(
 
 
 class _Watch:
-    """Looks whether files of the hub have changed, and whose certificate ends."""
+    """Looks whether files of the hub have changed, whose certificate ends, and who is no member."""
 
     def __init__(
         self,
@@ -134,6 +135,7 @@ class _Watch:
         self._site = site
         self._now = now
         self._next_look_at_ends = now()
+        self._strangers: set[str] = set()
 
     def changed(self) -> _Changed | None:
         """Return the files that are to be taken over; those that contradict each other are a
@@ -162,6 +164,22 @@ class _Watch:
             self._daemon.health.trouble(
                 f"end {name}", f"the certificate of {name} {ends}: `inhand hub renew {name}`"
             )
+
+    def look_at_strangers(self) -> None:
+        """Name those that the rules do not know: Zenoh lets in whom the authority ever let in, and
+        nothing of them goes through."""
+        name, site = self._settings.instance, self._site
+        known = {*(one.common_name for one in site.members_of(name)), *site.links_of(name)}
+        strangers = {who: at for who, at in self._daemon.certified().items() if who not in known}
+        for gone in self._strangers - set(strangers):
+            self._daemon.health.well(f"stranger {gone}")
+        for who, host in strangers.items():
+            self._daemon.health.trouble(
+                f"stranger {who}",
+                f"{who}, which is no member, was revoked perhaps, is connected from {host}, and "
+                "nothing of it goes through: end what shows this certificate there",
+            )
+        self._strangers = set(strangers)
 
     def _own_end(self) -> list[tuple[str, float]]:
         try:

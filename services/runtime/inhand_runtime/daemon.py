@@ -31,6 +31,7 @@ from inhand_runtime.session import (
     Publisher,
     Session,
     Subscription,
+    certified,
     connected,
     end_subscription,
     hear_namesakes,
@@ -181,6 +182,10 @@ class Daemon:
     def is_alone(self) -> bool:
         """Whether no other process is connected now."""
         return not connected(self._session)
+
+    def certified(self) -> dict[str, str]:
+        """The common names of the certificates that others show now, with their hosts."""
+        return certified(self._session)
 
     def receive(self, timeout_s: float) -> Received | None:
         """The next sample of the inbox, or None; a main loop that calls it is seen to live."""

@@ -308,6 +308,12 @@ def connected(session: Session) -> frozenset[str]:
     return _links(session).peers
 
 
+def certified(session: Session) -> dict[str, str]:
+    """The common names of the certificates that connected processes show, with their hosts."""
+    links = [one for one in session.info.links() if one.auth_identifier]
+    return {str(one.auth_identifier): str(one.dst).rpartition(":")[0] for one in links}
+
+
 def tokens(session: Session, pattern: str) -> set[str]:
     """The keys of the liveliness tokens that the connected processes, and this one, show now."""
     replies = session.liveliness().get(pattern, timeout=LIVELINESS_TIMEOUT_S)
