@@ -8,7 +8,7 @@ from typing import Any
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import RigFile
 
-STOP_ORDER = ("studio", "capture", "tracker", "recorder")
+STOP_ORDER = ("studio", "capture", "tracker", "recorder", "hub")
 """Services in the order in which they stop, so that what is under way reaches the last."""
 
 
@@ -25,9 +25,11 @@ class RigProcess:
 def rig_processes(rig_file: RigFile, config: Path | None) -> list[list[RigProcess]]:
     """Return the processes of a rig, service by service as they stop; raises SettingsError when
     there is nothing to run."""
-    if rig_file.hub:
+    if rig_file.hub and meets_without_hub(rig_file):
         raise SettingsError(
-            f"{config} names a hub, which is run by itself: `inhand hub`, with settings of its own"
+            f"{config} names a hub, and processes that would never meet there: let each join "
+            "(`inhand hub add`), with the settings file that this prints, and leave the hub alone "
+            "in its own"
         )
     stages = [_of_service(rig_file, config, service) for service in STOP_ORDER]
     if not any(stages):
@@ -36,6 +38,12 @@ def rig_processes(rig_file: RigFile, config: Path | None) -> list[list[RigProces
             "or give --config"
         )
     return stages
+
+
+def meets_without_hub(rig_file: RigFile) -> bool:
+    """Whether processes of a file meet by themselves, as peers."""
+    services = (service for service in STOP_ORDER if service != "hub")
+    return rig_file.zenoh.mode == "peer" and any(getattr(rig_file, one) for one in services)
 
 
 def _of_service(rig_file: RigFile, config: Path | None, service: str) -> list[RigProcess]:

@@ -11,11 +11,11 @@ from pathlib import Path
 from inhand_runtime.exit_codes import DONE
 from inhand_runtime.logs import configure_logs
 from inhand_runtime.session import open_session
-from inhand_runtime.settings import ZenohSettings, load_rig_file
+from inhand_runtime.settings import RigFile, load_rig_file
 from inhand_runtime.signals import set_on_signals
 
 from inhand.reloading import Reloading, commands
-from inhand.rig_processes import rig_processes
+from inhand.rig_processes import meets_without_hub, rig_processes
 from inhand.starts import require_startable
 from inhand.supervisor import Supervisor
 
@@ -44,11 +44,11 @@ def run(arguments: argparse.Namespace) -> int:
         if stop.is_set():
             return DONE
         configure_logs(reloading.rig_file.log, "up")
-        with _meeting(reloading.rig_file.zenoh):
+        with _meeting(reloading.rig_file):
             return Supervisor(reloading, stop).run()
 
 
-def _meeting(zenoh: ZenohSettings) -> AbstractContextManager[object]:
+def _meeting(rig_file: RigFile) -> AbstractContextManager[object]:
     """Hold the address at which peers meet, so that the end of none of them takes it away; clients
     meet at a hub, which may come later than this process."""
-    return open_session(zenoh) if zenoh.mode == "peer" else nullcontext()
+    return open_session(rig_file.zenoh) if meets_without_hub(rig_file) else nullcontext()

@@ -6,9 +6,11 @@ from pathlib import Path
 import pytest
 from inhand_hub.service import check
 from inhand_hub.settings import HubSettings
+from inhand_lab.demonstration.preparation import free_port
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.hub_access import require_client, require_usable
 from inhand_runtime.settings import load_rig_file, load_settings
+from running_rig import RunningRig
 
 from inhand.__main__ import main
 
@@ -181,7 +183,27 @@ def test_no_key_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
         assert path.read_text().splitlines()[1] not in printed
 
 
-def test_up_does_not_run_a_hub(capsys: pytest.CaptureFixture[str]) -> None:
-    Path("hub.toml").write_text("[hub.hub]\n")
-    assert main(["up", "--config", "hub.toml"]) == 2
-    assert "is run by itself: `inhand hub`" in capsys.readouterr().err
+def test_up_runs_a_hub_before_the_member_of_its_settings(
+    rig: RunningRig, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(INIT)
+    hub = settings_in(capsys.readouterr().out)
+    main(["hub", "add", "recorder", "disk"])
+    member = settings_in(capsys.readouterr().out).replace(
+        "kitchen.disk/", "site/members/kitchen.disk/"
+    )
+    both = member + "\n" + hub[hub.index("[hub.hub]") :]
+    rig.config.write_text(both.replace(":7448", f":{free_port()}"))
+    up = rig.inhand("up", "--config", rig.config)
+    up.said("recorder disk is up")
+    assert up.stderr.index("hub hub is up") < up.stderr.index("recorder disk is up")
+    assert up.stop() == 0
+    assert up.stderr.index("recorder disk stopped") < up.stderr.index("hub hub stopped")
+
+
+def test_up_says_what_to_do_where_its_processes_would_not_meet_at_the_hub(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    Path("rig.toml").write_text("[hub.hub]\n[recorder.disk]\n")
+    assert main(["up", "--config", "rig.toml"]) == 2
+    assert "let each join (`inhand hub add`)" in capsys.readouterr().err
