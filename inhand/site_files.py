@@ -7,15 +7,11 @@ from typing import Any
 
 from inhand_hub.settings import HubSettings
 from inhand_runtime.errors import SettingsError
-from inhand_runtime.settings import SERVICES, RigFile, Section
+from inhand_runtime.settings import SERVICES, RigFile, Section, is_credential
 from inhand_runtime.settings_errors import explain
 from pydantic import ValidationError
 
 from inhand.service_models import settings_model
-
-GIVEN_BY_SYSTEMD = Path("/run/credentials")
-"""Where keys are while a service runs that systemd gave them; they are kept elsewhere."""
-
 
 ADMINISTERED = ("authority", "members", "hubs")
 """What the folder of a site has beside the hub's folder, where it is administered."""
@@ -23,8 +19,8 @@ ADMINISTERED = ("authority", "members", "hubs")
 
 @dataclass(frozen=True)
 class SiteFiles:
-    """Absolute places: single files, folders with all that is in them, and keys that systemd
-    gives."""
+    """Absolute places of single files, and of folders with all that is in them; keys and passwords
+    that systemd gives, as they are named."""
 
     files: frozenset[Path]
     folders: frozenset[Path]
@@ -67,9 +63,9 @@ def site_files(values: Mapping[str, Any], config: Path) -> SiteFiles:
             settings = _checked(table, settings_model(service), config, (service, name))
             named += _files(settings)
             folders += _folders(settings)
-    files = {plain(one) for one in named if one is not None}
-    given = {one for one in files if one.is_relative_to(GIVEN_BY_SYSTEMD)}
-    return SiteFiles(frozenset(files - given), frozenset(map(plain, folders)), frozenset(given))
+    given = {one for one in named if one is not None and is_credential(one)}
+    files = {plain(one) for one in named if one is not None and one not in given}
+    return SiteFiles(frozenset(files), frozenset(map(plain, folders)), frozenset(given))
 
 
 def plain(path: Path) -> Path:

@@ -44,10 +44,10 @@ def test_a_member_s_unit_settings_and_key_have_one_name(sample: Path) -> None:
     text = sample.read_text()
     assert f"systemctl enable --now {unit}`" in text
     assert f"/etc/credstore/inhand.{name}.key.pem" in text
-    assert f'key = "/run/credentials/{unit}.service/key.pem"' in text
-    assert (deploy_folder() / "systemd" / f"{unit.partition('@')[0]}@.service").exists() or (
-        service == "hub"
-    )
+    assert 'key = "$CREDENTIALS_DIRECTORY/key.pem"' in text
+    file = unit.replace(f"@{name}", "@") + ".service"
+    given = f"LoadCredential=key.pem:inhand.{name}.key.pem\n"
+    assert given in (deploy_folder() / "systemd" / file).read_text().replace("%i", name)
 
 
 @pytest.mark.long

@@ -58,6 +58,14 @@ def test_a_unit_is_as_secluded_as_promised(units: Path, unit: str) -> None:
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.parametrize("unit", [one for one in UNITS if one != "inhand-hub.service"])
+def test_a_unit_is_given_the_key_and_the_password_of_a_member(units: Path, unit: str) -> None:
+    name = "%i" if unit.endswith("@.service") else "rig"
+    lines = (units / unit).read_text().splitlines()
+    for given in ("key.pem", "password"):
+        assert f"LoadCredential={given}:inhand.{name}.{given}" in lines
+
+
 @pytest.mark.parametrize("unit", UNITS)
 def test_a_unit_runs_the_installed_program_and_is_watched(units: Path, unit: str) -> None:
     text = (units / unit).read_text()

@@ -279,10 +279,12 @@ def test_settings_that_name_what_is_not_there_are_no_backup(
     assert not output.exists()
 
 
+@pytest.mark.parametrize(
+    "key", ["/run/credentials/inhand-hub.service/key.pem", "$CREDENTIALS_DIRECTORY/key.pem"]
+)
 def test_a_key_that_systemd_gives_is_named_as_missing(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], key: str
 ) -> None:
-    key = "/run/credentials/inhand-hub.service/key.pem"
     config = _small_site(tmp_path / "a", **{"hub.toml": f'[hub.hub]\nkey = "{key}"'})
     backup = _backup(config.with_name("hub.toml"), tmp_path / "site.tar.gz")
     assert f"NOT in it: {key}, which systemd gives" in capsys.readouterr().out

@@ -251,6 +251,13 @@ def test_relative_paths_follow_the_files_folder(
     assert settings.service.file == Path("/absolute.yaml")
 
 
+def test_a_path_below_the_credentials_is_what_systemd_gives_the_service(load: Load) -> None:
+    text = '[capture.front]\nsource = "x"\nfile = "$CREDENTIALS_DIRECTORY/word"\n'
+    assert load(text).service.file == Path("$CREDENTIALS_DIRECTORY/word")
+    given = "/run/credentials/inhand-capture@front.service"
+    assert load(text, CREDENTIALS_DIRECTORY=given).service.file == Path(given, "word")
+
+
 def test_without_a_file_relative_paths_follow_the_current_folder(load: Load) -> None:
     load("", INHAND_CAPTURE__FRONT__SOURCE="x", INHAND_CAPTURE__FRONT__FILE="here.yaml")
     assert load_settings(None, "capture", CameraSettings).service.file == Path("here.yaml")

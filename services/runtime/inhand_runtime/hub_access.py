@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from inhand_runtime.errors import InhandError, SettingsError
-from inhand_runtime.settings import Credentials, Login, ZenohSettings
+from inhand_runtime.settings import Credentials, Login, ZenohSettings, is_credential
 from inhand_runtime.wording import counted
 
 log = logging.getLogger(__name__)
@@ -68,8 +68,7 @@ def require_usable(given: Credentials, *, serves: bool = False) -> float:
         raise SettingsError(
             f"certificate {given.certificate} cannot be used: {error.reason}"
         ) from None
-    if given.key.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH):
-        log.warning("other users of this machine may read key %s: chmod 600", given.key)
+    _warn_of_readers("key", given.key)
     if days < WARNED_DAYS:
         log.warning(
             "certificate %s ends in %s: %s", given.certificate, counted(int(days), "day"), RENEW
@@ -89,8 +88,7 @@ def require_client(settings: ZenohSettings) -> None:
 def read_password(login: Login) -> str:
     """Read a client's password; raises SettingsError for a file that holds none."""
     _require_readable("password", login.password)
-    if login.password.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH):
-        log.warning("other users of this machine may read %s: chmod 600", login.password)
+    _warn_of_readers("password", login.password)
     words = login.password.read_text(encoding="utf-8", errors="replace").split()
     if len(words) != 1:
         raise SettingsError(
@@ -204,6 +202,12 @@ def _require_readable(name: str, path: Path) -> None:
         path.read_bytes()
     except OSError as error:
         raise SettingsError(f"cannot read {name} {path}: {error.strerror}") from None
+
+
+def _warn_of_readers(name: str, path: Path) -> None:
+    """Log that others may read a file; of what systemd gives, the group's bits say nothing."""
+    if path.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH) and not is_credential(path):
+        log.warning("other users of this machine may read %s %s: chmod 600", name, path)
 
 
 def _shown(server: ssl.SSLContext, client: ssl.SSLContext, *, by_server: bool) -> float:

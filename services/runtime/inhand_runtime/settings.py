@@ -4,6 +4,7 @@ Every daemon reads the same file, and its own table in it: ``[capture.front]`` i
 the capture instance ``front``. Relative paths follow the file's folder.
 """
 
+import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -54,12 +55,28 @@ def _address(text: str) -> str:
 Address = Annotated[str, AfterValidator(_address)]
 
 
+CREDENTIALS_VARIABLE = "CREDENTIALS_DIRECTORY"
+"""The variable by which systemd tells a service in which folder it has given it files."""
+_CREDENTIALS, _ALL_CREDENTIALS = Path(f"${CREDENTIALS_VARIABLE}"), Path("/run/credentials")
+
+
 def _beside_the_file(path: Path, info: ValidationInfo) -> Path:
+    if path.is_relative_to(_CREDENTIALS):
+        # Where no service runs the path stays, and is named as it is when it cannot be read.
+        folder = Path(os.environ.get(CREDENTIALS_VARIABLE, _CREDENTIALS))
+        return folder / path.relative_to(_CREDENTIALS)
     return info.context["folder"] / path if info.context else path
 
 
 FilePath = Annotated[Path, AfterValidator(_beside_the_file)]
-"""A path of a settings file: a relative one follows the file's folder."""
+"""A path of a settings file: a relative one follows the file's folder, and one that begins with
+``$CREDENTIALS_DIRECTORY`` is a file that systemd gives the service."""
+
+
+def is_credential(path: Path) -> bool:
+    """Whether a setting's path is a file that systemd gives a service while it runs."""
+    given = (_CREDENTIALS, _ALL_CREDENTIALS, os.environ.get(CREDENTIALS_VARIABLE, _CREDENTIALS))
+    return any(path.is_relative_to(folder) for folder in given)
 
 
 @dataclass(frozen=True)
