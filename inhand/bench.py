@@ -1,6 +1,7 @@
 """``inhand bench``: measure what things cost here, and check what they are worth."""
 
 import argparse
+import tempfile
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
@@ -22,6 +23,7 @@ from inhand_lab.benchmarks.constants import check_constants
 from inhand_lab.benchmarks.estimated_skeletons import check_skeletons, check_steps
 from inhand_lab.benchmarks.estimation_cost import measure_estimation
 from inhand_lab.benchmarks.frame_cost import frame_steps, measure_frames
+from inhand_lab.benchmarks.hub_cost import hub_steps, measure_hub
 from inhand_lab.benchmarks.label_errors import check_labels, chosen_entries
 from inhand_lab.benchmarks.likelihood_bias import measure_bias
 from inhand_lab.benchmarks.likelihood_check import check_likelihood
@@ -29,6 +31,7 @@ from inhand_lab.benchmarks.object_accuracy import check_objects, object_steps
 from inhand_lab.benchmarks.parameters import (
     DEFAULT_COMPARISON,
     DEFAULT_FRAME_COST,
+    DEFAULT_HUB_COST,
     DEFAULT_TRAINING_COST,
     DEFAULT_TRANSPORT,
 )
@@ -37,12 +40,14 @@ from inhand_lab.benchmarks.tracker_speed import measure_tracker
 from inhand_lab.benchmarks.training_cost import benchmark_training, training_steps
 from inhand_lab.benchmarks.transport_delay import measure_transport
 from inhand_lab.datasets.dataset import load_dataset
+from inhand_lab.demonstration.preparation import free_port
 from inhand_lab.evaluation.folds import leave_one_out
 from inhand_lab.workers import usable_cores
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_runtime.errors import SettingsError
 from rich.console import Console, Group, RenderableType
 
+from inhand.bench_hub import made_rigs, plain_rig, rigs_table, running_hub, security_table
 from inhand.bench_label_tables import labels_table
 from inhand.bench_skeleton_tables import actions_table, costs_table, joints_table, rules_table
 from inhand.bench_tables import (
@@ -225,6 +230,20 @@ def _transport(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     return transport_table(delays), asdict(delays)
 
 
+def _hub(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    parameters = DEFAULT_HUB_COST
+    with tempfile.TemporaryDirectory(prefix="inhand_bench_") as name:
+        folder = Path(name) / "site"
+        rigs = made_rigs(folder, max(parameters.rig_counts), f"tls/127.0.0.1:{free_port()}")
+        with (
+            running_hub(folder, rigs[0]) as hub,
+            progress_bar("measuring", hub_steps(parameters)) as advance,
+        ):
+            costs = measure_hub(rigs, plain_rig(rigs[0]), hub, advance, parameters)
+    security = [{**asdict(one), "ratio": one.ratio} for one in costs.security]
+    return Group(rigs_table(costs), security_table(costs)), {**asdict(costs), "security": security}
+
+
 def _labels(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     dataset = load_dataset(arguments.source)
     recordings = sum(map(len, chosen_entries(dataset).values()))
@@ -259,6 +278,7 @@ def _skeletons(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str,
 SUBJECTS_HELP = {
     "ablation": "the error of fusion without each of its parts",
     "constants": "its error with each number halved and doubled",
+    "hub": "what a hub costs by the number of rigs, and its encryption and rules in delay",
     "labels": "how far labels between keyframes are from the truth",
     "likelihood": "where its optimum is beside the truth, on rendered objects; or how true poses "
     "score, and refine, on real frames of YCB-Video",
@@ -275,6 +295,7 @@ ALSO_MEASURED_ON = ("likelihood", "skeletons")
 SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "ablation": _ablation,
     "constants": _constants,
+    "hub": _hub,
     "labels": _labels,
     "likelihood": _likelihood,
     "objects": _objects,

@@ -170,9 +170,32 @@ class TransportParameters:
     """Frames a second by each way."""
 
 
+@dataclass(frozen=True)
+class HubCostParameters:
+    """The rigs that a hub is measured with, and what they publish."""
+
+    transport: TransportParameters = TransportParameters()
+    """The frame that is sent, and how often."""
+    rig_counts: tuple[int, ...] = (1, 4, 16)
+    """Numbers of rigs on one hub."""
+    preview_rate: float = 5.0
+    """Previews a second of each camera."""
+    preview_bytes: int = 8_000
+    """Bytes of a preview: what capture's have."""
+    warming_s: float = 4.0
+    """Seconds at the beginning that do not count: links fill then."""
+    measured_s: float = 20.0
+    """Seconds that count: twice as long as a link outlasts a reader that stands still."""
+    stuck_rigs: int = 4
+    """Number of rigs on the hub while a reader of the first one stands still."""
+    pairs: int = 4
+    """Number of pairs of processes between which the hub is compared with a plain router."""
+
+
 DEFAULT_COMPARISON = ComparisonParameters()
 DEFAULT_FRAME_COST = FrameCostParameters()
 DEFAULT_FUSION_COST = FusionCostParameters()
+DEFAULT_HUB_COST = HubCostParameters()
 DEFAULT_LIKELIHOOD_CHECK = LikelihoodCheckParameters()
 DEFAULT_TRACKER_SPEED = TrackerSpeedParameters()
 DEFAULT_TRAINING_COST = TrainingCostParameters()

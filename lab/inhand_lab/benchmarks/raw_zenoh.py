@@ -29,6 +29,22 @@ def raw_session(address: str, *, listens: bool, shared_memory: bool) -> Iterator
         yield session
 
 
+@contextmanager
+def raw_router(address: str) -> Iterator[zenoh.Session]:
+    """Run a router that encrypts nothing and has no rules."""
+    config = zenoh.Config()
+    values: dict[str, Any] = {
+        "mode": "router",
+        "listen/endpoints": [address],
+        "scouting/multicast/enabled": False,
+        "transport/shared_memory/enabled": False,
+    }
+    for key, value in values.items():
+        config.insert_json5(key, json.dumps(value))
+    with zenoh.open(config) as session:
+        yield session
+
+
 class RawPublisher:
     """Puts bytes with Zenoh's usual settings."""
 

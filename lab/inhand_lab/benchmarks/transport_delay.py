@@ -58,7 +58,7 @@ def measure_transport(parameters: TransportParameters = DEFAULT_TRANSPORT) -> Tr
 
     Raises InhandError.
     """
-    frame = _frame(parameters)
+    frame = simulated_frame(parameters)
     payload = RGBD.encode(frame)
     pairs = [_exchanged(frame, parameters) for _ in range(parameters.pairs)]
     delays = {way: [_delays_ms(*pair, way, parameters) for pair in pairs] for way in WAYS}
@@ -75,7 +75,8 @@ def measure_transport(parameters: TransportParameters = DEFAULT_TRANSPORT) -> Tr
     return TransportDelays(len(payload), tuple(rows), without_dora)
 
 
-def _frame(parameters: TransportParameters) -> RgbdFrame:
+def simulated_frame(parameters: TransportParameters) -> RgbdFrame:
+    """Return a simulated Kinect's frame, coded as on the wire."""
     shown = simulate(INTERACTION, 0, parameters.seed, parameters.shown_frame + 1)
     return pixels_message(shown.render(parameters.shown_frame), sequence=0, time_ns=0)
 
