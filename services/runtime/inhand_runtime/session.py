@@ -8,6 +8,7 @@ other are brought together again (see ``reconnection``).
 
 import contextlib
 import json
+import os
 import secrets
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -56,6 +57,12 @@ GO_BETWEEN = "60be60be60be"
 LONGEST_QUEUE = 16
 """Batches of 64 KiB that may wait for a link: some frames, or bursts of small messages, which share
 batches, so that a busy moment drops none."""
+
+SENDING_THREADS = 8
+"""Number of Zenoh's threads that send: where a link to somebody who stands still is closed, one of
+them stands still for seconds, and with the single one that Zenoh has by itself so does all else
+(`findings/zenoh-closing-holds-all.sh`)."""
+_RUNTIME_VARIABLE = "ZENOH_RUNTIME"
 
 _PRIORITIES = {
     "urgent": zenoh.Priority.REAL_TIME,
@@ -187,6 +194,8 @@ def zenoh_config(values: Mapping[str, Any]) -> zenoh.Config:
         "transport/link/tx/queue/size/real_time": LONGEST_QUEUE,
         "transport/shared_memory/enabled": False,
     }
+    # Zenoh reads it once, when a process opens its first session.
+    os.environ.setdefault(_RUNTIME_VARIABLE, f"(tx: (worker_threads: {SENDING_THREADS}))")
     config = zenoh.Config()
     for key, value in {**shared, **values}.items():
         config.insert_json5(key, json.dumps(value))
