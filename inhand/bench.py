@@ -40,14 +40,13 @@ from inhand_lab.benchmarks.tracker_speed import measure_tracker
 from inhand_lab.benchmarks.training_cost import benchmark_training, training_steps
 from inhand_lab.benchmarks.transport_delay import measure_transport
 from inhand_lab.datasets.dataset import load_dataset
-from inhand_lab.demonstration.preparation import free_port
 from inhand_lab.evaluation.folds import leave_one_out
 from inhand_lab.workers import usable_cores
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_runtime.errors import SettingsError
 from rich.console import Console, Group, RenderableType
 
-from inhand.bench_hub import made_rigs, plain_rig, rigs_table, running_hub, security_table
+from inhand.bench_hub import rigs_table, running_routers, security_table
 from inhand.bench_label_tables import labels_table
 from inhand.bench_skeleton_tables import actions_table, costs_table, joints_table, rules_table
 from inhand.bench_tables import (
@@ -232,14 +231,12 @@ def _transport(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
 
 def _hub(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     parameters = DEFAULT_HUB_COST
-    with tempfile.TemporaryDirectory(prefix="inhand_bench_") as name:
-        folder = Path(name) / "site"
-        rigs = made_rigs(folder, max(parameters.rig_counts), f"tls/127.0.0.1:{free_port()}")
-        with (
-            running_hub(folder, rigs[0]) as hub,
-            progress_bar("measuring", hub_steps(parameters)) as advance,
-        ):
-            costs = measure_hub(rigs, plain_rig(rigs[0]), hub, advance, parameters)
+    with (
+        tempfile.TemporaryDirectory(prefix="inhand_bench_") as name,
+        running_routers(Path(name), max(parameters.rig_counts)) as routers,
+        progress_bar("measuring", hub_steps(parameters)) as advance,
+    ):
+        costs = measure_hub(routers, advance, parameters)
     security = [{**asdict(one), "ratio": one.ratio} for one in costs.security]
     return Group(rigs_table(costs), security_table(costs)), {**asdict(costs), "security": security}
 

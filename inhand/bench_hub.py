@@ -10,7 +10,7 @@ from pathlib import Path
 from inhand_hub.access import ROLES
 from inhand_hub.members import AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE
 from inhand_hub.site_folder import SiteFolder, create_site
-from inhand_lab.benchmarks.hub_cost import HubCosts
+from inhand_lab.benchmarks.hub_cost import HubCosts, Routers
 from inhand_lab.benchmarks.hub_ends import RigEnds
 from inhand_lab.demonstration.preparation import free_port
 from inhand_runtime.errors import InhandError
@@ -24,7 +24,24 @@ UP_S = 20.0
 DELAYS = ("p50, ms", "p99, ms", "lost")
 
 
-def made_rigs(folder: Path, count: int, address: str) -> list[RigEnds]:
+@contextmanager
+def running_routers(folder: Path, count: int) -> Iterator[Routers]:
+    """Run the hub of a site of some rigs, and that of a site of one, until the block ends."""
+    with (
+        _running_site(folder / "many", count) as (rigs, hub),
+        _running_site(folder / "one", 1) as ((alone,), _),
+    ):
+        yield Routers(tuple(rigs), hub, alone, _plain_rig(alone))
+
+
+@contextmanager
+def _running_site(folder: Path, count: int) -> Iterator[tuple[list[RigEnds], int]]:
+    rigs = _made_rigs(folder, count, f"tls/127.0.0.1:{free_port()}")
+    with _running_hub(folder, rigs[0]) as hub:
+        yield rigs, hub
+
+
+def _made_rigs(folder: Path, count: int, address: str) -> list[RigEnds]:
     """Make a site of some rigs in a folder, each with a member of each role."""
     rigs = [f"rig_{number}" for number in range(count)]
     site = create_site(folder, REALM, rigs, ("127.0.0.1",))
@@ -46,14 +63,14 @@ def _member(site: SiteFolder, role: str, rig: str, address: str) -> ZenohSetting
     )
 
 
-def plain_rig(rig: RigEnds) -> RigEnds:
+def _plain_rig(rig: RigEnds) -> RigEnds:
     """Return a rig as another one, at a router that encrypts nothing."""
     settings = ZenohSettings(mode="client", connect=(f"tcp/127.0.0.1:{free_port()}",))
     return RigEnds(rig.site, dict.fromkeys(rig.members, settings))
 
 
 @contextmanager
-def running_hub(folder: Path, rig: RigEnds) -> Iterator[int]:
+def _running_hub(folder: Path, rig: RigEnds) -> Iterator[int]:
     """Run the hub of a site's folder until the block ends, and give its process; InhandError."""
     (address,) = rig.members["viewer"].connect
     config = folder / "hub.toml"
@@ -129,11 +146,13 @@ def security_table(costs: HubCosts) -> Table:
     """A row for each stream."""
     table = Table(title="TLS and access rules, beside a plain router in turns, p50")
     table.add_column("stream")
+    table.add_column("rigs of the site", justify="right")
     for name in ("hub, ms", "plain, ms", "times", "in pairs"):
         table.add_column(name, justify="right")
     for one in costs.security:
         table.add_row(
             one.stream,
+            f"{one.rigs}",
             f"{one.hub_ms:.2f}",
             f"{one.plain_ms:.2f}",
             f"{one.ratio:.2f}",

@@ -15,6 +15,7 @@ from inhand_lab.chaos.account import Unrecorded, recorded_skeletons, unrecorded
 from inhand_lab.chaos.faults import FAULTS
 from inhand_lab.chaos.parameters import DEFAULT_CHAOS
 from inhand_lab.chaos.rig import INHAND, ChaosRig, one_host, two_hosts
+from inhand_lab.chaos.soak import MEASURES, Life, grown, soak
 from inhand_lab.chaos.trials import Trial, inflict
 from inhand_lab.demonstration.parameters import DEFAULT_DEMONSTRATION
 from inhand_lab.demonstration.preparation import train_demonstration
@@ -42,6 +43,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=DEFAULT_CHAOS.flood_messages,
         help="number of messages of each flood (default: %(default)s)",
     )
+    parser.add_argument(
+        "--soak",
+        type=positive_count,
+        metavar="MINUTES",
+        help="in place of that: a site with a hub for so long, with one of the faults each minute; "
+        "says whether its processes grow",
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
 
 
@@ -54,6 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
         people = DEFAULT_DEMONSTRATION.trained_participants
         with progress_bar("simulating people to learn from", people) as advance:
             _, model = train_demonstration(folder, DEFAULT_CHAOS.interaction, advance)
+        if arguments.soak is not None:
+            return _soak(arguments, folder, model)
         rows = [
             row
             for name, rig, of_site in (("peers", one_host, False), ("site", two_hosts, True))
@@ -64,12 +74,38 @@ def run(arguments: argparse.Namespace) -> int:
             )
         ]
     output().print(_table(rows))
-    broken = [(trial, lines) for trial, kept in rows if (lines := _broken(trial, kept))]
-    for trial, lines in broken:
-        for line in lines:
-            print(f"inhand chaos: {trial.name}: {line}", file=sys.stderr)
+    broken = [
+        f"{trial.name}: {line}" for trial, kept in rows for line in (*_broken(trial), *_lost(kept))
+    ]
     if arguments.json is not None:
         write_json(arguments.json, {"faults": {t.name: _result(t, kept) for t, kept in rows}})
+    return _judged(broken)
+
+
+def _soak(arguments: argparse.Namespace, folder: Path, model: Path) -> int:
+    """Run a site for long, and say how its processes and its poses fared."""
+    split = f"split_bytes = {json.dumps(DEFAULT_CHAOS.recording_bytes)}"
+    with (
+        two_hosts(_made(folder / "site"), model, recorder=split) as started,
+        progress_bar("minutes", arguments.soak) as advance,
+    ):
+        rig = replace(started, messages=arguments.messages)
+        trials, lives = soak(rig, arguments.soak, arguments.faults, lambda: _told(rig), advance)
+    output().print(_lives_table(lives))
+    output().print(_trials_table(trials))
+    broken = [f"{trial.name}: {line}" for trial in trials for line in _broken(trial)]
+    broken += [line for life in lives for line in grown(life)]
+    if arguments.json is not None:
+        faults = [{"fault": one.name, **_cost(one)} for one in trials]
+        write_json(
+            arguments.json, {"processes": [asdict(life) for life in lives], "faults": faults}
+        )
+    return _judged(broken)
+
+
+def _judged(broken: Sequence[str]) -> int:
+    for line in broken:
+        print(f"inhand chaos: {line}", file=sys.stderr)
     return FAILED if broken else DONE
 
 
@@ -106,7 +142,13 @@ def _told(rig: ChaosRig) -> list[str]:
     return told
 
 
-def _broken(trial: Trial, kept: Unrecorded) -> list[str]:
+def _lost(kept: Unrecorded) -> list[str]:
+    if kept.before_s <= DEFAULT_CHAOS.unrecorded_before_s:
+        return []
+    return [f"of the {kept.before_s:.1f} s before, something was not recorded"]
+
+
+def _broken(trial: Trial) -> list[str]:
     """The promises that a trial broke, a line each."""
     lines = [f"the {service} ended, which was not its fault" for service in trial.died]
     poses, promised = trial.poses, DEFAULT_CHAOS
@@ -116,9 +158,41 @@ def _broken(trial: Trial, kept: Unrecorded) -> list[str]:
         lines.append(f"poses were as old as usual after {_seconds(poses.normal_s)}")
     if trial.grown_mb > promised.most_grown_mb:
         lines.append(f"a process has grown by {trial.grown_mb:.0f} MB")
-    if kept.before_s > promised.unrecorded_before_s:
-        lines.append(f"of the {kept.before_s:.1f} s before, something was not recorded")
     return lines
+
+
+def _lives_table(lives: Sequence[Life]) -> Any:
+    """A row for each process that lived longest of its service."""
+    table = listing(
+        ("process",),
+        ("minutes", *(f"{measure}{more}" for measure in MEASURES for more in ("", " an hour"))),
+    )
+    for life in lives:
+        cells = []
+        for course in life.courses.values():
+            cells += [f"{course.last:.0f}", f"{course.per_hour:+.1f}"]
+        table.add_row(life.name, f"{life.minutes:.1f}", *cells)
+    return table
+
+
+def _trials_table(trials: Sequence[Trial]) -> Any:
+    """A row for each fault, with the slowest of its times."""
+    table = listing(("fault",), ("times", "back, s", "age usual, s", "MB more"))
+    for name in dict.fromkeys(trial.name for trial in trials):
+        same = [trial for trial in trials if trial.name == name]
+        table.add_row(
+            FAULTS[name].what,
+            str(len(same)),
+            _slowest([one.poses.back_s for one in same]),
+            _slowest([one.poses.normal_s for one in same]),
+            f"{max(one.grown_mb for one in same):.0f}",
+        )
+    return table
+
+
+def _slowest(seconds: Sequence[float | None]) -> str:
+    known = [one for one in seconds if one is not None]
+    return "never" if len(known) < len(seconds) else f"{max(known):.1f}"
 
 
 def _table(rows: Sequence[tuple[Trial, Unrecorded]]) -> Any:
@@ -154,14 +228,20 @@ def _seconds(value: float | None) -> str:
 
 def _result(trial: Trial, kept: Unrecorded) -> dict[str, Any]:
     return {
+        **_cost(trial),
+        "unrecorded": kept.skeletons,
+        "unrecorded_before_s": kept.before_s,
+    }
+
+
+def _cost(trial: Trial) -> dict[str, Any]:
+    return {
         **asdict(trial.poses),
         "frames": len(trial.skeletons.came),
         "without_pose": trial.without_pose,
         "inflicting_s": trial.span.end - trial.span.begin,
         "grown_mb": trial.grown_mb,
         "malformed": trial.malformed,
-        "unrecorded": kept.skeletons,
-        "unrecorded_before_s": kept.before_s,
         "told": trial.told,
         "died": trial.died,
     }

@@ -13,6 +13,7 @@ from inhand_lab.benchmarks.parameters import (
     ComparisonParameters,
     FrameCostParameters,
     FramePeopleParameters,
+    HubCostParameters,
     TransportParameters,
 )
 from inhand_lab.benchmarks.tracker_speed import measure_tracker
@@ -111,6 +112,34 @@ def test_delays_are_measured_by_every_way_and_of_dora_or_it_is_said_to_be_absent
             assert len(way["ratios"]) == (1 if way["way"] == DORA else 2)
     shown = " ".join(capsys.readouterr().out.split())
     assert ("dora-rs was left out: dora" in shown) == (absent is not None)
+
+
+@pytest.mark.long
+def test_a_hub_is_measured_by_its_rigs_with_a_stuck_reader_and_beside_a_plain_router(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    few = HubCostParameters(rig_counts=(1, 2), stuck_rigs=2, warming_s=1.0, measured_s=1.0, pairs=1)
+    monkeypatch.setattr(bench, "DEFAULT_HUB_COST", few)
+    result = tmp_path / "result.json"
+    assert main(["bench", "hub", "--json", str(result)]) == 0
+    told = json.loads(result.read_text())
+    assert [(one["rigs"], one["stuck"]) for one in told["rigs"]] == [
+        (1, False),
+        (2, False),
+        (2, True),
+    ]
+    for one in told["rigs"]:
+        assert one["hub_cores"] > 0.0
+        assert set(one["delays"]) == {"rgbd", "pose"}
+        assert all(0.0 < delay["p50_ms"] <= delay["p99_ms"] for delay in one["delays"].values())
+    assert [(one["stream"], one["rigs"]) for one in told["security"]] == [
+        ("rgbd", 2),
+        ("pose", 2),
+        ("rgbd", 1),
+        ("pose", 1),
+    ]
+    assert min(one["ratio"] for one in told["security"]) > 0.0
+    assert "TLS and access rules" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

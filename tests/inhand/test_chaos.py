@@ -1,9 +1,15 @@
 """Faults through the command line, on real processes."""
 
 import json
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
+from inhand_lab.chaos import soak, trials
+from inhand_lab.chaos.parameters import DEFAULT_CHAOS
 from running_rig import RunningRig
+
+from inhand.__main__ import main
 
 
 def test_a_fault_that_there_is_not_is_refused_with_those_that_there_are(rig: RunningRig) -> None:
@@ -49,3 +55,25 @@ def test_malformed_messages_are_counted_and_nobody_ends_or_grows(rig: RunningRig
     assert seen["malformed"] > 10_000
     assert seen["grown_mb"] < 50.0
     assert seen["back_s"] is not None
+
+
+@pytest.mark.long
+def test_a_soak_says_of_each_process_how_it_grew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    soon = replace(DEFAULT_CHAOS, soak_every_s=1.0, well_s=1.0, watched_s=3.0, reading_s=0.2)
+    monkeypatch.setattr(soak, "DEFAULT_CHAOS", soon)
+    monkeypatch.setattr(trials, "DEFAULT_CHAOS", soon)
+    result = tmp_path / "soak.json"
+    # Whether so short a time shows growth is chance.
+    main(["chaos", "--soak", "1", "--faults", "kill-recorder", "--json", str(result)])
+    told = json.loads(result.read_text())
+    assert {life["name"] for life in told["processes"]} == {
+        *("capture", "tracker", "recorder", "hub"),
+        *("up of capture", "up of tracker", "up of recorder"),
+    }
+    for life in told["processes"]:
+        assert set(life["courses"]) == {"MB", "handles", "threads"}
+    (fault,) = told["faults"]
+    assert (fault["fault"], fault["died"]) == ("kill-recorder", [])
+    assert "MB an hour" in capsys.readouterr().out

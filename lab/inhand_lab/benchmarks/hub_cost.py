@@ -63,10 +63,12 @@ class HubCost:
 
 @dataclass(frozen=True)
 class SecurityCost:
-    """Median milliseconds of a stream through the hub, and through a router of the same machine
-    that encrypts nothing and has no rules, with the ratio in each pair of processes."""
+    """Median milliseconds of a stream through the hub of a site of some rigs, and through a router
+    of the same machine that encrypts nothing and has no rules, with the ratio in each pair of
+    processes."""
 
     stream: str
+    rigs: int
     hub_ms: float
     plain_ms: float
     ratios: tuple[float, ...]
@@ -75,6 +77,17 @@ class SecurityCost:
     def ratio(self) -> float:
         """How many times longer messages are under way through the hub."""
         return self.hub_ms / self.plain_ms
+
+
+@dataclass(frozen=True)
+class Routers:
+    """Where messages go: the rigs of a hub, which is the process ``hub``; a rig that is all of the
+    site of another hub; and a rig at a plain router, which is yet to be run."""
+
+    rigs: tuple[RigEnds, ...]
+    hub: int
+    alone: RigEnds
+    plain: RigEnds
 
 
 @dataclass(frozen=True)
@@ -92,35 +105,38 @@ def hub_steps(parameters: HubCostParameters) -> int:
 
 
 def measure_hub(
-    rigs: Sequence[RigEnds],
-    plain: RigEnds,
-    hub: int,
-    on_progress: Callable[[], None],
-    parameters: HubCostParameters,
+    routers: Routers, on_progress: Callable[[], None], parameters: HubCostParameters
 ) -> HubCosts:
-    """Measure a hub, the process ``hub``, that ``rigs`` reach, and compare it with a plain router
-    at the address of ``plain``; raises InhandError."""
-    streams = _streams(parameters)
+    """Measure a hub by its rigs, and two hubs beside a plain router; raises InhandError."""
+    streams, rigs = _streams(parameters), routers.rigs
 
-    def load(chosen: Sequence[RigEnds]) -> Load:
-        return Load(tuple(chosen), streams, parameters.warming_s, parameters.measured_s, hub)
+    def load(*chosen: RigEnds) -> Load:
+        return Load(chosen, streams, parameters.warming_s, parameters.measured_s, routers.hub)
 
     costs = []
     for count in parameters.rig_counts:
-        costs.append(_cost(*_exchanged(load(rigs[:count])), stuck=False))
+        costs.append(_cost(*_exchanged(load(*rigs[:count])), stuck=False))
         on_progress()
     with _standing_still(rigs[0]) as begin:
-        costs.append(_cost(*_exchanged(load(rigs[: parameters.stuck_rigs]), begin), stuck=True))
+        costs.append(_cost(*_exchanged(load(*rigs[: parameters.stuck_rigs]), begin), stuck=True))
     on_progress()
+    ways = {len(rigs): rigs[0], 1: routers.alone, 0: routers.plain}
     pairs = []
-    with _plain_router(plain):
+    with _plain_router(routers.plain):
         for number in range(parameters.pairs):
-            both = (rigs[0], plain) if number % 2 == 0 else (plain, rigs[0])
-            _, delays = _exchanged(load(both))
-            pairs.append((_of_rig(delays, number % 2), _of_rig(delays, 1 - number % 2)))
+            turns = _turned(list(ways), number)
+            _, delays = _exchanged(load(*(ways[one] for one in turns)))
+            pairs.append({one: _of_rig(delays, place) for place, one in enumerate(turns)})
             on_progress()
     sizes = {name: len(msgspec.msgpack.encode(one.message)) for name, one in streams.items()}
-    return HubCosts(sizes, tuple(costs), tuple(_security(name, pairs) for name in READERS))
+    security = [_security(name, size, pairs) for size in ways if size for name in READERS]
+    return HubCosts(sizes, tuple(costs), tuple(security))
+
+
+def _turned(names: list[int], by: int) -> list[int]:
+    """Names in another order each time: none comes always after the same one."""
+    by %= len(names)
+    return names[by:] + names[:by]
 
 
 def _streams(parameters: HubCostParameters) -> dict[str, Stream]:
@@ -240,14 +256,17 @@ def _of_rig(delays: Delays, rig: int) -> dict[str, np.ndarray]:
     return {stream: np.array(delays[rig, stream, role]) for stream, role in READERS.items()}
 
 
-def _security(
-    stream: str, pairs: Sequence[tuple[Mapping[str, np.ndarray], Mapping[str, np.ndarray]]]
-) -> SecurityCost:
-    hub, plain = ([pair[side][stream] for pair in pairs] for side in (0, 1))
+PairDelays = Mapping[int, Mapping[str, np.ndarray]]
+"""Delays in a pair of processes, by the number of rigs of the hub's site, 0 for the plain router,
+and by stream."""
+
+
+def _security(stream: str, rigs: int, pairs: Sequence[PairDelays]) -> SecurityCost:
+    hub, plain = ([pair[size][stream] for pair in pairs] for size in (rigs, 0))
     if not all(map(len, (*hub, *plain))):
-        raise InhandError(f"no {stream} came by one of the two routers")
+        raise InhandError(f"no {stream} came by one of the routers")
     ratios = tuple(
         float(np.median(one) / np.median(usual)) for one, usual in zip(hub, plain, strict=True)
     )
     hub_ms, plain_ms = (float(np.median(np.concatenate(side))) for side in (hub, plain))
-    return SecurityCost(stream, hub_ms, plain_ms, ratios)
+    return SecurityCost(stream, rigs, hub_ms, plain_ms, ratios)

@@ -212,7 +212,7 @@ FAULTS: dict[str, Fault] = {
         _huge,
     ),
     "other-releases": Fault("messages of former and later releases come", _of_other_releases),
-    "stuck-reader": Fault("a reader of everything stands still for 10 s", _stuck_reader, 10.0),
+    "stuck-reader": Fault("a reader of everything stands still for 15 s", _stuck_reader, 15.0),
     "twin": Fault("a second tracker of the same name starts", _twin, 6.0),
     "full-disk": Fault("the recorder can write nothing for 8 s", _full_disk, 8.0),
     "clock-ahead": _stepped("an hour ahead", 3600.0),

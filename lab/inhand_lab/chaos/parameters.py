@@ -37,6 +37,20 @@ class ChaosParameters:
     """Bytes of a message that is far too large."""
     huge_messages: int = 3
     """Number of them, on each stream."""
+    soak_every_s: float = 60.0
+    """Seconds from one fault of a soak to the next."""
+    reading_s: float = 2.0
+    """Seconds between two readings of what processes take."""
+    unsettled_share: float = 1.0 / 3.0
+    """Share of a process's life, at its begin, that says nothing of growth."""
+    window_readings: int = 15
+    """Number of readings over which a median is taken at both ends of a life."""
+    most_gained: int = 3
+    """Number of handles, or threads, that a process may have more at its end: pools come and go."""
+    recordings_kept: int = 2
+    """Number of files that a soak leaves to its recorder."""
+    recording_bytes: str = "256 MiB"
+    """Size of each."""
 
 
 DEFAULT_CHAOS = ChaosParameters()

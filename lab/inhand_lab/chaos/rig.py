@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import AbstractContextManager, ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,6 +42,11 @@ class Hub:
         self._process = subprocess.Popen(
             self._command, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
+
+    @property
+    def pid(self) -> int | None:
+        """Its process, if it has started."""
+        return None if self._process is None else self._process.pid
 
     def kill(self) -> None:
         """End it at once."""
@@ -87,6 +92,18 @@ class ChaosRig:
             found |= {service: child for service in SERVICES if service in arguments}
         return found
 
+    def all_processes(self) -> dict[str, psutil.Process]:
+        """The processes that run now: those of the services, what supervises each, and the hub."""
+        services: dict[Path, str] = {}
+        for service, path in self.configs.items():
+            services.setdefault(path, service)
+        ups = zip(services.values(), self.supervisors, strict=True)
+        found = {**self.processes(), **{f"up of {service}": up for service, up in ups}}
+        if self.hub is not None and self.hub.pid is not None:
+            with suppress(psutil.NoSuchProcess):
+                found["hub"] = psutil.Process(self.hub.pid)
+        return found
+
     def resident_mb(self) -> dict[int, float]:
         """How much memory each process takes now, in MB."""
         return {one.pid: one.memory_info().rss / 1e6 for one in self.processes().values()}
@@ -107,20 +124,30 @@ def one_host(folder: Path, model: Path) -> Iterator[ChaosRig]:
     """
     host = new_host(folder / "host")
     config = write_rig_file(folder, DEFAULT_CHAOS.interaction, model)
-    text = config.read_text(encoding="utf-8").replace('"simulator"', '"pluggable"')
-    camera = f"[capture.camera.options]\nplug = {json.dumps(str(host.plug))}"
-    config.write_text(text.replace("[capture.camera.options]", camera), encoding="utf-8")
+    text = _pluggable(config.read_text(encoding="utf-8"), host)
+    config.write_text(text, encoding="utf-8")
     with _running(folder, config, dict.fromkeys(SERVICES, config), host) as rig:
         yield rig
 
 
+def _pluggable(table: str, host: Host) -> str:
+    """Return settings whose simulated camera is one that can be unplugged from a host."""
+    options = "[capture.camera.options]"
+    plugged = table.replace('"simulator"', '"pluggable"')
+    return plugged.replace(options, f"{options}\nplug = {json.dumps(str(host.plug))}")
+
+
 @contextmanager
-def two_hosts(folder: Path, model: Path) -> Iterator[ChaosRig]:
+def two_hosts(folder: Path, model: Path, *, recorder: str = "") -> Iterator[ChaosRig]:
     """Run the same as members of a site with a hub, the camera behind a link, until the block ends.
 
-    Raises InhandError where no pose comes, or the site cannot be made.
+    ``recorder`` are lines for its table. Raises InhandError where no pose comes, or the site cannot
+    be made.
     """
+    host = new_host(folder / "host")
     tables = rig_tables(folder, DEFAULT_CHAOS.interaction, model)
+    tables["capture"] = _pluggable(tables["capture"], host)
+    tables["recorder"] += f"\n{recorder}"
     port = free_port()
     with ExitStack() as stack:
         link = stack.enter_context(Link(port).open())
@@ -141,7 +168,6 @@ def two_hosts(folder: Path, model: Path) -> Iterator[ChaosRig]:
         hub = Hub(hub_config)
         stack.callback(hub.kill)
         hub.start()
-        host = new_host(folder / "host")
         yield stack.enter_context(_running(folder, look, configs, host, hub, link))
 
 
