@@ -132,7 +132,7 @@ def rigs_table(costs: HubCosts) -> Table:
                 f"{delay.lost:.1%}",
             ]
         table.add_row(
-            f"{one.rigs}, and a stuck reader in another" if one.stuck else f"{one.rigs}",
+            f"{one.rigs}, one with a stuck reader" if one.stuck else f"{one.rigs}",
             f"{one.frame_rate:.1f}",
             f"{one.hub_cores / one.rigs:.3f}",
             f"{one.hub_mb:.0f}",
