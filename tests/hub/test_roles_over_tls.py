@@ -5,6 +5,7 @@ import contextlib
 import pytest
 import zenoh
 from hub_site import (
+    OTHER_RIG,
     PEOPLE,
     REALM,
     SITE,
@@ -16,6 +17,7 @@ from hub_site import (
 from inhand_runtime import session as runtime_session
 from inhand_runtime.questions import answer, ask
 from inhand_runtime.session import tokens, watch_tokens
+from inhand_schemas.keys import Site
 from inhand_schemas.procedures import PROCEDURES, RELOAD, SHUTTER
 from inhand_schemas.topics import (
     HEALTH,
@@ -184,6 +186,18 @@ def test_a_member_of_another_rig_sees_nothing_of_this_one(site: HubSite) -> None
 
         eventually("the recorder hears", came)
         assert not keys
+        del handles
+
+
+def test_each_rig_of_the_site_sees_the_hub_and_how_it_is(site: HubSite) -> None:
+    garage = Site(REALM, OTHER_RIG)
+    with site.joined("stranger") as stranger:
+        keys, handles = listening(stranger.session, HEALTH.pattern(garage))
+        eventually("the hub's health", lambda: HEALTH.key(garage, "hub") in keys)
+        replies = stranger.session.liveliness().get(garage.live_pattern())
+        assert {str(one.ok.key_expr) for one in replies if one.ok is not None} == {
+            garage.live_key("hub", "hub")
+        }
         del handles
 
 

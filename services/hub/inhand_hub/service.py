@@ -98,7 +98,8 @@ def _run_until_changed(
     settings: Settings[HubSettings], state: State, site: SiteMembers, stop: threading.Event
 ) -> _Changed | None:
     """Run one router; return what is to run next, or None where a signal came."""
-    with running_daemon("hub", settings, _router(settings, site)) as daemon:
+    others = [Site(site.realm, rig) for rig in site.rigs if rig != settings.site.rig]
+    with running_daemon("hub", settings, _router(settings, site), also_in=others) as daemon:
         log.info(
             "%s of realm %s may connect to %s",
             counted(len(site.members_of(settings.instance)), "member"),

@@ -7,7 +7,7 @@ and the signal to stop; what a service does in between is its own.
 import contextlib
 import logging
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -36,6 +36,7 @@ from inhand_runtime.session import (
     end_subscription,
     hear_namesakes,
     open_session,
+    shown,
     subscribe,
     watch_instances,
 )
@@ -94,6 +95,19 @@ class Daemon:
         if topic.delivery.kept:
             self._kept.append(publisher)
         return publisher
+
+    @contextlib.contextmanager
+    def shown_in(self, sites: Sequence[Site]) -> Iterator[list[Publisher[Health]]]:
+        """Show this instance in other rigs as well until the block ends; what publishes its health
+        there."""
+        service, instance = self.health.service, self.instance
+        with contextlib.ExitStack() as stack:
+            for site in sites:
+                stack.enter_context(shown(self._session, site.live_key(service, instance)))
+            yield [
+                Publisher(self._session, HEALTH, HEALTH.key(site, instance), self.health.published)
+                for site in sites
+            ]
 
     def repeat_kept(self) -> None:
         """Send the last values of all kept topics again."""
@@ -216,12 +230,14 @@ def running_daemon(
     router: contextlib.AbstractContextManager[Session] | None = None,
     *,
     prepare: Callable[[], object] = _nothing,
+    also_in: Sequence[Site] = (),
 ) -> Iterator[Daemon]:
     """Open the session, announce the instance, and publish its health until the block ends.
 
     ``router`` opens the session of a hub, which is reached by others and looks for nobody.
     ``prepare`` does what a service needs before it is announced, while its name is claimed; what it
-    raises ends the start.
+    raises ends the start. It shows itself and its health in the rigs ``also_in`` too, as a hub that
+    serves several.
 
     SIGTERM or SIGINT sets ``daemon.stop``; a second one ends the process at once. Raises
     SettingsError or InhandError when the session cannot be opened, and InhandError when an
@@ -238,7 +254,7 @@ def running_daemon(
         with claimed_name(session, site, service, instance, stop, prepare) as elders:
             daemon = Daemon(session, site, service, instance, stop)
             looks_for = settings.zenoh if router is None else None
-            with _publishing_health(daemon, elders, looks_for):
+            with _publishing_health(daemon, elders, looks_for, also_in):
                 log.info("%s %s is up", service, instance)
                 try:
                     yield daemon
@@ -255,7 +271,7 @@ def running_daemon(
 
 @contextlib.contextmanager
 def _publishing_health(
-    daemon: Daemon, elders: Elders, settings: ZenohSettings | None
+    daemon: Daemon, elders: Elders, settings: ZenohSettings | None, also_in: Sequence[Site]
 ) -> Iterator[None]:
     """Publish the health once a second, and a last time at the end of the block.
 
@@ -264,22 +280,25 @@ def _publishing_health(
     publisher = daemon.publisher(HEALTH, daemon.instance)
     handle = daemon.hear_namesakes(publisher.key)
     finished = threading.Event()
-    reporter = threading.Thread(
-        target=_report, args=(daemon, elders, publisher, finished, settings), name="health"
-    )
-    reporter.start()
-    try:
-        yield
-    finally:
-        finished.set()
-        reporter.join()
-        del handle
+    with daemon.shown_in(also_in) as others:
+        reporter = threading.Thread(
+            target=_report,
+            args=(daemon, elders, [publisher, *others], finished, settings),
+            name="health",
+        )
+        reporter.start()
+        try:
+            yield
+        finally:
+            finished.set()
+            reporter.join()
+            del handle
 
 
 def _report(
     daemon: Daemon,
     elders: Elders,
-    publisher: Publisher[Health],
+    publishers: Sequence[Publisher[Health]],
     finished: threading.Event,
     settings: ZenohSettings | None,
 ) -> None:
@@ -288,7 +307,8 @@ def _report(
         if elders.stayed() and daemon.given_way is None:
             daemon.give_way()
         health = daemon.health.report()
-        publisher.put(health)
+        for publisher in publishers:
+            publisher.put(health)
         daemon.manager.status("; ".join((health.state, *health.troubles)))
         daemon.repeat_kept()
         reports += 1
@@ -298,7 +318,9 @@ def _report(
             give_memory_back()
         if reports == REPORTS_UNTIL_STARTED:
             give_libraries_back()
-    publisher.put(daemon.health.report())
+    health = daemon.health.report()
+    for publisher in publishers:
+        publisher.put(health)
 
 
 def _where_to_meet(settings: ZenohSettings) -> str:
