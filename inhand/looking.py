@@ -111,12 +111,13 @@ class Look:
         end = time.monotonic() + seconds
         replies: list[R] = []
         while True:
-            replies += [
-                procedure.reply(data)
-                for data in ask(
-                    self._session, procedure.key(self.site), procedure.encode(request), ANSWER_S
-                )
-            ]
+            pattern, data = procedure.pattern(self.site), procedure.encode(request)
+            try:
+                replies += [
+                    procedure.reply(*one) for one in ask(self._session, pattern, data, ANSWER_S)
+                ]
+            except MessageError as error:
+                raise InhandError(str(error)) from None
             if complete(replies) or time.monotonic() > end:
                 return replies
             if self._stop.wait(IDLE_S):

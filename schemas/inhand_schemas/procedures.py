@@ -11,7 +11,7 @@ from msgspec import Meta, Struct
 
 from inhand_schemas.errors import MessageError
 from inhand_schemas.fields import Count, Fraction, Name, Nanoseconds, Text
-from inhand_schemas.keys import Site
+from inhand_schemas.keys import Site, require_name
 from inhand_schemas.messages import Pose
 
 MOST_HYPOTHESES = 1000
@@ -103,15 +103,29 @@ class HypothesesReply(Struct, frozen=True, kw_only=True):
 
 @dataclass(frozen=True)
 class Procedure(Generic[Q, R]):
-    """One verb of a service, ``{realm}/@v1/{rig}/@rpc/{service}/{verb}``."""
+    """One verb of a service, ``{realm}/@v1/{rig}/@rpc/{service}/{verb}/{instance}``.
+
+    ``named`` is the field of a reply that has the name of the instance.
+    """
 
     service: str
     verb: str
     request_type: type[Q]
     reply_type: type[R]
+    named: str
 
-    def key(self, site: Site) -> str:
-        """The key that all instances of the service answer on."""
+    def key(self, site: Site, instance: str) -> str:
+        """The key that one instance of the service answers on; raises KeyFormatError."""
+        require_name("instance", instance)
+        return f"{self.shared_key(site)}/{instance}"
+
+    def pattern(self, site: Site) -> str:
+        """The keys of all instances, as a Zenoh key expression."""
+        return f"{self.shared_key(site)}/*"
+
+    def shared_key(self, site: Site) -> str:
+        """The one key that all instances answer on as well, for programs that know no other; who is
+        behind a reply on it nobody vouches for, and no hub lets it through."""
         return site.procedure_key(self.service, self.verb)
 
     def encode(self, message: Q | R) -> bytes:
@@ -122,9 +136,12 @@ class Procedure(Generic[Q, R]):
         """Decode a request; raises MessageError."""
         return _decoded(data, self.request_type)
 
-    def reply(self, data: bytes) -> R:
-        """Decode a reply; raises MessageError."""
-        return _decoded(data, self.reply_type)
+    def reply(self, key: str, data: bytes) -> R:
+        """Decode a reply that came on a key; raises MessageError, also for another's name in it."""
+        reply = _decoded(data, self.reply_type)
+        if key.rpartition("/")[2] != (name := getattr(reply, self.named)):
+            raise MessageError(f"a reply on {key} is in the name of {name!r}")
+        return reply
 
 
 S = TypeVar("S", bound=Struct)
@@ -137,9 +154,9 @@ def _decoded(data: bytes, kind: type[S]) -> S:
         raise MessageError(f"no valid {kind.__name__}: {error}") from None
 
 
-SHUTTER = Procedure("capture", "shutter", ShutterRequest, ShutterReply)
-CONTROL = Procedure("capture", "control", ControlRequest, ControlReply)
-HYPOTHESES = Procedure("tracker", "hypotheses", HypothesesRequest, HypothesesReply)
-RELOAD = Procedure("tracker", "reload", ReloadRequest, ReloadReply)
+SHUTTER = Procedure("capture", "shutter", ShutterRequest, ShutterReply, "camera")
+CONTROL = Procedure("capture", "control", ControlRequest, ControlReply, "camera")
+HYPOTHESES = Procedure("tracker", "hypotheses", HypothesesRequest, HypothesesReply, "tracker")
+RELOAD = Procedure("tracker", "reload", ReloadRequest, ReloadReply, "tracker")
 
 PROCEDURES: tuple[Procedure[Any, Any], ...] = (SHUTTER, CONTROL, HYPOTHESES, RELOAD)

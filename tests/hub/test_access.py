@@ -142,7 +142,9 @@ def test_a_role_reads_what_it_needs_and_no_more(role: str) -> None:
 @pytest.mark.parametrize("role", list(ROLES))
 def test_only_the_studio_asks_procedures(role: str) -> None:
     asks = {
-        one.verb for one in PROCEDURES if allowed(member(role), "ingress", "query", one.key(SITE))
+        one.verb
+        for one in PROCEDURES
+        if allowed(member(role), "ingress", "query", one.pattern(SITE))
     }
     assert asks == ({one.verb for one in PROCEDURES} if role == "studio" else set())
 

@@ -119,19 +119,22 @@ def test_only_the_studio_asks_and_only_who_is_asked_answers(wires: dict[str, Wir
         return b"true"
 
     kept = [
-        answer(camera.session, SHUTTER.key(SITE), reply),
-        answer(tracker.session, RELOAD.key(SITE), reply),
-        answer(camera.session, RELOAD.key(SITE), lambda _: b"false"),
-        answer(wires["disk"].session, SHUTTER.key(SITE), lambda _: b"false"),
+        answer(camera.session, SHUTTER.key(SITE, "front"), reply),
+        answer(tracker.session, RELOAD.key(SITE, "mug"), reply),
+        answer(camera.session, RELOAD.key(SITE, "mug"), lambda _: b"false"),
+        answer(camera.session, SHUTTER.key(SITE, "back"), lambda _: b"false"),
+        answer(camera.session, SHUTTER.pattern(SITE), lambda _: b"false"),
+        answer(wires["disk"].session, SHUTTER.key(SITE, "front"), lambda _: b"false"),
         answer(wires["disk"].session, f"{REALM}/@v1/**", lambda _: b"false"),
     ]
     for procedure in (SHUTTER, RELOAD):
-        key = procedure.key(SITE)
-        eventually(key, lambda key=key: list(ask(studio.session, key, b"studio", 1.0)))
-        assert set(ask(studio.session, key, b"studio", 1.0)) == {b"true"}
+        name = "front" if procedure is SHUTTER else "mug"
+        key, pattern = procedure.key(SITE, name), procedure.pattern(SITE)
+        eventually(key, lambda pattern=pattern: list(ask(studio.session, pattern, b"studio", 1.0)))
+        assert set(ask(studio.session, pattern, b"studio", 1.0)) == {(key, b"true")}
     for name in ("back", "anna"):
         for procedure in PROCEDURES:
-            assert not list(ask(wires[name].session, procedure.key(SITE), name.encode(), 0.5))
+            assert not list(ask(wires[name].session, procedure.pattern(SITE), name.encode(), 0.5))
         assert not list(ask(wires[name].session, f"{REALM}/@v1/**", name.encode(), 0.5))
     assert set(asked) == {b"studio"}
     del kept

@@ -1,7 +1,9 @@
 """Questions between two sessions."""
 
 from collections.abc import Iterator
+from typing import Any
 
+import msgspec
 import pytest
 from inhand_runtime.errors import InhandError
 from inhand_runtime.questions import answer, ask
@@ -9,10 +11,16 @@ from inhand_runtime.session import Session, connected, open_session
 from inhand_runtime.settings import ZenohSettings
 from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import Site
-from inhand_schemas.procedures import SHUTTER, ShutterReply, ShutterRequest
+from inhand_schemas.procedures import (
+    PROCEDURES,
+    SHUTTER,
+    Procedure,
+    ShutterReply,
+    ShutterRequest,
+)
 from running_rig import RunningRig, eventually
 
-KEY = SHUTTER.key(Site())
+KEY = SHUTTER.key(Site(), "front")
 
 
 @pytest.fixture
@@ -25,7 +33,7 @@ def two(rig: RunningRig) -> Iterator[tuple[Session, Session]]:
 
 
 def _replies(session: Session, request: bytes) -> list[bytes]:
-    return list(ask(session, KEY, request, 5.0))
+    return [reply for _, reply in ask(session, KEY, request, 5.0)]
 
 
 def test_all_who_answer_are_heard(two: tuple[Session, Session]) -> None:
@@ -72,7 +80,16 @@ def test_requests_and_replies_are_plain_messagepack_maps() -> None:
     request = ShutterRequest(closed=True)
     assert SHUTTER.request(SHUTTER.encode(request)) == request
     reply = ShutterReply(camera="front", closed=True, problem="no disk")
-    assert SHUTTER.reply(SHUTTER.encode(reply)) == reply
-    assert KEY == "inhand/@v1/rig/@rpc/capture/shutter"
+    assert SHUTTER.reply(KEY, SHUTTER.encode(reply)) == reply
+    assert KEY == "inhand/@v1/rig/@rpc/capture/shutter/front"
     with pytest.raises(MessageError, match="no valid ShutterRequest"):
         SHUTTER.request(b"\x93\x01\x02\x03")
+
+
+@pytest.mark.parametrize("procedure", PROCEDURES, ids=lambda one: one.verb)
+def test_nobody_replies_in_the_name_of_another(procedure: Procedure[Any, Any]) -> None:
+    others = {"closed": True, "objects": (), "camera": "side", "sequence": 1, "time_ns": 1}
+    reply = msgspec.convert({**others, procedure.named: "back"}, procedure.reply_type)
+    assert procedure.reply(procedure.key(Site(), "back"), procedure.encode(reply)) == reply
+    with pytest.raises(MessageError, match="in the name of 'back'"):
+        procedure.reply(procedure.key(Site(), "front"), procedure.encode(reply))

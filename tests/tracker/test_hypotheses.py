@@ -15,8 +15,8 @@ WAIT_S = 5.0
 
 def _asked(wire: Wire, name: str | None = None) -> list[HypothesesReply]:
     request = HYPOTHESES.encode(HypothesesRequest(tracker=name))
-    key = HYPOTHESES.key(wire.site)
-    return [HYPOTHESES.reply(data) for data in ask(wire.session, key, request, WAIT_S)]
+    pattern = HYPOTHESES.pattern(wire.site)
+    return [HYPOTHESES.reply(*one) for one in ask(wire.session, pattern, request, WAIT_S)]
 
 
 @pytest.mark.long

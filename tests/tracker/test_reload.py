@@ -15,7 +15,8 @@ from wire import Wire
 
 def _asked(wire: Wire, name: str | None = None) -> list[ReloadReply]:
     request = RELOAD.encode(ReloadRequest(tracker=name))
-    return [RELOAD.reply(data) for data in ask(wire.session, RELOAD.key(wire.site), request, 20.0)]
+    pattern = RELOAD.pattern(wire.site)
+    return [RELOAD.reply(*one) for one in ask(wire.session, pattern, request, 20.0)]
 
 
 @pytest.mark.long

@@ -127,7 +127,7 @@ def rules_of(member: Member, realm: str) -> tuple[Rule, ...]:
         rules += _publishing_rules(topic, site, member.published_names)
     for topic in role.reads:
         rules += _reading_rules(topic, site)
-    rules += _procedure_rules(site, role)
+    rules += _procedure_rules(site, role, member.name)
     return tuple(rules)
 
 
@@ -139,7 +139,7 @@ def link_rules(realm: str, rigs: Iterable[str], *, far: bool) -> tuple[Rule, ...
         topics = [one for one in TOPICS.values() if not (far and one is RGBD)]
         keys += [topic.pattern(site) for topic in topics]
         keys += [beside(topic.pattern(site)) for topic in topics if topic.delivery.kept]
-        keys += [procedure.key(site) for procedure in PROCEDURES]
+        keys += [procedure.pattern(site) for procedure in PROCEDURES]
         keys += [site.live_pattern(), site.all_claims_pattern()]
     return tuple(Rule(flow, get_args(Operation), tuple(keys)) for flow in get_args(Flow))
 
@@ -236,19 +236,18 @@ def _reading_rules(topic: AnyTopic, site: Site) -> list[Rule]:
     ]
 
 
-def _procedure_rules(site: Site, role: Role) -> list[Rule]:
+def _procedure_rules(site: Site, role: Role, name: str) -> list[Rule]:
     rules = []
     for procedure in role.answers:
-        key = (procedure.key(site),)
         rules += [
-            Rule("ingress", ("declare_queryable", "reply"), key),
-            Rule("egress", ("query",), key),
+            Rule("ingress", ("declare_queryable", "reply"), (procedure.key(site, name),)),
+            Rule("egress", ("query",), (procedure.pattern(site),)),
         ]
     for procedure in role.asks:
-        key = (procedure.key(site),)
+        pattern = (procedure.pattern(site),)
         rules += [
-            Rule("ingress", ("query",), key),
-            Rule("egress", ("declare_queryable", "reply"), key),
+            Rule("ingress", ("query",), pattern),
+            Rule("egress", ("declare_queryable", "reply"), pattern),
         ]
     return rules
 

@@ -160,15 +160,16 @@ class Daemon:
             reply = on_request(procedure.request(data))
             return None if reply is None else procedure.encode(reply)
 
-        self._questions.append(answer(self._session, procedure.key(self.site), receive))
+        own, shared = procedure.key(self.site, self.instance), procedure.shared_key(self.site)
+        self._questions += [answer(self._session, key, receive) for key in (own, shared)]
 
     def ask(self, procedure: Procedure[Q, R], request: Q, timeout_s: float) -> list[R]:
         """Ask all instances that a procedure's request concerns; the replies that came in time.
 
         Raises InhandError for one that fails, and MessageError for a reply that is none.
         """
-        replies = ask(self._session, procedure.key(self.site), procedure.encode(request), timeout_s)
-        return [procedure.reply(data) for data in replies]
+        pattern, data = procedure.pattern(self.site), procedure.encode(request)
+        return [procedure.reply(*one) for one in ask(self._session, pattern, data, timeout_s)]
 
     def hear_namesakes(self, key: str) -> Subscription:
         """Note, as a trouble, that another process publishes on a key of this instance's own."""

@@ -40,8 +40,11 @@ def answer(session: Session, key: str, on_request: Callable[[bytes], bytes | Non
     return session.declare_queryable(key, receive)
 
 
-def ask(session: Session, key: str, request: bytes, timeout_s: float) -> Iterator[bytes]:
-    """Ask all who answer on a key; their replies as they come, until all have or time is up.
+def ask(
+    session: Session, key: str, request: bytes, timeout_s: float
+) -> Iterator[tuple[str, bytes]]:
+    """Ask all who answer on a key, or on those of a pattern; their keys and replies as they come,
+    until all have or time is up.
 
     Raises InhandError for one that answers with an error.
     """
@@ -54,6 +57,6 @@ def ask(session: Session, key: str, request: bytes, timeout_s: float) -> Iterato
     )
     for reply in replies:
         if reply.ok is not None:
-            yield reply.ok.payload.to_bytes()
+            yield str(reply.ok.key_expr), reply.ok.payload.to_bytes()
         elif reply.err is not None and (text := reply.err.payload.to_string()) != TIMED_OUT:
             raise InhandError(f"{key}: {text}")
