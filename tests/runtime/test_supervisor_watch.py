@@ -6,7 +6,7 @@ from pathlib import Path
 import psutil
 from running_rig import RunningRig, eventually
 
-DAEMON = Path(__file__).parents[1] / "runtime" / "small_daemon.py"
+DAEMON = Path(__file__).with_name("small_daemon.py")
 SUPERVISES = """
 import sys, time
 from inhand.child import Child
