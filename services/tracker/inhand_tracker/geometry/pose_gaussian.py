@@ -59,13 +59,9 @@ class PoseMixture:
         """The triangular roots (K, 6, 6) of the parts' covariances."""
         return roots_of(np.array([part.covariance for part in self.parts]))
 
-    def sample(
-        self, count: int, random: np.random.Generator, even_share: float = 0.0
-    ) -> tuple[Array, Array]:
-        """Draw ``count`` poses (P, 3) and (P, 4), of each part in proportion to its weight; but for
-        an ``even_share`` of them, of which each part has as many."""
-        shares = (1.0 - even_share) * self.weights + even_share / len(self.weights)
-        ends = np.rint(np.cumsum(shares) * count).astype(int)
+    def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
+        """Draw ``count`` poses (P, 3) and (P, 4), of each part in proportion to its weight."""
+        ends = np.rint(np.cumsum(self.weights) * count).astype(int)
         parts = np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
         normals = random.standard_normal((len(parts), 6))
         poses: tuple[Array, Array] = kernels.draw(parts, *self.means, self.roots, normals)

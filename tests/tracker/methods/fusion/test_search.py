@@ -179,17 +179,6 @@ def test_a_sharp_image_that_supports_no_pose_is_searched_again() -> None:
     assert median_distance(5.0, 0.25) > median_distance(5.0, 0.25, thoroughly=True)
 
 
-def test_even_an_unlikely_part_of_the_belief_is_looked_at() -> None:
-    near = belief(TRUE.centre).parts[0]
-    far = replace(near, centre=TRUE.centre + np.array([0.4, 0.0, 0.0]))
-    mixed = PoseMixture((far, near), np.array([0.999, 0.001]))
-    one = search(GaussianSight(bonus=40.0))
-    one.look(mixed, BLANK, STANDING, 1.0)
-    assert one.tried is not None
-    close = np.linalg.norm(one.tried.centres - near.centre, axis=1) < 0.2
-    assert close.sum() > 0.1 * len(close)
-
-
 def test_with_less_effort_a_thorough_search_tries_fewer_hypotheses_too() -> None:
     weighed = []
     for effort in (1.0, 0.5):

@@ -62,8 +62,6 @@ class FusionParameters:
     # How an image is searched (search, posterior).
     hypotheses: int = 120
     """Number of hypotheses; cost grows with it (`inhand bench tracker`)."""
-    even_share: float = 0.4
-    """Share of the hypotheses of which each part of the belief has as many, however unlikely."""
     fewest_hypotheses: int = 25
     """Number of hypotheses that are tried with however little effort."""
     refines: bool = True

@@ -63,7 +63,7 @@ class ImageSearch:
         """
         self._support = None
         parameters = self._parameters.with_effort(effort)
-        hypotheses = belief.sample(parameters.hypotheses, self._random, parameters.even_share)
+        hypotheses = belief.sample(parameters.hypotheses, self._random)
         region = self._region(self._sphere.middles(*hypotheses), image.camera)
         if region is None:
             self._found = self.tried = None
