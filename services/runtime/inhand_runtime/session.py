@@ -61,7 +61,7 @@ batches, so that a busy moment drops none."""
 SENDING_THREADS = 8
 """Number of Zenoh's threads that send: where a link to somebody who stands still is closed, one of
 them stands still for seconds, and with the single one that Zenoh has by itself so does all else
-(`findings/zenoh-closing-holds-all.sh`)."""
+(seen with Zenoh 1.10.2)."""
 _RUNTIME_VARIABLE = "ZENOH_RUNTIME"
 
 _PRIORITIES = {
