@@ -116,7 +116,7 @@ class PoseRefiner:
                 Steps(shares, reaches, self._damping),
                 outlines,
                 view.pixels,
-                settings._replace(mixes=mixes and view.frame.colour is not None),
+                settings._replace(mixes=mixes and bool(settings.wanted[1])),
                 information,
             )
         return Moved(*moved, parameters.information_share * information)

@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 from inhand_tracker.sight.kernels.equations import Equations
 from inhand_tracker.sight.kernels.gather import GatherSettings, gather
+from inhand_tracker.sight.kernels.inputs import Outlines
 from inhand_tracker.sight.kernels.mixed_offset import Mixing
 
 REACH = 0.02, 0.1
@@ -30,13 +31,17 @@ Measurement = tuple[np.ndarray, np.ndarray, float, float]
 
 
 def gathered(
-    settings: GatherSettings = SETTINGS, *, count: int = 24, start: float = 0.0
+    settings: GatherSettings = SETTINGS,
+    *,
+    count: int = 24,
+    start: float = 0.0,
+    outlines: Outlines = OUTLINES,
 ) -> Equations:
     """The equations of poses, of which every element was ``start`` before."""
     translations, orientations = arrays.poses(count)
     equations = Equations(np.full((count, 6, 6), start), np.full((count, 6), start))
     reaches = np.tile(REACH, (count, 1))
-    gather(translations, orientations, reaches, OUTLINES, PIXELS, settings, equations)
+    gather(translations, orientations, reaches, outlines, PIXELS, settings, equations)
     return equations
 
 
@@ -164,3 +169,11 @@ def test_equations_are_added_to_what_was_there() -> None:
     equations, alone = gathered(count=3, start=1.0), gathered(count=3)
     np.testing.assert_allclose(equations.information, 1.0 + alone.information)
     np.testing.assert_allclose(equations.gradients, 1.0 + alone.gradients)
+
+
+def test_an_outline_of_no_thickness_shows_nothing_by_colours() -> None:
+    flat = OUTLINES._replace(inside=np.zeros_like(OUTLINES.inside))
+    for mixes in (False, True):
+        seen = gathered(SETTINGS._replace(mixes=mixes), outlines=flat)
+        assert np.isfinite(seen.information).all()
+        assert np.isfinite(seen.gradients).all()

@@ -207,7 +207,7 @@ def _outline_offset(
         other = sample - thickness / step
         score = within[sample]
         if other > 0.0:
-            index = int(other)
+            index = min(int(other), count - 2)
             part = other - index
             score -= (1.0 - part) * within[index] + part * within[index + 1]
         log_posterior[sample] += score
