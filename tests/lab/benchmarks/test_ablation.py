@@ -26,10 +26,10 @@ def test_other_values_of_parameters_stand_beside_the_whole(
     assert whole["without"] == "nothing"
     assert [(row["part"], row["without"], row["instead"]) for row in others] == [
         ("parameter", "refines=true", "refines=false"),
-        ("parameter", "image_temper=0.4", "image_temper=0.1"),
+        ("parameter", "image_temper=0.8", "image_temper=0.1"),
     ]
     assert len({row["vertex_error_cm"] for row in (whole, *others)}) == 3
-    assert "image_temper=0.4 (instead 0.1)" in " ".join(capsys.readouterr().out.split())
+    assert "image_temper=0.8 (instead 0.1)" in " ".join(capsys.readouterr().out.split())
 
 
 def test_every_part_is_taken_out_once_and_the_table_shows_what_that_costs(

@@ -20,7 +20,9 @@ def test_each_number_is_halved_and_doubled_and_the_poorest_choice_comes_first(
     monkeypatch.setattr(constants, "ablate", ablate)
     checks = check_constants(None, 1)  # type: ignore[arg-type]
     assert checks[0].name == "image_temper"
-    assert (checks[0].lower, checks[0].usual, checks[0].higher) == (0.2, 0.4, 0.8)
+    assert (checks[0].lower, checks[0].usual, checks[0].higher) == pytest.approx(
+        (2 / 3, 0.8, 8 / 9)
+    )
     assert (checks[0].best_ratio, checks[-1].best_ratio) == (0.5, 1.0)
     switches = {"carries", "leaves", "refines"}
     assert {check.name for check in checks} == set(parameter_names()) - switches

@@ -14,7 +14,7 @@ from inhand.__main__ import main
 @pytest.mark.parametrize(
     ("setting", "changed", "usual"),
     [
-        ("image_temper=1", replace(DEFAULT_FUSION, image_temper=1.0), "image_temper=0.4"),
+        ("image_temper=1", replace(DEFAULT_FUSION, image_temper=1.0), "image_temper=0.8"),
         ("hypotheses = 50", replace(DEFAULT_FUSION, hypotheses=50), "hypotheses=120"),
         ("leaves=False", replace(DEFAULT_FUSION, leaves=False), "leaves=true"),
         (
