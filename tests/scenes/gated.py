@@ -70,7 +70,12 @@ def inner_server() -> Iterator[tuple[Inner, tuple[str, int]]]:
                 await web.SockSite(runner, listening).start()
 
             async def end() -> None:
+                assert runner.server is not None
+                transports = [one.transport for one in runner.server.connections]
                 await runner.cleanup()
+                for transport in transports:
+                    if transport is not None:
+                        transport.abort()
                 await asyncio.sleep(0.0)
 
             asyncio.run_coroutine_threadsafe(start(), loop).result()

@@ -86,6 +86,12 @@ async def _start(
 
 
 async def _end(runner: web.AppRunner) -> None:
-    """End all connections, and let the loop do what their end has left to it."""
+    """End all connections, also of a browser that takes no more bytes, and let the loop do what
+    their end has left to it."""
+    connections = [] if runner.server is None else runner.server.connections
+    transports = [one.transport for one in connections]
     await runner.cleanup()
+    for transport in transports:
+        if transport is not None:
+            transport.abort()
     await asyncio.sleep(0.0)
