@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from inhand_hub.access import ROLES
+from inhand_hub.access import ROLES, RoleName
 from inhand_hub.members import AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE
 from inhand_hub.site_folder import SiteFolder, create_site
 from inhand_lab.benchmarks.hub_cost import HubCosts, Routers
@@ -22,6 +22,7 @@ from rich.table import Table
 REALM = "bench"
 UP_S = 20.0
 DELAYS = ("p50, ms", "p99, ms", "lost")
+"""What is told of the delays of a stream."""
 
 
 @contextmanager
@@ -51,9 +52,8 @@ def _made_rigs(folder: Path, count: int, address: str) -> list[RigEnds]:
     ]
 
 
-def _member(site: SiteFolder, role: str, rig: str, address: str) -> ZenohSettings:
-    (known,) = (one for one in ROLES if one == role)
-    given = site.folder_of(site.add(known, role, rig, ("tracker",) if role == "tracker" else ()))
+def _member(site: SiteFolder, role: RoleName, rig: str, address: str) -> ZenohSettings:
+    given = site.folder_of(site.add(role, role, rig, ("tracker",) if role == "tracker" else ()))
     return ZenohSettings(
         mode="client",
         connect=(address,),
@@ -116,11 +116,7 @@ def rigs_table(costs: HubCosts) -> Table:
         "cores a rig",
         "hub, MB",
         "machine busy",
-        *(
-            f"{name}, {what}"
-            for name in ("frame", "pose")
-            for what in ("p50, ms", "p99, ms", "lost")
-        ),
+        *(f"{name}, {what}" for name in ("frame", "pose") for what in DELAYS),
     ):
         table.add_column(name, justify="right")
     for one in costs.rigs:

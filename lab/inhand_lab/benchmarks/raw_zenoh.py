@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
 import zenoh
@@ -12,34 +12,35 @@ KEY = "raw/frame"
 RawSession = zenoh.Session
 
 
-@contextmanager
-def raw_session(address: str, *, listens: bool, shared_memory: bool) -> Iterator[zenoh.Session]:
+def raw_session(
+    address: str, *, listens: bool, shared_memory: bool
+) -> AbstractContextManager[zenoh.Session]:
     """Open a peer that listens at an address, or connects to it, and has no other links."""
-    config = zenoh.Config()
-    values: dict[str, Any] = {
-        "mode": "peer",
-        "listen/endpoints": [address] if listens else [],
-        "connect/endpoints": [] if listens else [address],
-        "scouting/multicast/enabled": False,
-        "transport/shared_memory/enabled": shared_memory,
-    }
-    for key, value in values.items():
-        config.insert_json5(key, json.dumps(value))
-    with zenoh.open(config) as session:
-        yield session
+    return _opened(
+        {
+            "mode": "peer",
+            "listen/endpoints": [address] if listens else [],
+            "connect/endpoints": [] if listens else [address],
+            "transport/shared_memory/enabled": shared_memory,
+        }
+    )
+
+
+def raw_router(address: str) -> AbstractContextManager[zenoh.Session]:
+    """Run a router that encrypts nothing and has no rules."""
+    return _opened(
+        {
+            "mode": "router",
+            "listen/endpoints": [address],
+            "transport/shared_memory/enabled": False,
+        }
+    )
 
 
 @contextmanager
-def raw_router(address: str) -> Iterator[zenoh.Session]:
-    """Run a router that encrypts nothing and has no rules."""
+def _opened(values: dict[str, Any]) -> Iterator[zenoh.Session]:
     config = zenoh.Config()
-    values: dict[str, Any] = {
-        "mode": "router",
-        "listen/endpoints": [address],
-        "scouting/multicast/enabled": False,
-        "transport/shared_memory/enabled": False,
-    }
-    for key, value in values.items():
+    for key, value in {**values, "scouting/multicast/enabled": False}.items():
         config.insert_json5(key, json.dumps(value))
     with zenoh.open(config) as session:
         yield session
