@@ -1,5 +1,6 @@
 """``inhand bench hub``: a site with a hub that runs, and the tables of what was measured at it."""
 
+import os
 import subprocess
 import sys
 import time
@@ -16,6 +17,7 @@ from inhand_lab.demonstration.preparation import free_port
 from inhand_runtime.errors import InhandError
 from inhand_runtime.session import open_session
 from inhand_runtime.settings import ZenohSettings
+from inhand_runtime.supervisor_watch import supervised
 from inhand_schemas.keys import Site
 from rich.table import Table
 
@@ -81,7 +83,9 @@ def _running_hub(folder: Path, rig: RigEnds) -> Iterator[int]:
     )
     command = [sys.executable, "-m", "inhand", "hub", "--config", str(config)]
     with (folder / "hub.log").open("wb") as log:
-        hub = subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=log)
+        hub = subprocess.Popen(
+            command, env={**os.environ, **supervised()}, stdin=subprocess.DEVNULL, stderr=log
+        )
     try:
         _wait_until_up(rig.members["viewer"])
         yield hub.pid

@@ -10,7 +10,7 @@ from typing import Any
 
 from inhand_runtime.exit_codes import DONE, WRONG_USAGE
 from inhand_runtime.service_manager import without_manager
-from inhand_runtime.supervisor_watch import SUPERVISOR_VARIABLE
+from inhand_runtime.supervisor_watch import supervised
 
 from inhand.heartbeats import Heartbeats
 from inhand.last_words import Told, how_it_ended
@@ -68,7 +68,7 @@ class Child:
                         **without_manager(os.environ),
                         **self._heartbeats.environment(HANGS_AFTER_S / 10),
                         **self._environment(),
-                        SUPERVISOR_VARIABLE: str(os.getpid()),
+                        **supervised(),
                     },
                     stdin=subprocess.DEVNULL,
                     stderr=subprocess.PIPE,

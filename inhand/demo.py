@@ -1,6 +1,7 @@
 """``inhand demo``: from nothing to tracked, recorded object poses on this machine."""
 
 import argparse
+import os
 import signal
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from inhand_lab.demonstration.review import Review, review
 from inhand_lab.demonstration.typical_frame import draw_typical_frame
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.supervisor_watch import supervised
 from inhand_runtime.wording import counted
 from inhand_schemas.topics import POSE, SKELETONS
 from rich.console import Console
@@ -96,7 +98,9 @@ def _run_rig(config: Path, seconds: float) -> None:
     command = [sys.executable, "-m", "inhand", "up", "--config", str(config)]
     with open_look(config) as look:
         look.follow(POSE)
-        rig = subprocess.Popen(command, stdin=subprocess.DEVNULL)
+        rig = subprocess.Popen(
+            command, env={**os.environ, **supervised()}, stdin=subprocess.DEVNULL
+        )
         try:
             _watch(look, rig, seconds)
         finally:

@@ -13,6 +13,7 @@ from inhand_runtime.logs import configure_logs
 from inhand_runtime.session import open_session
 from inhand_runtime.settings import RigFile, load_rig_file
 from inhand_runtime.signals import set_on_signals
+from inhand_runtime.supervisor_watch import end_with_supervisor
 
 from inhand.reloading import Reloading, commands
 from inhand.rig_processes import meets_without_hub, rig_processes
@@ -29,7 +30,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Supervise until the end; raises SettingsError when there is nothing to run."""
+    """Supervise until the end, which comes as well when a process that started this one as its
+    supervisor is gone; raises SettingsError when there is nothing to run."""
+    end_with_supervisor()
     stop = threading.Event()
     if arguments.check_config:
         stages = rig_processes(load_rig_file(arguments.config), arguments.config)

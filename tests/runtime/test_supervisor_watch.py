@@ -15,6 +15,12 @@ while True:
     child.tend()
     time.sleep(0.02)
 """
+STARTS_UP = """
+import os, subprocess, sys
+from inhand_runtime.supervisor_watch import supervised
+command = [sys.executable, "-m", "inhand", "up", "--config", sys.argv[1]]
+subprocess.run(command, env={**os.environ, **supervised()})
+"""
 SOON = f"""
 import runpy, sys
 from inhand_runtime import supervisor_watch
@@ -33,6 +39,16 @@ def test_not_even_a_child_that_hangs_outlives_a_killed_supervisor(rig: RunningRi
     # Its name is free.
     again = rig.python(DAEMON, "--config", rig.config, "--name", "small")
     again.said("tracker small is up")
+
+
+def test_a_rig_ends_with_the_program_that_started_it_for_itself(rig: RunningRig) -> None:
+    rig.configure("[recorder.disk]\nfolder = 'kept'")
+    program = rig.python("-c", STARTS_UP, rig.config)
+    program.said("recorder disk is up")
+    (up,) = psutil.Process(program.pid).children()
+    (recorder,) = up.children()
+    program.popen.kill()
+    eventually("the end of the rig", lambda: not (_lives(up) or _lives(recorder)))
 
 
 def _lives(process: psutil.Process) -> bool:

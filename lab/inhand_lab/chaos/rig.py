@@ -1,6 +1,7 @@
 """A rig of real processes that faults are inflicted on, of one host or of two with a hub."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import psutil
 from inhand_runtime.errors import InhandError
 from inhand_runtime.session import Session, open_session
 from inhand_runtime.settings import ZenohSettings, load_rig_file
+from inhand_runtime.supervisor_watch import supervised
 from inhand_schemas.keys import Site
 from inhand_schemas.topics import POSE
 
@@ -40,7 +42,10 @@ class Hub:
     def start(self) -> None:
         """Start it."""
         self._process = subprocess.Popen(
-            self._command, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            self._command,
+            env={**os.environ, **supervised()},
+            stdin=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
         )
 
     @property
@@ -215,7 +220,7 @@ def _supervised(config: Path, host: Host) -> Iterator[psutil.Popen]:
     with config.with_suffix(".log").open("wb") as log:
         up = psutil.Popen(
             [*INHAND, "up", "--config", str(config)],
-            env=host.environment,
+            env={**host.environment, **supervised()},
             stdin=subprocess.DEVNULL,
             stderr=log,
         )

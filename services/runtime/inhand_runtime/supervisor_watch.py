@@ -12,16 +12,20 @@ import time
 
 from inhand_runtime.exit_codes import FAILED
 
-SUPERVISOR_VARIABLE = "INHAND_SUPERVISOR"
-"""The variable that names the process of the supervisor; it is for its own children alone."""
+_VARIABLE = "INHAND_SUPERVISOR"
 POLL_S = 0.5
 ENDS_WITHIN_S = 10.0
 """Seconds that this process has to end as on SIGTERM, after which it ends where it stands."""
 
 
+def supervised() -> dict[str, str]:
+    """Return what the environment of a child is to have so that it ends with this process."""
+    return {_VARIABLE: str(os.getpid())}
+
+
 def end_with_supervisor() -> None:
     """Watch the supervisor that the environment names from now on; without one nothing is done."""
-    named = os.environ.pop(SUPERVISOR_VARIABLE, "")
+    named = os.environ.pop(_VARIABLE, "")
     if named:
         threading.Thread(target=_watch, args=(int(named),), name="supervisor", daemon=True).start()
 
