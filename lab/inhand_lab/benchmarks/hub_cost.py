@@ -163,7 +163,7 @@ def _streams(parameters: HubCostParameters) -> dict[str, Stream]:
     return {
         RGBD.stream: Stream(simulated_frame(transport), rate),
         SKELETONS.stream: Stream(Skeletons(sequence=0, time_ns=0, people=(person,)), rate),
-        POSE.stream: Stream(tracked, rate),
+        POSE.stream: Stream(tracked, rate, parameters.tracking_s),
         PREVIEW.stream: Stream(
             Preview(sequence=0, time_ns=0, width=320, height=240, jpeg=jpeg),
             parameters.preview_rate,

@@ -51,10 +51,11 @@ class RigEnds:
 
 @dataclass(frozen=True)
 class Stream:
-    """What is sent of a topic, and how often a second."""
+    """What is sent of a topic, how often a second, and how many seconds after the frame."""
 
     message: Message
     rate: float
+    after_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -173,8 +174,9 @@ def _send_when_due(load: Load, publishers: Publishers) -> Sent:
     counting_from, end = start + load.warming_s, start + load.warming_s + load.measured_s
     # Rigs are spread over the time of a frame: their cameras do not know each other.
     due = [
-        (start + number / len(load.rigs) / load.streams[stream].rate, number, stream)
+        (start + number / len(load.rigs) / one.rate + one.after_s, number, stream)
         for number, stream in publishers
+        for one in [load.streams[stream]]
     ]
     heapq.heapify(due)
     numbers: Counter[tuple[int, str]] = Counter()

@@ -178,6 +178,8 @@ class HubCostParameters:
     """The frame that is sent, and how often."""
     rig_counts: tuple[int, ...] = (1, 4, 16)
     """Numbers of rigs on one hub."""
+    tracking_s: float = 0.01
+    """Seconds after its frame at which a pose is published: what a tracker takes."""
     preview_rate: float = 5.0
     """Previews a second of each camera."""
     preview_bytes: int = 8_000
