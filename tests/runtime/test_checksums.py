@@ -5,7 +5,12 @@ import hashlib
 import struct
 
 import pytest
-from inhand_runtime.recording.checksums import digest, format_digests, parse_checksums
+from inhand_runtime.recording.checksums import (
+    digest,
+    format_checksums,
+    parse_channels,
+    parse_checksums,
+)
 
 STAMP = (3, 7, 1_000, 2_000)
 PAYLOAD = b"a payload"
@@ -21,11 +26,20 @@ def test_messages_of_release_0_1_0_prove_themselves_by_blake2b() -> None:
 
 
 def test_what_is_written_holds_for_each_message_and_for_no_other() -> None:
-    checksums = parse_checksums(format_digests([digest(*STAMP, PAYLOAD), digest(*STAMP, b"")]))
+    digests = [digest(*STAMP, PAYLOAD), digest(*STAMP, b"")]
+    checksums = parse_checksums(format_checksums(digests, {}))
     assert checksums.count == 2
     assert checksums.holds(*STAMP, PAYLOAD)
     assert checksums.holds(*STAMP, b"")
     assert not checksums.holds(4, 7, 1_000, 2_000, PAYLOAD)
+
+
+def test_a_channel_is_known_by_its_record_unless_that_was_damaged() -> None:
+    channels = {3: ("inhand/@v1/rig/pose/mug", "msgpack"), 4: ("a key", "x-undecodable")}
+    values = format_checksums([], channels)
+    assert parse_channels(values) == channels
+    damaged = {name: value.replace("rig", "ric") for name, value in values.items()}
+    assert parse_channels(damaged) == {4: ("a key", "x-undecodable")}
 
 
 @pytest.mark.parametrize("values", [{}, {"xxh3_64": "no base64"}, {"md5": "AAAA"}])

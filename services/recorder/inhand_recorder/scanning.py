@@ -20,6 +20,7 @@ from inhand_runtime.recording.checksums import (
     CHECKSUMS_RECORD,
     NO_CHECKSUMS,
     Checksums,
+    parse_channels,
     parse_checksums,
 )
 from inhand_runtime.recording.chunk_walk import size_without_zeros
@@ -119,18 +120,28 @@ def has_checksums(data: Bytes) -> bool:
 
 
 def channels(data: Bytes) -> dict[int, Channel]:
-    """The channels by their number, from wherever they still stand in the file."""
+    """The channels by their number, from wherever they still stand in the file.
+
+    Whom a checksum proves comes first: that of the index, of a whole chunk, or their own beside the
+    messages' checksums.
+    """
     found: dict[int, Channel] = {}
+    proved: dict[int, Channel] = {}
     doubtful: dict[int, Channel] = {}
-    for start in (summary_start(data), len(MAGIC)):
+    index = summary_start(data)
+    for start in (index, len(MAGIC)):
         for stretch in scan(data, start) if start is not None else ():
+            of_chunk = stretch.state == "whole" and data[stretch.offset] == Opcode.CHUNK
+            place = found if of_chunk or start == index else doubtful
             for record in stretch.records:
                 if isinstance(record, Channel):
-                    place = doubtful if stretch.state == "damaged" else found
                     place.setdefault(record.id, record)
+                elif isinstance(record, Metadata) and record.name == CHECKSUMS_RECORD:
+                    for number, (key, encoding) in parse_channels(record.metadata).items():
+                        proved[number] = Channel(number, key, encoding, {}, 0)
         if found:  # an index need not repeat the channels: then the data says them
             break
-    return doubtful | found
+    return doubtful | proved | found
 
 
 def scan(data: Bytes, offset: int = len(MAGIC)) -> Iterator[Stretch]:

@@ -3,7 +3,8 @@
 A recording's chunks have a checksum each, which one changed byte spoils for all messages in it, and
 which says nothing of a chunk that was cut off. So before each chunk stands a metadata record named
 ``checksums`` with eight bytes of XXH3 of each message in it; those of release
-0.1.0 have BLAKE2b, which takes ten times as long. Other readers pass it over.
+0.1.0 have BLAKE2b, which takes ten times as long. It names the channels of these messages too, each
+with a checksum, so that no damage lends a message to another key. Other readers pass it over.
 """
 
 import base64
@@ -46,6 +47,7 @@ def _blake2b(payload: bytes) -> Any:
 
 
 _WRITTEN = "xxh3_64"
+_CHANNEL = "channel "
 _ALGORITHMS: dict[str, Callable[[bytes], Any]] = {
     _WRITTEN: xxhash.xxh3_64,
     "blake2b_64": _blake2b,
@@ -60,9 +62,32 @@ def digest(channel: int, sequence: int, log_time: int, publish_time: int, payloa
     return hashed.digest()
 
 
-def format_digests(digests: Iterable[bytes]) -> dict[str, str]:
-    """The values of the metadata record."""
-    return {_WRITTEN: base64.b64encode(b"".join(digests)).decode()}
+def format_checksums(
+    digests: Iterable[bytes], channels: Mapping[int, tuple[str, str]]
+) -> dict[str, str]:
+    """The values of the metadata record: the messages' checksums, and key and message encoding of
+    each of their channels by its number."""
+    values = {_WRITTEN: base64.b64encode(b"".join(digests)).decode()}
+    for number, (key, encoding) in channels.items():
+        named = f"{encoding} {key}"
+        values[f"{_CHANNEL}{number}"] = f"{_proof(number, named)} {named}"
+    return values
+
+
+def _proof(number: int, named: str) -> str:
+    return xxhash.xxh3_64_hexdigest(f"{number} {named}".encode())
+
+
+def parse_channels(values: Mapping[str, str]) -> dict[int, tuple[str, str]]:
+    """Return key and message encoding by the channel's number, of those whose checksum holds."""
+    channels = {}
+    for name, value in values.items():
+        number = name.removeprefix(_CHANNEL)
+        proof, _, named = value.partition(" ")
+        if number.isdecimal() and number.isascii() and proof == _proof(int(number), named):
+            encoding, _, key = named.partition(" ")
+            channels[int(number)] = key, encoding
+    return channels
 
 
 def parse_checksums(values: Mapping[str, str]) -> Checksums:
