@@ -1,5 +1,6 @@
 """The list of members as the hub reads it."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -55,3 +56,19 @@ def test_who_ends_soon_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("inhand_hub.members.time.time", lambda: 1e9 - 10 * 86_400.0)
     assert WITH_FRONT.ending(within_days=11) == [(FRONT, 10.0)]
     assert WITH_FRONT.ending(within_days=9) == []
+
+
+def test_a_list_in_another_user_s_folder_says_whose_it_has_to_be(tmp_path: Path) -> None:
+    folder = tmp_path / "hub"
+    folder.mkdir(mode=0)
+    user = os.geteuid()
+    stranger = user or 990  # root may read everything
+    os.seteuid(stranger)
+    try:
+        with pytest.raises(
+            SettingsError, match=rf"Permission denied.* chown -R {stranger} \S+/hub$"
+        ):
+            load_members(folder / "members.json")
+    finally:
+        os.seteuid(user)
+        folder.chmod(0o700)

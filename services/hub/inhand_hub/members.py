@@ -1,5 +1,6 @@
 """Who belongs to a site: the list that ``inhand hub add`` writes and the hub reads."""
 
+import os
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -119,6 +120,11 @@ def load_members(path: Path) -> SiteMembers:
     """Read the list; raises SettingsError for one that is none, or contradicts itself."""
     try:
         site = msgspec.json.decode(path.read_bytes(), type=SiteMembers)
+    except PermissionError as error:
+        raise SettingsError(
+            f"cannot read {path}: {error.strerror}: the folder has to belong to the user who runs "
+            f"the hub: chown -R {os.geteuid()} {path.parent}"
+        ) from None
     except OSError as error:
         raise SettingsError(
             f"cannot read {path}: {error.strerror}: make a site by `inhand hub init`, or copy its "
