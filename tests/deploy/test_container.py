@@ -42,6 +42,15 @@ def test_the_image_is_made_of_files_and_extras_that_there_are() -> None:
     assert set(extras.split(",")) <= set(project["optional-dependencies"])
 
 
+@pytest.mark.parametrize(("extras", "asked"), [("oak,pose", ".[oak,pose]"), ("", ".")])
+def test_the_image_is_made_with_the_extras_that_are_named_or_none(extras: str, asked: str) -> None:
+    (word,) = re.findall(r'pip install .+ (".+") ', DOCKERFILE)
+    done = subprocess.run(
+        ["sh", "-c", f"printf %s {word}"], env={"EXTRAS": extras}, capture_output=True, check=True
+    )
+    assert done.stdout.decode() == asked
+
+
 def test_whoever_builds_the_image_is_sent_what_it_is_made_of_and_nothing_else() -> None:
     lines = (CHECKOUT / ".dockerignore").read_text(encoding="utf-8").splitlines()
     sent = {line.removeprefix("!/") for line in lines if line.startswith("!")}
