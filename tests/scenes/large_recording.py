@@ -1,7 +1,7 @@
 """Makes a recording of tens of gigabytes, and sees that it is read in bounded memory.
 
-``python tests/scenes/large_recording.py --gigabytes 50``: its pictures are black, and take no room on
-disks that leave zeros out. It is verified, looked into and read here and there; memory of the
+``python tests/scenes/large_recording.py --gigabytes 50``: its pictures are black, and take no room
+on disks that leave zeros out. It is verified, looked into and read here and there; memory of the
 process (that no file holds as well) may grow by 500 MB at the most.
 """
 
