@@ -210,7 +210,7 @@ class Daemon:
     def decode(self, topic: Topic[T], sample: Received) -> T | None:
         """The sample's message; None when it is malformed, which is counted and logged."""
         try:
-            message = topic.decode(sample.payload, sample.encoding)
+            message = topic.received(sample.key, sample.payload, sample.encoding)
         except (MessageError, KeyFormatError) as error:
             self.health.malformed(sample.key, error)
             return None
