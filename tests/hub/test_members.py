@@ -35,6 +35,7 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
             with_member(WITH_FRONT, replace(FRONT, common_name="kitchen.front.2"), 1e9),
             "'kitchen/front' stands there twice",
         ),
+        (replace(WITH_FRONT, rigs=("kitchen", "kitchen")), "'kitchen' stands there twice"),
         (replace(WITH_FRONT, rigs=("garage",)), "'kitchen' is no rig of the site"),
         (replace(WITH_FRONT, ends_at={}), "do not fit"),
         (with_member(SITE, replace(FRONT, name="front/**"), 1e9), "is no list of members"),
@@ -48,6 +49,24 @@ def test_a_list_that_contradicts_itself_or_names_patterns_is_refused(
 ) -> None:
     path = tmp_path / "members.json"
     path.write_bytes(encode_members(site))
+    with pytest.raises(SettingsError, match=words):
+        load_members(path)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ('"members"', '"denied": [], "members"', "unknown field `denied`.*update this host"),
+        ('"name"', '"until": 1, "name"', "unknown field `until`.*update this host"),
+        ('"members"', f'"x": {"[" * 5000}{"]" * 5000}, "members"', "unknown field `x`"),
+    ],
+    ids=["field", "member's field", "nested"],
+)
+def test_a_list_that_this_release_cannot_read_whole_is_refused(
+    tmp_path: Path, before: str, after: str, words: str
+) -> None:
+    path = tmp_path / "members.json"
+    path.write_text(encode_members(WITH_FRONT).decode().replace(before, after, 1))
     with pytest.raises(SettingsError, match=words):
         load_members(path)
 

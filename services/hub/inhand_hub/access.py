@@ -66,7 +66,7 @@ ROLES: dict[RoleName, Role] = {
 }
 
 
-class Member(Struct, frozen=True, kw_only=True):
+class Member(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Who may take part: its name in its rig, its role, and its certificate's common name.
 
     A camera publishes under its own name, a tracker the poses of its ``objects``. One that joins
@@ -91,7 +91,7 @@ class Member(Struct, frozen=True, kw_only=True):
         return self.objects if self.role == "tracker" else (self.name,)
 
 
-class LinkedHub(Struct, frozen=True, kw_only=True):
+class LinkedHub(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A further hub of the site, which connects to the first: its name, its certificate's common
     name, under which hosts it is reached, and when that certificate ends, in seconds since the
     epoch.

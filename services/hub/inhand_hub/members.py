@@ -23,11 +23,12 @@ AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE = "authority.pem", "certificate.pem",
 """What the hub, and each member, has beside: whom it trusts, and what it shows."""
 
 
-class SiteMembers(Struct, frozen=True, kw_only=True):
+class SiteMembers(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A site: its realm, its rigs, under which hosts its hub is reached, and its members.
 
     ``ends_at`` is when each certificate ends, by common name, in seconds since the epoch; ``hubs``
-    are those beside the first.
+    are those beside the first. A later release's list may have fields that take rights away, so
+    that one with fields unknown here is refused.
     """
 
     realm: Name
@@ -131,7 +132,10 @@ def load_members(path: Path) -> SiteMembers:
             "hub folder"
         ) from None
     except (msgspec.MsgspecError, UnicodeDecodeError) as error:
-        raise SettingsError(f"{path} is no list of members: {error}; copy it again") from None
+        raise SettingsError(
+            f"{path} is no list of members that this release reads: {error}; copy it again, or "
+            "update this host"
+        ) from None
     if problem := _contradiction(site):
         raise SettingsError(f"{path}: {problem}; copy it again")
     return site
@@ -142,6 +146,8 @@ def _contradiction(site: SiteMembers) -> str | None:
     if twice := _repeated([*common_names, *(one.common_name for one in site.hubs)]):
         return f"{twice!r} stands there twice"
     if twice := _repeated(one.place for one in site.members):
+        return f"{twice!r} stands there twice"
+    if twice := _repeated(site.rigs) or _repeated(one.name for one in site.hubs):
         return f"{twice!r} stands there twice"
     certified = {one.common_name for one in site.members if not one.by_password}
     if set(site.ends_at) != certified:
