@@ -17,10 +17,12 @@ from inhand_schemas.topics import (
     INFO,
     POSE,
     PREVIEW,
+    RELIABLE,
     RGBD,
     SKELETONS,
     TOPICS,
     AnyTopic,
+    Delivery,
 )
 from msgspec import Meta, Struct
 
@@ -142,6 +144,20 @@ def link_rules(realm: str, rigs: Iterable[str], *, far: bool) -> tuple[Rule, ...
         keys += [procedure.pattern(site) for procedure in PROCEDURES]
         keys += [site.live_pattern(), site.all_claims_pattern()]
     return tuple(Rule(flow, get_args(Operation), tuple(keys)) for flow in get_args(Flow))
+
+
+def deliveries(realm: str, rigs: Iterable[str]) -> list[tuple[Delivery, tuple[str, ...]]]:
+    """Return how what passes a hub is delivered, by keys: as Inhand's own processes send it."""
+    sites = [Site(realm, rig) for rig in rigs]
+    found = []
+    for topic in TOPICS.values():
+        keys = [topic.pattern(site) for site in sites]
+        if topic.delivery.kept:
+            keys += [beside(key) for key in keys]
+        found.append((topic.delivery, tuple(keys)))
+    questions = [procedure.pattern(site) for procedure in PROCEDURES for site in sites]
+    questions += [site.access_pattern() for site in sites]
+    return [*found, (RELIABLE, tuple(questions))]
 
 
 def access_control(
