@@ -10,7 +10,7 @@ from pathlib import Path
 
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError, SettingsError
-from inhand_runtime.hub_access import require_usable
+from inhand_runtime.hub_access import require_usable, warn_of_readers
 from inhand_runtime.open_files import allow_many
 from inhand_runtime.questions import answer
 from inhand_runtime.router import RouterSettings, open_router
@@ -72,6 +72,7 @@ def _require_users(path: Path, members: Sequence[Member]) -> None:
         users = {line.partition(":")[0] for line in path.read_text(encoding="utf-8").splitlines()}
     except OSError as error:
         raise SettingsError(f"cannot read {path}: {error.strerror}: copy it again") from None
+    warn_of_readers("users", path)
     if missing := {one.common_name for one in members} - users:
         raise SettingsError(f"{path} has no password of {min(missing)}: copy it again")
     if not users:
