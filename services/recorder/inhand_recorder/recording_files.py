@@ -24,7 +24,8 @@ _MOST_OPEN = 16
 @dataclass(frozen=True)
 class FileSummary:
     """A file with its topics and numbers of messages by key, the times, in nanoseconds, at which
-    its first and last message were received (0 where it has none), and whether it is whole."""
+    its first and last message were received (0 where it has none), whether it is whole, and the
+    number of messages that it keeps apart as undecodable."""
 
     path: Path
     topics: dict[str, AnyTopic]
@@ -32,6 +33,7 @@ class FileSummary:
     start_ns: int
     end_ns: int
     whole: bool
+    apart: int
 
 
 class RecordingFiles:
@@ -109,7 +111,8 @@ class RecordingFiles:
         start_ns = min((int(one.min()) for one in times if len(one)), default=0)
         end_ns = max((int(one.max()) for one in times if len(one)), default=0)
         counts = {key: opened.index.count(key) for key in topics}
-        return FileSummary(path, topics, counts, start_ns, end_ns, opened.index.note is None)
+        whole = opened.index.note is None
+        return FileSummary(path, topics, counts, start_ns, end_ns, whole, opened.index.apart)
 
 
 class _OpenFile:

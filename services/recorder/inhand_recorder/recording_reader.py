@@ -95,6 +95,11 @@ class Recording:
         return {self._names[key]: self._count(key) for key in sorted(self._kinds)}
 
     @property
+    def apart(self) -> int:
+        """Number of messages that could not be read on their keys, and that are not read here."""
+        return sum(one.apart for one in self._files.summaries)
+
+    @property
     def keys(self) -> dict[str, AnyTopic]:
         """The whole keys, and of what stream each is."""
         return dict(self._kinds)
@@ -258,7 +263,7 @@ class Recording:
             np.concatenate([np.arange(count) for count in counts]),
             np.concatenate(times),
         )
-        if self._overlapping:
+        if self.overlapping:
             found = found.chosen(np.argsort(found.received_ns, kind="stable"))
         return self._without_repeats(key, found) if self._may_repeat(key) else found
 
@@ -276,6 +281,15 @@ class Recording:
                 kept.append(place)
         return found.chosen(np.array(kept, np.int64))
 
+    def numbers(self, key: str) -> Iterator[tuple[int, int]]:
+        """Yield, for each message of a key, the number of its file in ``paths`` and its own."""
+        found = self[key].places
+        stamps = {
+            int(file): self._messages(key, int(file)).stamps for file in np.unique(found.files)
+        }
+        for file, number, _ in found.rows():
+            yield file, int(stamps[file].sequences[number])
+
     def _count(self, key: str) -> int:
         if self._may_repeat(key):
             return len(self[key])
@@ -283,10 +297,10 @@ class Recording:
 
     def _may_repeat(self, key: str) -> bool:
         several = len(self._files.summaries) > 1
-        return several and (self._overlapping or self._kinds[key].delivery.kept)
+        return several and (self.overlapping or self._kinds[key].delivery.kept)
 
     @cached_property
-    def _overlapping(self) -> bool:
+    def overlapping(self) -> bool:
         """Whether a file begins before another one has ended."""
         latest_ns = -1
         for one in self._files.summaries:

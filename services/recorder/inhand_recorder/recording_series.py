@@ -57,13 +57,13 @@ class Series(Sequence[Recorded]):
 
     def __init__(self, source: SeriesSource, key: str, topic: str, places: Places) -> None:
         self.key, self.topic = key, topic
-        self._source, self._places = source, places
+        self._source, self.places = source, places
 
     def __len__(self) -> int:
-        return len(self._places.numbers)
+        return len(self.places.numbers)
 
     def __iter__(self) -> Iterator[Recorded]:
-        for file, number, _ in self._places.rows():
+        for file, number, _ in self.places.rows():
             message = self._source.decoded_at(self.key, file, number)
             if message is not None:
                 yield message
@@ -77,7 +77,7 @@ class Series(Sequence[Recorded]):
             return self._chosen(np.arange(*number.indices(len(self))))
         if not -len(self) <= number < len(self):
             raise IndexError(f"{self.topic} has {len(self)} messages, and none of number {number}")
-        places = self._places
+        places = self.places
         message = self._source.read_at(
             self.key, int(places.files[number]), int(places.numbers[number])
         )
@@ -86,12 +86,12 @@ class Series(Sequence[Recorded]):
     @property
     def received_ns(self) -> Integers:
         """Times of reception (N,) in nanoseconds since the epoch."""
-        return self._places.received_ns
+        return self.places.received_ns
 
     @cached_property
     def times_ns(self) -> Integers:
         """Times of capture (N,) in nanoseconds since the epoch, read without the payloads."""
-        return self._source.captured_ns(self.key, self._places)
+        return self._source.captured_ns(self.key, self.places)
 
     def nearest(self, time_ns: int, within_ns: int | None = None) -> Recorded | None:
         """Return the message that was captured nearest to a time; None where none was within
@@ -114,4 +114,4 @@ class Series(Sequence[Recorded]):
         return self._chosen(np.flatnonzero((start_ns <= self.times_ns) & (self.times_ns < end_ns)))
 
     def _chosen(self, numbers: Integers) -> "Series":
-        return Series(self._source, self.key, self.topic, self._places.chosen(numbers))
+        return Series(self._source, self.key, self.topic, self.places.chosen(numbers))

@@ -23,6 +23,7 @@ from mcap.writer import MCAP0_MAGIC
 from inhand_runtime.recording.chunk_table import HEADER, ChunkTable, Entries, IndexedTable, Integers
 from inhand_runtime.recording.chunk_walk import WalkedTable
 from inhand_runtime.recording.layout import (
+    APART_ENCODING,
     MESSAGE_ENCODING,
     PROFILE,
     SEQUENCE_MASK,
@@ -86,6 +87,16 @@ class RecordingIndex:
     def keys(self) -> dict[str, AnyTopic]:
         """Return the keys of Inhand's with their topics."""
         return {one.key: one.topic for one in self._keys}
+
+    @property
+    def apart(self) -> int:
+        """Number of messages that are kept apart, as they could not be read on their keys."""
+        of_apart = [
+            number
+            for number, channel in self._table.channels.items()
+            if channel.message_encoding == APART_ENCODING
+        ]
+        return sum(map(self._table.count, of_apart))
 
     def count(self, key: str) -> int:
         """Return the number of messages of a key."""
