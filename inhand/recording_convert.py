@@ -8,6 +8,7 @@ from pathlib import Path
 
 import inhand_recorder
 from inhand_recorder.conversion import Selection, chosen_keys, convert_recording
+from inhand_recorder.recording_reader import Recording
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE
 from inhand_runtime.recording.layout import LATEST_NS
@@ -16,7 +17,7 @@ from inhand_runtime.wording import counted
 from inhand.progress import progress_bar
 from inhand.results import write_json
 
-_STEPS = 100
+STEPS = 100
 """Steps of the progress bar, since one for each message would take longer than its copy."""
 
 
@@ -53,7 +54,7 @@ def add_selection(action: argparse.ArgumentParser) -> None:
         )
 
 
-def selection_of(arguments: argparse.Namespace, recording: inhand_recorder.Recording) -> Selection:
+def selection_of(arguments: argparse.Namespace, recording: Recording) -> Selection:
     """Return what is selected; raises SettingsError for an end before the start."""
     start_ns = 0 if arguments.start is None else arguments.start(recording.start_ns)
     end_ns = LATEST_NS if arguments.end is None else arguments.end(recording.start_ns)
@@ -68,9 +69,9 @@ def percent_of(total: int, advance: Callable[[], None]) -> Callable[[], None]:
 
     def step() -> None:
         nonlocal done
-        before = done * _STEPS // max(total, 1)
+        before = done * STEPS // max(total, 1)
         done += 1
-        for _ in range(min(done * _STEPS // max(total, 1), _STEPS) - before):
+        for _ in range(min(done * STEPS // max(total, 1), STEPS) - before):
             advance()
 
     return step
@@ -80,7 +81,7 @@ def _convert(arguments: argparse.Namespace) -> int:
     with inhand_recorder.open(arguments.files) as recording:
         selection = selection_of(arguments, recording)
         total = sum(len(recording[key]) for key in chosen_keys(recording, selection))
-        with progress_bar("messages", _STEPS) as advance:
+        with progress_bar("messages", STEPS) as advance:
             done = convert_recording(
                 recording,
                 arguments.output,

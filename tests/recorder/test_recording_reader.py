@@ -5,7 +5,7 @@ from pathlib import Path
 import inhand_recorder
 import numpy as np
 import pytest
-from inhand_recorder import RecordedImages
+from inhand_recorder.recorded import RecordedImages
 from inhand_runtime.recording import RecordingError, RecordingWriter, read_recording
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import ObjectPose, RgbdFrame

@@ -20,19 +20,8 @@ from inhand_schemas.messages import CameraInfo
 from inhand_schemas.topics import INFO, RGBD, AnyTopic
 
 from inhand_recorder.recorded import Recorded, decoded
-from inhand_recorder.recording_files import RecordingFiles, find_files
+from inhand_recorder.recording_files import RecordingFiles
 from inhand_recorder.recording_series import Places, Series
-
-
-def open(paths: Path | str | Iterable[Path | str]) -> "Recording":
-    """Open a recording to read it: a file, several, or a folder with all recordings in it.
-
-    Files are read as one recording, in the order of reception, and what stands in two of them is
-    read once. A file that was cut off or still grows (``.part``) is read as far as it is whole,
-    which ``notes`` and the log say. Raises RecordingError for a file that is missing, foreign or
-    damaged, and UnknownVersionError.
-    """
-    return Recording(*find_files(paths))
 
 
 class Recording:
@@ -112,6 +101,11 @@ class Recording:
             self._names[key].rpartition("/")[2] if self._of_one_rig else key: info
             for key, info in self._infos.items()
         }
+
+    def info_of(self, key: str) -> CameraInfo | None:
+        """Return the first description of the camera that a key, as of its frames, names."""
+        parsed = parse_key(key)
+        return self._infos.get(INFO.key(parsed.site, parsed.name))
 
     @cached_property
     def _infos(self) -> dict[str, CameraInfo]:
@@ -208,10 +202,7 @@ class Recording:
 
     def decode(self, message: RecordedMessage) -> Recorded:
         """Decode a message; raises MessageError."""
-        info = None
-        if message.topic is RGBD:
-            site = parse_key(message.key).site
-            info = self._infos.get(INFO.key(site, message.name))
+        info = self.info_of(message.key) if message.topic is RGBD else None
         return decoded(message, self._names[message.key], info)
 
     def captured_ns(self, key: str, places: Places) -> Integers:

@@ -98,16 +98,29 @@ class Series(Sequence[Recorded]):
         ``within_ns`` nanoseconds of it, or where there is none at all."""
         if not len(self):
             return None
-        distances_ns = np.abs(self.times_ns - time_ns)
-        number = int(np.argmin(distances_ns))
-        if within_ns is not None and distances_ns[number] > within_ns:
+        times_ns = self.times_ns
+        if self._sorted:
+            place = int(np.searchsorted(times_ns, time_ns))
+            around = times_ns[max(place - 1, 0) : place + 1]
+            number = max(place - 1, 0) + int(np.argmin(np.abs(around - time_ns)))
+        else:
+            number = int(np.argmin(np.abs(times_ns - time_ns)))
+        if within_ns is not None and abs(int(times_ns[number]) - time_ns) > within_ns:
             return None
         return self[number]
 
     def latest(self, time_ns: int) -> Recorded | None:
         """Return the message that was captured last until a time; None where none was."""
+        if self._sorted:
+            number = int(np.searchsorted(self.times_ns, time_ns, side="right")) - 1
+            return self[number] if number >= 0 else None
         before = np.flatnonzero(self.times_ns <= time_ns)
         return self[int(before[np.argmax(self.times_ns[before])])] if len(before) else None
+
+    @cached_property
+    def _sorted(self) -> bool:
+        """Whether no time goes back, as where a clock was set."""
+        return bool((np.diff(self.times_ns) >= 0).all())
 
     def between(self, start_ns: int, end_ns: int) -> "Series":
         """Return those that were captured from ``start_ns`` until before ``end_ns``."""
