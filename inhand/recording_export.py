@@ -19,6 +19,8 @@ Exporter = Callable[[ExportRequest, Path], dict[str, int]]
 FORMATS = {
     "parquet": "tables of poses, labels and skeletons, a folder",
     "tum": "a folder as in the TUM RGB-D benchmark: pictures, depth, an object's poses",
+    "mp4": "a video of a camera, with the outlines of objects drawn in, a file",
+    "foxglove": "MCAP of Foxglove's schemas, for Foxglove, Lichtblick and Rerun, a file",
 }
 
 
@@ -37,6 +39,12 @@ def add_action(actions: "argparse._SubParsersAction[argparse.ArgumentParser]") -
     add_selection(action)
     action.add_argument("--camera", metavar="NAME", help="which one, of several")
     action.add_argument("--object", metavar="NAME", help="which one, of several")
+    action.add_argument(
+        "--objects",
+        type=Path,
+        metavar="FOLDER",
+        help="meshes of objects, NAME/mesh.ply, as a dataset's objects (mp4)",
+    )
     action.add_argument("--json", type=Path, metavar="FILE", help="write the result there")
     action.set_defaults(run_action=_export)
 
@@ -54,6 +62,7 @@ def _export(arguments: argparse.Namespace) -> int:
                 selection,
                 camera=arguments.camera,
                 object=arguments.object,
+                objects=arguments.objects,
                 on_message=percent_of(total, advance),
             )
             counts = export(request, arguments.out)
@@ -73,6 +82,14 @@ def _exporter(name: str) -> Exporter:
         from inhand.exports.parquet import export_parquet
 
         return export_parquet
+    if name == "mp4":
+        from inhand.exports.video import export_video
+
+        return export_video
+    if name == "foxglove":
+        from inhand.exports.foxglove import export_foxglove
+
+        return export_foxglove
     from inhand.exports.tum import export_tum
 
     return export_tum
