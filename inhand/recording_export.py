@@ -21,6 +21,7 @@ FORMATS = {
     "tum": "a folder as in the TUM RGB-D benchmark: pictures, depth, an object's poses",
     "mp4": "a video of a camera, with the outlines of objects drawn in, a file",
     "foxglove": "MCAP of Foxglove's schemas, for Foxglove, Lichtblick and Rerun, a file",
+    "bop": "a data set of the BOP benchmark with masks and visibility, a folder",
 }
 
 
@@ -43,7 +44,7 @@ def add_action(actions: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         "--objects",
         type=Path,
         metavar="FOLDER",
-        help="meshes of objects, NAME/mesh.ply, as a dataset's objects (mp4)",
+        help="meshes of objects, NAME/mesh.ply, as a dataset's objects (mp4, bop)",
     )
     action.add_argument("--json", type=Path, metavar="FILE", help="write the result there")
     action.set_defaults(run_action=_export)
@@ -86,6 +87,10 @@ def _exporter(name: str) -> Exporter:
         from inhand.exports.video import export_video
 
         return export_video
+    if name == "bop":
+        from inhand.exports.bop import export_bop
+
+        return export_bop
     if name == "foxglove":
         from inhand.exports.foxglove import export_foxglove
 

@@ -12,6 +12,7 @@ from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
 from inhand_tracker.geometry.rotations import rotate
 from inhand_tracker.shape.mesh_file import find_mesh, read_mesh
+from inhand_tracker.shape.shape import Symmetry, load_shape
 
 _DRAWN = 1
 """Label of the object's pixels."""
@@ -19,10 +20,12 @@ _DRAWN = 1
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles in the object's frame, in metres: vertices (V, 3), faces (F, 3)."""
+    """Triangles in the object's frame, in metres: vertices (V, 3), faces (F, 3), and the turns that
+    leave the object as it is, none where nothing says them."""
 
     vertices: Array
     faces: Indices
+    symmetries: tuple[Symmetry, ...] = ()
 
 
 class Meshes:
@@ -42,6 +45,9 @@ class Meshes:
         folder = self._folder / name
         if not folder.is_dir():
             raise InhandError(f"{self._folder} has no folder {name}: add {name}/mesh.ply")
+        if (folder / "object.toml").is_file():
+            shape = load_shape(folder)
+            return Mesh(shape.vertices, shape.faces, shape.symmetries)
         return Mesh(*read_mesh(find_mesh(folder)))
 
 
