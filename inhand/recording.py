@@ -19,6 +19,7 @@ from rich.table import Table
 from inhand.looking import output
 from inhand.recording_convert import add_action as add_convert_action
 from inhand.recording_export import add_action as add_export_action
+from inhand.recording_import import add_action as add_import_action
 from inhand.results import listing, write_json
 
 RECOVERED_SUFFIX = ".recovered.mcap"
@@ -53,6 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
     add_convert_action(actions)
     add_export_action(actions)
+    add_import_action(actions)
 
 
 def _add_skeleton_arguments(action: argparse.ArgumentParser) -> None:
