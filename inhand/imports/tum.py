@@ -15,10 +15,8 @@ from inhand_schemas.topics import INFO, LABEL, RGBD
 from numpy.typing import NDArray
 
 from inhand.imports.foreign import ForeignMessage
+from inhand.imports.pairing import nearest_partners
 from inhand.imports.tum_files import Truth, read_camera, read_images, read_truth
-
-FARTHEST_NS = 20_000_000
-"""Nanoseconds between colour and depth of one frame at the most: that of the benchmark's tool."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +35,7 @@ class TumFolder:
         that belongs to no colour is left out where there is any colour."""
         if not self.colour:
             return [(time_ns, None, path, 0) for time_ns, path in self.depth.items()]
-        partners = _nearest(list(self.colour), list(self.depth))
+        partners = nearest_partners(list(self.colour), list(self.depth))
         return [
             (time_ns, path, self.depth.get(other, None), abs(other - time_ns) if other >= 0 else 0)
             for (time_ns, path), other in zip(self.colour.items(), partners, strict=True)
@@ -87,22 +85,6 @@ def messages_of(folder: TumFolder, camera: str) -> Iterator[ForeignMessage]:
                 camera_from_object=pose,
             )
             yield ForeignMessage(LABEL, folder.truth.object, label, time_ns)
-
-
-def _nearest(times: list[int], others: list[int]) -> list[int]:
-    """Return, for each time, its partner of the others, or -1: nearest pairs first, each once."""
-    pairs = []
-    sorted_others = np.array(others, np.int64)
-    for place, time_ns in enumerate(times):
-        first = int(np.searchsorted(sorted_others, time_ns - FARTHEST_NS))
-        last = int(np.searchsorted(sorted_others, time_ns + FARTHEST_NS, side="right"))
-        pairs += [(abs(others[n] - time_ns), place, n) for n in range(first, last)]
-    partners, taken = [-1] * len(times), set[int]()
-    for _, place, number in sorted(pairs):
-        if partners[place] < 0 and number not in taken:
-            partners[place] = others[number]
-            taken.add(number)
-    return partners
 
 
 def _colour(path: Path) -> ColourImage:

@@ -81,7 +81,7 @@ def test_the_benchmarks_own_layout_is_paired_by_time_and_its_room_is_an_object(
     assert "525 525 319.5 239.5 640 480 5000" in capsys.readouterr().err
     (benchmark / "camera.txt").write_text("60 60 31.5 23.5 64 48 5000\n")
     assert bring(benchmark, output) == 0
-    assert "1 of 5 frames have no depth within 20 ms" in capsys.readouterr().out
+    assert "1 of 5 frames have no depth within 20 ms\n" in capsys.readouterr().out
     assert verify_recording(output) == []
     with inhand_recorder.open(output) as recording:
         frames = list(recording["rgbd/camera"])
