@@ -80,7 +80,7 @@ def percent_of(total: int, advance: Callable[[], None]) -> Callable[[], None]:
 def _convert(arguments: argparse.Namespace) -> int:
     with inhand_recorder.open(arguments.files) as recording:
         selection = selection_of(arguments, recording)
-        total = sum(len(recording[key]) for key in chosen_keys(recording, selection))
+        total = recording.count(chosen_keys(recording, selection))
         with progress_bar("messages", STEPS) as advance:
             done = convert_recording(
                 recording,

@@ -55,7 +55,7 @@ def _export(arguments: argparse.Namespace) -> int:
     with inhand_recorder.open(arguments.files) as recording:
         selection = selection_of(arguments, recording)
         keys = tuple(chosen_keys(recording, selection))
-        total = sum(len(recording[key]) for key in keys)
+        total = recording.count(keys)
         with progress_bar("messages", STEPS) as advance:
             request = ExportRequest(
                 recording,

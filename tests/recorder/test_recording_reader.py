@@ -1,15 +1,25 @@
 """Recordings are read in Python: in order of time, by topic and by time, in any state."""
 
+import random
 from pathlib import Path
 
 import inhand_recorder
 import numpy as np
 import pytest
+from damaged_recordings import WAYS
 from inhand_recorder.recorded import RecordedImages
+from inhand_runtime.errors import InhandError
 from inhand_runtime.recording import RecordingError, RecordingWriter, read_recording
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import ObjectPose, RgbdFrame
-from recordings import POSE_KEY, RGBD_KEY, frame_messages, write_recording
+from recordings import (
+    POSE_KEY,
+    RGBD_KEY,
+    contents,
+    frame_messages,
+    identity,
+    write_recording,
+)
 from small_rig import (
     CAMERA,
     DELAY_NS,
@@ -132,6 +142,27 @@ def test_damaged_messages_are_passed_over_and_counted(tmp_path: Path) -> None:
         with pytest.raises(RecordingError, match="checksum"):
             recording[RGBD_KEY][12]
         assert len(list(recording)) == 89
+
+
+@pytest.mark.long
+def test_no_damage_makes_it_yield_what_was_not_recorded(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    caplog.set_level("ERROR")
+    draw, data = random.Random(0), write_recording(tmp_path / "whole.mcap").read_bytes()
+    known = set(contents(tmp_path / "whole.mcap"))
+    path, read = tmp_path / "damaged.mcap", 0
+    for _ in range(100):
+        path.write_bytes(WAYS[draw.choice(list(WAYS))](draw, data))
+        try:
+            with inhand_recorder.open(path) as recording:
+                found = {identity(one) for one in recording.messages(recording.keys)}
+                assert found <= known
+                assert len(list(recording)) == len(found)
+                read += len(found)
+        except InhandError:
+            continue
+    assert read > 1000
 
 
 def test_what_cannot_be_decoded_is_counted_as_well(tmp_path: Path) -> None:

@@ -83,6 +83,10 @@ class Recording:
         """Numbers of messages by topic, damaged ones included."""
         return {self._names[key]: self._count(key) for key in sorted(self._kinds)}
 
+    def count(self, keys: Iterable[str]) -> int:
+        """Return the number of messages of whole keys, damaged ones included."""
+        return sum(self.topics[self._names[key]] for key in keys)
+
     @property
     def apart(self) -> int:
         """Number of messages that could not be read on their keys, and that are not read here."""
