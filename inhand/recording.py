@@ -9,6 +9,7 @@ from inhand_capture.estimation.weights import DEFAULT_NETWORK, LANDMARKS
 from inhand_recorder.inspection import RecordingInfo, inspect_recording
 from inhand_recorder.missing_infos import add_infos
 from inhand_recorder.recovery import RecoveryReport, recover_recording
+from inhand_recorder.redaction import redaction_lines
 from inhand_recorder.verification import examine_recording
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED
@@ -20,6 +21,7 @@ from inhand.looking import output
 from inhand.recording_convert import add_action as add_convert_action
 from inhand.recording_export import add_action as add_export_action
 from inhand.recording_import import add_action as add_import_action
+from inhand.recording_redact import add_action as add_redact_action
 from inhand.results import listing, write_json
 
 RECOVERED_SUFFIX = ".recovered.mcap"
@@ -55,6 +57,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_convert_action(actions)
     add_export_action(actions)
     add_import_action(actions)
+    add_redact_action(actions)
 
 
 def _add_skeleton_arguments(action: argparse.ArgumentParser) -> None:
@@ -84,7 +87,7 @@ def _info(arguments: argparse.Namespace) -> int:
     infos = [inspect_recording(path) for path in arguments.files]
     for info in infos:
         output().print(_info_table(info))
-        for line in (*info.clock, *info.faults):
+        for line in (*info.clock, *info.faults, *redaction_lines(info.metadata)):
             print(f"  {line}")
     _result(arguments, "recordings", [_info_values(info) for info in infos])
     return 0

@@ -24,6 +24,7 @@ from inhand_recorder.faults import (
 )
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, Losses, parse_losses
 from inhand_recorder.records import Bytes
+from inhand_recorder.redaction import redaction_lines
 from inhand_recorder.scanning import (
     Stretch,
     channels,
@@ -92,6 +93,8 @@ def _problems(path: Path, data: Bytes, messages: "_Messages", apart: set[int]) -
                 messages.clock_steps = parse_clock_steps(record.metadata)
             elif isinstance(record, Metadata) and record.name == RECOVERY_RECORD:
                 messages.recovery = record.metadata
+            elif isinstance(record, Metadata):
+                messages.redactions.extend(redaction_lines({record.name: record.metadata}))
             elif isinstance(record, Statistics) and record.message_count != messages.number:
                 yield (
                     f"the index counts {counted(record.message_count, 'message')}, "
@@ -127,6 +130,7 @@ class _Messages:
         self._last_ns: dict[str, int] = {}
         self.clock_steps: dict[int, int] = {}
         self.recovery: dict[str, str] = {}
+        self.redactions: list[str] = []
         self.counter = LossCounter()
         self.faults = FaultLedger(keys)
         self.number = 0
@@ -180,6 +184,7 @@ class _Messages:
             yield f"the clock was set by {step_ns / 1e9:+.3f} s at {time_text(at_ns)}"
         for line in self.recovery.get(FAULTS_FIELD, "").splitlines():
             yield f"recovered from {self.recovery.get('source', 'another file')}: {line}"
+        yield from self.redactions
         for key, count in self._apart.items():
             yield f"{key}: kept apart, as undecodable: {counted(count, 'message')}"
 

@@ -26,6 +26,10 @@ class Disc:
         """The disc with so many times its radius."""
         return Disc(self.x, self.y, factor * self.radius)
 
+    def scaled(self, scale: float) -> "Disc":
+        """The same disc in the picture at so many times its size."""
+        return Disc(scale * (self.x + 0.5) - 0.5, scale * (self.y + 0.5) - 0.5, scale * self.radius)
+
 
 def mask_of_discs(
     discs: Iterable[Disc], size: tuple[int, int], shape: tuple[int, int]

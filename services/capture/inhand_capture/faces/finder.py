@@ -33,6 +33,31 @@ class FacesFound:
         return mask_of_discs(self.discs, self.size, (height, width))
 
 
+@dataclass(frozen=True)
+class HeadsSeen:
+    """What was seen in one picture, by itself: the heads of bodies and faces, a sequence for each
+    who looked, as discs of the picture; and the bodies that the network found."""
+
+    of_bodies: Sequence[Sequence[Disc]]
+    faces: Sequence[Sequence[Disc]]
+    people: Sequence[FoundPerson]
+
+
+class HeldSightings:
+    """Says what to hide of pictures that follow each other, by what was seen in each."""
+
+    def __init__(self, parameters: FaceParameters = DEFAULT_FACES) -> None:
+        self._heads = HeldHeads(parameters)
+        self._of_bodies = HeldHeads(parameters)
+
+    def see(self, seen: HeadsSeen, time_ns: int) -> tuple[Disc, ...]:
+        """Return the discs to hide of a picture: of what is seen in it, or was shortly before."""
+        # Held by itself, so that the head of a body is not given up for a wrong face beside it.
+        discs = self._of_bodies.see(seen.of_bodies, time_ns)
+        discs += self._heads.see([*seen.of_bodies, *seen.faces], time_ns)
+        return tuple(dict.fromkeys(discs))
+
+
 class FaceFinder:
     """Finds faces in pictures that follow each other.
 
@@ -47,14 +72,16 @@ class FaceFinder:
         parameters: FaceParameters = DEFAULT_FACES,
         *,
         trust_skeletons: bool = True,
+        both_ends: bool = False,
     ) -> None:
-        """``trust_skeletons`` says whether those of the source tell where heads are, too."""
+        """``trust_skeletons`` says whether those of the source tell where heads are, too, and
+        ``both_ends`` whether there is time to look closer in both ends of each picture."""
         self._detector = detector
         self._network = network
         self._parameters = parameters
         self._trust_skeletons = trust_skeletons
-        self._held = HeldHeads(parameters)
-        self._held_bodies = HeldHeads(parameters)
+        self._both_ends = both_ends
+        self._held = HeldSightings(parameters)
         self._pictures = 0
         self._thread = ThreadPoolExecutor(1, "faces")
 
@@ -66,21 +93,25 @@ class FaceFinder:
         info: CameraInfo,
     ) -> FacesFound:
         """Find faces in a picture (H, W, 3) RGB; ``skeletons`` of it, in space, have heads, too."""
-        height, width = colour.shape[:2]
+        seen = self.look(colour, skeletons, info)
+        return FacesFound(self._held.see(seen, time_ns), colour.shape[:2], seen.people)
+
+    def look(
+        self, colour: NDArray[np.uint8], skeletons: Sequence[Person], info: CameraInfo
+    ) -> HeadsSeen:
+        """Look at a picture as ``find`` does, and say what is in it, whatever was before."""
         lit = brightened(colour, self._parameters.least_brightness)
         looking = self._thread.submit(self._faces, lit)
         people = self._network.find(lit)
         heads = [head_of(one, self._parameters) for one in people]
         trusted = skeletons if self._trust_skeletons else ()
         known = [head_of_skeleton(one, info, self._parameters) for one in trusted]
-        bodies = [
+        scale = colour.shape[1] / info.width
+        of_bodies = [
             [disc for disc in heads if disc is not None],
-            [_scaled(disc, info, width) for disc in known if disc is not None],
+            [disc.scaled(scale) for disc in known if disc is not None],
         ]
-        # Held by itself, so that the head of a body is not given up for a wrong face beside it.
-        discs = self._held_bodies.see(bodies, time_ns)
-        discs += self._held.see([*bodies, *looking.result()], time_ns)
-        return FacesFound(tuple(dict.fromkeys(discs)), (height, width), people)
+        return HeadsSeen(of_bodies, looking.result(), people)
 
     def _faces(self, picture: NDArray[np.uint8]) -> list[list[Disc]]:
         """Look for faces, in one view after the other."""
@@ -95,11 +126,14 @@ class FaceFinder:
         shorter = float(min(width, height))
         beyond, beside = self._parameters.beyond * shorter, self._parameters.beside * shorter
         side = shorter + 2.0 * beside
-        along = 0.5 * side - beyond
-        if self._pictures % 2:
-            along = max(width, height) - along
-        x, y = (along, 0.5 * height) if width >= height else (0.5 * width, along)
-        return [whole_picture(width, height), Region(x, y, side)]
+        first = 0.5 * side - beyond
+        ends = [first, max(width, height) - first]
+        if not self._both_ends:
+            ends = [ends[self._pictures % 2]]
+        middles = [
+            (along, 0.5 * height) if width >= height else (0.5 * width, along) for along in ends
+        ]
+        return [whole_picture(width, height), *(Region(x, y, side) for x, y in middles)]
 
 
 def brightened(picture: NDArray[np.uint8], least: float) -> NDArray[np.uint8]:
@@ -110,12 +144,6 @@ def brightened(picture: NDArray[np.uint8], least: float) -> NDArray[np.uint8]:
     return np.asarray(cv2.convertScaleAbs(picture, alpha=least / max(brightness, 1.0)), np.uint8)
 
 
-def _scaled(disc: Disc, info: CameraInfo, width: int) -> Disc:
-    """Return a disc of the camera's pixels in those of a picture of another width."""
-    scale = width / info.width
-    return Disc(scale * (disc.x + 0.5) - 0.5, scale * (disc.y + 0.5) - 0.5, scale * disc.radius)
-
-
 def require_face_detector() -> None:
     """Check, without loading it, that faces can be found; raises WeightsError, or SettingsError
     where LiteRT is not installed."""
@@ -123,9 +151,11 @@ def require_face_detector() -> None:
     require_weights(FACES, models_folder())
 
 
-def open_face_finder(network: PoseNetwork, *, trust_skeletons: bool) -> FaceFinder:
+def open_face_finder(
+    network: PoseNetwork, *, trust_skeletons: bool, both_ends: bool = False
+) -> FaceFinder:
     """Load what finds faces, beside a network that finds bodies; raises what
     ``require_face_detector`` does."""
     require_face_detector()
     detector = FaceDetector(models_folder() / FACES.file)
-    return FaceFinder(detector, network, trust_skeletons=trust_skeletons)
+    return FaceFinder(detector, network, trust_skeletons=trust_skeletons, both_ends=both_ends)

@@ -28,14 +28,17 @@ def head_of(person: FoundPerson, parameters: FaceParameters) -> Disc | None:
     head = person.pixels[Joint.HEAD]
     if not np.isfinite(head).all():
         head = hips + DEFAULT_LIFTING.head * (shoulders - hips)
-    metre = _pixels_of_a_metre(person.pixels, shoulders - hips, parameters)
+    metre = pixels_of_a_metre(person.pixels, parameters)
     if not np.isfinite(head).all() or not np.isfinite(metre):
         return None
     return Disc(float(head[0]), float(head[1]), parameters.head_radius_m * metre)
 
 
-def _pixels_of_a_metre(pixels: Floats, trunk: Floats, parameters: FaceParameters) -> float:
-    """Return the pixels of a metre at somebody's place, by their least foreshortened part."""
+def pixels_of_a_metre(pixels: Floats, parameters: FaceParameters) -> float:
+    """Return the pixels of a metre at the place of somebody's joints (20, 2), by their least
+    foreshortened part; NaN where none is known."""
+    shoulders, hips = (pixels[list(pair)].mean(axis=0) for pair in (SHOULDERS, HIPS))
+    trunk = shoulders - hips
     usual = DEFAULT_LIFTING.usual_trunk_m
     across = pixels[SHOULDERS[0]] - pixels[SHOULDERS[1]]
     sizes = [

@@ -1,6 +1,7 @@
 """Polygons that are burned into pictures."""
 
 from collections.abc import Iterator, Sequence
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ Corner = tuple[float, float]
 """Shares of the picture's width and height, (0, 0) at its upper left."""
 Polygon = tuple[Corner, ...]
 Mask = NDArray[np.bool_]
+P = TypeVar("P", np.uint8, np.uint16)
 
 
 def mask_of(polygons: Sequence[Polygon], width: int, height: int) -> Mask:
@@ -36,6 +38,13 @@ def in_blocks(mask: Mask, size: int = JPEG_BLOCK) -> Mask:
     blocks = padded.reshape(padded.shape[0] // size, size, padded.shape[1] // size, size)
     touched = blocks.any(axis=(1, 3))
     return np.kron(touched, np.ones((size, size), bool))[:height, :width]
+
+
+def without(picture: NDArray[P], mask: Mask) -> NDArray[P]:
+    """Return a copy of a picture (H, W, …) in which what a mask (H, W) covers is 0."""
+    hidden = picture.copy()
+    hidden[mask] = 0
+    return hidden
 
 
 def _winding(polygon: Polygon, width: int, height: int) -> NDArray[np.int32]:

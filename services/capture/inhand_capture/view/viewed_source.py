@@ -15,7 +15,7 @@ from msgspec.structs import replace as replace_struct
 from numpy import uint8, uint16
 from numpy.typing import NDArray
 
-from inhand_capture.view.masks import Mask, Polygon, in_blocks, mask_of
+from inhand_capture.view.masks import Mask, Polygon, in_blocks, mask_of, without
 from inhand_capture.view.turning import Turn
 
 if TYPE_CHECKING:  # what finds faces is loaded only where they are hidden
@@ -162,15 +162,15 @@ class ViewedSource:
         if mixed:
             mask = self._turn.picture(in_blocks(self._turn.back(mask)))
         hidden = Pixels(
-            _without(colour, mask),
-            None if depth is None else _without(depth, found.mask(*depth.shape)),
+            without(colour, mask),
+            None if depth is None else without(depth, found.mask(*depth.shape)),
         )
         return FacelessPixels(hidden.colour, hidden.depth, Pixels(colour, depth), found.people)
 
     def _seen(self, picture: NDArray[P], *, mixed: bool) -> NDArray[P]:
         """Mask and turn a picture; in a ``mixed`` one neighbours hold traces of what is masked."""
         if self._masks:
-            picture = _without(picture, self._mask(*picture.shape[:2], mixed))
+            picture = without(picture, self._mask(*picture.shape[:2], mixed))
         return self._turn.picture(picture)
 
     def _source_mask(self, height: int, width: int, mixed: bool) -> Mask:
@@ -210,10 +210,3 @@ class ViewedSource:
                 f": {detail}" if detail else "",
             )
         self._left_out.add(why)
-
-
-def _without(picture: NDArray[P], mask: Mask) -> NDArray[P]:
-    """Return a copy of a picture in which what a mask covers is 0."""
-    hidden = picture.copy()
-    hidden[mask] = 0
-    return hidden

@@ -1,0 +1,183 @@
+"""Finds people in all pictures of a camera, before any of them is written."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from inhand_capture.faces.discs import Disc
+from inhand_capture.faces.finder import FaceFinder, HeadsSeen, HeldSightings
+from inhand_capture.faces.heads import head_of, head_of_skeleton
+from inhand_capture.faces.parameters import DEFAULT_FACES
+from inhand_recorder.recorded import Recorded, RecordedImages
+from inhand_recorder.recording_reader import Recording
+from inhand_recorder.recording_series import Series
+from inhand_runtime.recording import RecordingError
+from inhand_schemas.errors import MessageError
+from inhand_schemas.keys import parse_key
+from inhand_schemas.messages import CameraInfo, Person, Skeletons
+from inhand_schemas.topics import SKELETONS
+
+from inhand.redaction.bodies import Body, found_body, skeleton_body
+from inhand.redaction.parameters import DEFAULT_REDACTION
+
+SAME_FRAME_NS = 20_000_000
+"""How far from a frame, in nanoseconds, skeletons are of it: those of others only hide more."""
+
+Stamp = tuple[int, int]
+"""Number and time of capture of a frame."""
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """Who was found in one frame, in the camera's pixels.
+
+    ``heads`` are discs to hide, of shortly before and after it as well; ``bodies`` those of the
+    frame alone, ``headless`` those of them whose head nobody can say, ``counts`` how many the
+    network found, and how many skeletons were recorded.
+    """
+
+    time_ns: int
+    bodies: tuple[Body, ...] = ()
+    headless: tuple[Body, ...] = ()
+    counts: tuple[int, int] = (0, 0)
+    heads: tuple[Disc, ...] = ()
+
+
+class CameraSightings:
+    """The sightings of all frames of a camera: of each, and of all about it."""
+
+    def __init__(self, info: CameraInfo, frames: Sequence[tuple[Stamp, Sighting]]) -> None:
+        self.info = info
+        counted = Counter(stamp for stamp, _ in frames)
+        self._by_stamp = {stamp: one for stamp, one in frames if counted[stamp] == 1}
+        self.in_time = sorted((one for _, one in frames), key=lambda one: one.time_ns)
+        self._times_ns = np.array([one.time_ns for one in self.in_time], np.int64)
+
+    def of(self, stamp: Stamp) -> Sighting | None:
+        """Return who was found in a frame; None where there was none, or two, of that stamp."""
+        return self._by_stamp.get(stamp)
+
+    def about(self, sighting: Sighting, seconds: float) -> list[Sighting]:
+        """Return those of all frames that were captured within so many seconds."""
+        reach = round(1e9 * seconds)
+        first = np.searchsorted(self._times_ns, sighting.time_ns - reach, side="left")
+        last = np.searchsorted(self._times_ns, sighting.time_ns + reach, side="right")
+        return self.in_time[first:last]
+
+    def bodies(self, sighting: Sighting) -> list[Body]:
+        """Return the bodies that may be in a frame: those of it and its neighbours, and of a whole
+        while where fewer people were found in it than meanwhile."""
+        while_about = self.about(sighting, DEFAULT_REDACTION.held_s)
+        most = [max(counts) for counts in zip(*(one.counts for one in while_about), strict=True)]
+        if any(count < many for count, many in zip(sighting.counts, most, strict=True)):
+            chosen = while_about
+        else:
+            chosen = self.about(sighting, DEFAULT_REDACTION.around_s)
+        return [body for one in chosen for body in one.bodies]
+
+    def headless(self, sighting: Sighting) -> list[Body]:
+        """Return the bodies about a frame whose heads nobody can say."""
+        about = self.about(sighting, DEFAULT_REDACTION.held_s)
+        return [body for one in about for body in one.headless]
+
+
+def look_through(
+    recording: Recording,
+    key: str,
+    finder: FaceFinder,
+    on_frame: Callable[[], None] = lambda: None,
+) -> CameraSightings:
+    """Find people in all frames of a key, by the pictures and by skeletons of the recording.
+
+    Frames that cannot be read are passed over. Raises RecordingError where the camera's info is
+    missing.
+    """
+    info = recording.info_of(key)
+    if info is None:
+        raise RecordingError(
+            f"there is no info of {parse_key(key).name}: `inhand recording repair` adds it from "
+            "another file"
+        )
+    stamps: list[Stamp] = []
+    sightings: list[Sighting] = []
+    seen: list[HeadsSeen] = []
+    skeletons = _skeletons(recording, key)
+    for frame in recording[key]:
+        on_frame()
+        if not isinstance(frame, RecordedImages):
+            continue
+        try:
+            heads, sighting = _look(frame, finder, info, _people_at(skeletons, frame.time_ns))
+        except MessageError:
+            continue
+        stamps.append((frame.sequence, frame.time_ns))
+        sightings.append(sighting)
+        seen.append(heads)
+    held = [
+        replace(one, heads=discs)
+        for one, discs in zip(sightings, _held(seen, sightings), strict=True)
+    ]
+    return CameraSightings(info, list(zip(stamps, held, strict=True)))
+
+
+def _look(
+    frame: RecordedImages, finder: FaceFinder, info: CameraInfo, skeletons: Sequence[Person]
+) -> tuple[HeadsSeen, Sighting]:
+    """Look at one frame; raises MessageError where its picture is damaged."""
+    colour = frame.colour
+    if colour is None:
+        known = [head_of_skeleton(one, info, DEFAULT_FACES) for one in skeletons]
+        heads = HeadsSeen([[disc for disc in known if disc is not None]], [], ())
+    else:
+        heads = _scaled(finder.look(colour, skeletons, info), info.width / colour.shape[1])
+    scale = 1.0 if colour is None else info.width / colour.shape[1]
+    found = [(found_body(one, scale), head_of(one, DEFAULT_FACES)) for one in heads.people]
+    found += [
+        (skeleton_body(one, info), head_of_skeleton(one, info, DEFAULT_FACES)) for one in skeletons
+    ]
+    return replace(heads, people=()), Sighting(
+        time_ns=frame.time_ns,
+        bodies=tuple(body for body, _ in found if body is not None),
+        headless=tuple(body for body, head in found if body is not None and head is None),
+        counts=(len(heads.people), len(skeletons)),
+    )
+
+
+def _held(seen: Sequence[HeadsSeen], sightings: Sequence[Sighting]) -> Iterator[tuple[Disc, ...]]:
+    """Hold heads as the live way does, after they were seen last, and before they are first."""
+    after, before = HeldSightings(), HeldSightings()
+    forward = [after.see(one, of.time_ns) for one, of in zip(seen, sightings, strict=True)]
+    backward = [
+        before.see(one, -of.time_ns)
+        for one, of in zip(reversed(seen), reversed(sightings), strict=True)
+    ]
+    for first, second in zip(forward, reversed(backward), strict=True):
+        yield tuple(dict.fromkeys((*first, *second)))
+
+
+def _scaled(seen: HeadsSeen, scale: float) -> HeadsSeen:
+    def all_of(sequences: Iterable[Sequence[Disc]]) -> list[list[Disc]]:
+        return [[disc.scaled(scale) for disc in discs] for discs in sequences]
+
+    return replace(seen, of_bodies=all_of(seen.of_bodies), faces=all_of(seen.faces))
+
+
+def _skeletons(recording: Recording, key: str) -> Series | None:
+    parsed = parse_key(key)
+    of_camera = SKELETONS.key(parsed.site, parsed.name)
+    if of_camera not in recording:
+        return None
+    return recording[of_camera]
+
+
+def _people_at(skeletons: Series | None, time_ns: int) -> tuple[Person, ...]:
+    """Return the recorded people of a frame; none where they are damaged."""
+    if skeletons is None:
+        return ()
+    found: Recorded | None
+    try:
+        found = skeletons.nearest(time_ns, within_ns=SAME_FRAME_NS)
+    except (RecordingError, MessageError):
+        return ()
+    return found.message.people if found and isinstance(found.message, Skeletons) else ()
