@@ -1,11 +1,10 @@
 """``inhand recording redact``: recordings without faces, or without people."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 
-from inhand_recorder.conversion import Selection, convert_recording
 from inhand_runtime.exit_codes import DONE
-from inhand_runtime.recording import RecordingError
 from inhand_runtime.wording import counted
 
 from inhand.progress import progress_bars
@@ -37,40 +36,36 @@ def _redact(arguments: argparse.Namespace) -> int:
     from inhand_capture.estimation.weights import DEFAULT_NETWORK
     from inhand_capture.faces.finder import FaceFinder, open_face_finder, require_face_detector
 
-    from inhand.redaction.redacted import RedactedRecording
+    from inhand.redaction.redacted import redact_recording
 
     def new_finder() -> FaceFinder:
         return open_face_finder(open_network(DEFAULT_NETWORK), trust_skeletons=True, both_ends=True)
 
-    output: Path = arguments.output
-    if output.exists():
-        raise RecordingError(f"{output} exists already: choose another name, or move it away")
     require_network(DEFAULT_NETWORK)
     require_face_detector()
-    with (
-        RedactedRecording(arguments.files, arguments.what) as recording,
-        progress_bars({"looking": STEPS, "writing": STEPS}) as advance,
-    ):
-        frames = recording.count(recording.frame_keys)
-        recording.look(new_finder, percent_of(frames, lambda: advance("looking")))
-        done = convert_recording(
-            recording,
-            output,
-            Selection(),
-            on_message=percent_of(len(recording), lambda: advance("writing")),
-        )
-        counts = dict(recording.counts)
-    print(f"{output}: {counted(sum(one.messages for one in done.files), 'message')}")
+    output: Path = arguments.output
+    with progress_bars({"looking": STEPS, "writing": STEPS}) as advance:
+        steps: dict[str, Callable[[], None]] = {}
+
+        def on_step(name: str, total: int) -> None:
+            if name not in steps:
+                steps[name] = percent_of(total, lambda: advance(name))
+            steps[name]()
+
+        done = redact_recording(arguments.files, output, arguments.what, new_finder, on_step)
+    written, counts = done.written, dict(done.counts)
+    print(f"{output}: {counted(sum(one.messages for one in written.files), 'message')}")
     for name, count in counts.items():
         print(f"  {name}: {count:,}")
-    for topic, count in done.damaged.items():
+    for topic, count in written.damaged.items():
         print(f"  {topic}: {counted(count, 'damaged message')} left out")
-    if done.apart:
-        print(f"  {counted(done.apart, 'message')} that could not be read on their keys left out")
+    if written.apart:
+        apart = counted(written.apart, "message")
+        print(f"  {apart} that could not be read on their keys left out")
     if arguments.json is not None:
         values = {"output": str(output), "hidden": arguments.what, "counts": counts}
         write_json(
             arguments.json,
-            {"redacted": values, "damaged": dict(done.damaged), "apart": done.apart},
+            {"redacted": values, "damaged": dict(written.damaged), "apart": written.apart},
         )
     return DONE

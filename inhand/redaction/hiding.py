@@ -64,7 +64,7 @@ class CameraHiding:
         """Return what to hide of a frame; raises MessageError where its depth is damaged.
 
         All of one is hidden that was not looked at, or in which somebody may be and nobody was
-        found.
+        found. Where faces are hidden, people are in frames in which one of them was missed.
         """
         sighting = self._sightings.of((frame.sequence, frame.time_ns))
         if sighting is None:
@@ -72,7 +72,7 @@ class CameraHiding:
         depth = None if frame.depth is None else decode_depth(frame.depth)
         metres = None if depth is None else depth * np.float32(self._info.depth_scale)
         shape = (self._info.height, self._info.width)
-        if self._what == "people":
+        if self._what == "people" or self._sightings.missed(sighting):
             return self._without_people(sighting, metres, shape)
         headless = self._sightings.headless(sighting)
         if sighting.heads or headless:

@@ -65,16 +65,18 @@ class CameraSightings:
         last = np.searchsorted(self._times_ns, sighting.time_ns + reach, side="right")
         return self.in_time[first:last]
 
+    def missed(self, sighting: Sighting) -> bool:
+        """Whether fewer people were found in a frame than in another one about it."""
+        about = self.about(sighting, DEFAULT_REDACTION.held_s)
+        most = [max(counts) for counts in zip(*(one.counts for one in about), strict=True)]
+        return any(count < many for count, many in zip(sighting.counts, most, strict=True))
+
     def bodies(self, sighting: Sighting) -> list[Body]:
         """Return the bodies that may be in a frame: those of it and its neighbours, and of a whole
-        while where fewer people were found in it than meanwhile."""
-        while_about = self.about(sighting, DEFAULT_REDACTION.held_s)
-        most = [max(counts) for counts in zip(*(one.counts for one in while_about), strict=True)]
-        if any(count < many for count, many in zip(sighting.counts, most, strict=True)):
-            chosen = while_about
-        else:
-            chosen = self.about(sighting, DEFAULT_REDACTION.around_s)
-        return [body for one in chosen for body in one.bodies]
+        while where somebody was missed in it."""
+        missed = self.missed(sighting)
+        seconds = DEFAULT_REDACTION.held_s if missed else DEFAULT_REDACTION.around_s
+        return [body for one in self.about(sighting, seconds) for body in one.bodies]
 
     def headless(self, sighting: Sighting) -> list[Body]:
         """Return the bodies about a frame whose heads nobody can say."""

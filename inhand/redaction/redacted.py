@@ -1,13 +1,14 @@
 """A recording as it is without faces, or without people."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 
 from inhand_capture.estimation.weights import DEFAULT_NETWORK
 from inhand_capture.faces.finder import FaceFinder
+from inhand_recorder.conversion import Conversion, Selection, convert_recording
 from inhand_recorder.recording_files import find_files
 from inhand_recorder.recording_reader import Recording
 from inhand_recorder.redaction import REDACTION_RECORD
@@ -30,6 +31,38 @@ from inhand.redaction.looking import look_through
 WITHOUT_PICTURES = (INFO, SKELETONS, POSE, LABEL, EVENT, HEALTH)
 """What is passed on as it is. A stream that stands neither here nor among those that are redacted
 is left out, as nobody said yet what it shows."""
+
+
+@dataclass(frozen=True)
+class Redaction:
+    """What was written, and by name what became of frames and previews."""
+
+    written: Conversion
+    counts: Mapping[str, int]
+
+
+def redact_recording(
+    paths: Iterable[Path],
+    output: Path,
+    what: What,
+    new_finder: Callable[[], FaceFinder],
+    on_step: Callable[[str, int], None] = lambda _step, _total: None,
+) -> Redaction:
+    """Write files or folders, as one recording, without faces or people to the new file ``output``.
+
+    ``new_finder`` makes what finds people in one camera's pictures, by skeletons too. ``on_step``
+    is called with "looking" or "writing", and how many of these steps there are. Raises
+    RecordingError; of what fails or is interrupted nothing stays.
+    """
+    if output.exists():
+        raise RecordingError(f"{output} exists already: choose another name, or move it away")
+    with RedactedRecording(paths, what) as recording:
+        frames, messages = recording.count(recording.frame_keys), len(recording)
+        recording.look(new_finder, lambda: on_step("looking", frames))
+        written = convert_recording(
+            recording, output, Selection(), on_message=lambda: on_step("writing", messages)
+        )
+        return Redaction(written, dict(recording.counts))
 
 
 class RedactedRecording(Recording):
