@@ -1,6 +1,6 @@
 """What of a picture somebody takes, by their joints."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import cv2
 import numpy as np
@@ -20,6 +20,14 @@ a joint is not known."""
 
 SIDES = ("LEFT", "RIGHT")
 TRUNK = (Joint.SHOULDER_LEFT, Joint.SHOULDER_RIGHT, Joint.HIP_RIGHT, Joint.HIP_LEFT)
+TRUNK_PLACES = np.array(
+    [
+        [(1 - down) * (1 - across), (1 - down) * across, down * across, down * (1 - across)]
+        for down in np.linspace(0.0, 1.0, 7)
+        for across in np.linspace(0.0, 1.0, 5)
+    ]
+)
+"""Places all over a trunk, as shares of its four corners."""
 FARTHEST_PX = 20_000.0
 """Where a picture is left of that, in pixels: what lies farther out is drawn there."""
 
@@ -58,19 +66,48 @@ def mask_of_bodies(
     info: CameraInfo,
     shape: tuple[int, int],
     parameters: RedactionParameters = DEFAULT_REDACTION,
+    *,
+    wider_m: float = 0.0,
 ) -> Mask:
-    """Return the pixels (H, W) of a camera's picture of ``shape`` that bodies may take."""
+    """Return the pixels (H, W) of a camera's picture of ``shape`` that bodies may take, or that are
+    so many metres beside them."""
     drawn = np.zeros(shape, np.uint8)
     scale = np.array([shape[1] / info.width, shape[0] / info.height])
     for body in bodies:
         places = np.clip(scale * (body[:, :2] + 0.5) - 0.5, -FARTHEST_PX, FARTHEST_PX)
         metres = scale.max() * body[:, 2]
         for one, other, radius in _parts(parameters):
-            _draw(drawn, places[[one, other]], radius * metres[[one, other]])
+            _draw(drawn, places[[one, other]], (radius + wider_m) * metres[[one, other]])
         trunk = places[list(TRUNK)]
         if np.isfinite(trunk).all():
             cv2.fillConvexPoly(drawn, cv2.convexHull(np.rint(trunk).astype(np.int32)), 1)
     return drawn.astype(bool)
+
+
+def mask_as_far_as_trunks(
+    bodies: Sequence[Body],
+    info: CameraInfo,
+    depth: NDArray[np.float32],
+    parameters: RedactionParameters = DEFAULT_REDACTION,
+) -> Mask:
+    """Return the pixels of depth (H, W) in metres that are beside bodies and as far away."""
+    height, width = depth.shape
+    scale = np.array([width / info.width, height / info.height])
+    distances = []
+    for body in bodies:
+        places = np.rint(TRUNK_PLACES @ (scale * (body[list(TRUNK), :2] + 0.5) - 0.5))
+        inside = np.isfinite(places).all(axis=1)
+        inside &= ((places >= 0) & (places < [width, height])).all(axis=1)
+        x, y = places[inside].astype(int).T
+        measured = depth[y, x]
+        if (measured > 0.0).any():
+            distances.append(float(np.median(measured[measured > 0.0])))
+    if not distances:
+        return np.zeros(depth.shape, bool)
+    beside = mask_of_bodies(bodies, info, depth.shape, parameters, wider_m=parameters.beside_m)
+    nearest = max(min(distances) - parameters.trunk_depth_m, 0.0)
+    farthest = max(distances) + parameters.trunk_depth_m
+    return beside & (depth > nearest) & (depth < farthest)
 
 
 def _with_neck(body: NDArray[np.float64]) -> Body:

@@ -12,7 +12,7 @@ from inhand_recorder.recording_reader import Recording
 from inhand_runtime.pixels import decode_colour, decode_depth, encode_colour, encode_depth
 from inhand_runtime.recording import RecordingError
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, Preview, RgbdFrame
+from inhand_schemas.messages import ColourImage, DepthImage, Preview, RgbdFrame
 from msgspec.structs import replace
 
 from inhand.redaction.background import (
@@ -23,7 +23,7 @@ from inhand.redaction.background import (
     new_things,
     separate_things,
 )
-from inhand.redaction.bodies import mask_of_bodies
+from inhand.redaction.bodies import mask_as_far_as_trunks, mask_of_bodies
 from inhand.redaction.looking import CameraSightings, Sighting
 from inhand.redaction.parameters import DEFAULT_REDACTION
 
@@ -85,7 +85,7 @@ class CameraHiding:
     ) -> Hidden:
         if not self._sightings.bodies(sighting):
             return self._all_or_nothing(metres, shape)
-        mask = people_mask(self._sightings, sighting, shape)
+        mask = people_mask(self._sightings, sighting, metres)
         if metres is None:
             return Hidden(mask)
         new = new_things(metres, self._background)
@@ -121,18 +121,22 @@ def camera_hiding(
         except (RecordingError, MessageError):
             continue
         if depth is not None:
-            shape = (sightings.info.height, sightings.info.width)
-            mask = Hidden(people_mask(sightings, sighting, shape))
+            metres = depth * np.float32(sightings.info.depth_scale)
+            mask = Hidden(people_mask(sightings, sighting, metres))
             samples.append((depth, mask.of(depth.shape)))
     background = background_of(samples, sightings.info.depth_scale)
     return CameraHiding(what, sightings, background)
 
 
-def people_mask(sightings: CameraSightings, sighting: Sighting, shape: tuple[int, int]) -> Mask:
-    """Return the pixels (H, W) that people may take by their joints and faces."""
-    info: CameraInfo = sightings.info
-    mask = mask_of_bodies(sightings.bodies(sighting), info, shape)
-    return _widened(mask | mask_of_discs(sighting.heads, (info.height, info.width), shape))
+def people_mask(sightings: CameraSightings, sighting: Sighting, metres: Metres | None) -> Mask:
+    """Return the camera's pixels that people may take by their joints and faces, and by what is
+    beside these in the depth (h, w)."""
+    info = sightings.info
+    shape, bodies = (info.height, info.width), sightings.bodies(sighting)
+    mask = mask_of_bodies(bodies, info, shape) | mask_of_discs(sighting.heads, shape, shape)
+    if metres is not None:
+        mask |= Hidden(mask_as_far_as_trunks(bodies, info, metres)).of(shape)
+    return _widened(mask)
 
 
 def hide_in_frame(frame: RgbdFrame, hidden: Hidden) -> RgbdFrame | None:

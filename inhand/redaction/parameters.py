@@ -18,6 +18,11 @@ class RedactionParameters:
     leg_m: float = 0.18
     hand_m: float = 0.22
     """About hands and feet, in which things are held and worn."""
+    beside_m: float = 0.25
+    """How much farther about all of these that is hidden which is as far away as the trunk, since
+    networks take the wrong place for a limb that something hides."""
+    trunk_depth_m: float = 0.5
+    """How much nearer or farther than the trunk that may be."""
     around_s: float = 0.15
     """Seconds before and after a picture whose people are hidden in it, too."""
     held_s: float = 1.0

@@ -18,10 +18,12 @@ from pathlib import Path
 import inhand_recorder
 import numpy as np
 from drawn_heads import head_pixels
+from inhand_lab.people.person import PEOPLE, USUAL_PEOPLE
 from inhand_lab.sensing.render import OBJECT, PERSON
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.messages import camera_info, person_message
-from inhand_lab.world.simulation import Simulation, simulate
+from inhand_lab.world.parameters import CAMERA_PLACINGS, USUAL_VIEWS
+from inhand_lab.world.simulation import Casting, Simulation, simulate_cast
 from inhand_recorder.recorded import RecordedImages
 from inhand_runtime.pixels import encode_depth
 from inhand_runtime.recording import RecordingWriter
@@ -61,8 +63,8 @@ class Left:
         """A row of the table."""
         shown = np.count_nonzero(self.sought)
         return (
-            f"| {name} | {shown} of {len(self.sought)} | {100 * np.mean(self.sought):.3f} % | "
-            f"{100 * max(self.sought):.1f} % | {100 * np.mean(self.held or [0]):.0f} % | "
+            f"| {name} | {shown} of {len(self.sought)} | {100 * np.mean(self.sought or [0]):.3f} % | "
+            f"{100 * max(self.sought, default=0.0):.1f} % | {100 * np.mean(self.held or [0]):.0f} % | "
             f"{100 * np.mean(self.rest):.0f} % | {self.blacked} |"
         )
 
@@ -172,16 +174,25 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=240)
     parser.add_argument("--step", type=int, default=4, help="records one frame of so many")
     parser.add_argument("--interactions", nargs="+", default=list(INTERACTIONS))
+    parser.add_argument("--views", choices=list(CAMERA_PLACINGS), default=USUAL_VIEWS)
+    parser.add_argument("--people", choices=PEOPLE, default=USUAL_PEOPLE)
     chosen = parser.parse_args()
+
+    def simulated(name: str) -> Simulation:
+        cast = Casting(
+            name, chosen.participant, chosen.seed, views=chosen.views, people=chosen.people
+        )
+        return simulate_cast(cast, chosen.frames)
+
     print("| | frames with any left | left | at most | object shown | rest shown | all hidden |")
     print("|---|---|---|---|---|---|---|")
     for name in chosen.interactions:
-        simulation = simulate(name, chosen.participant, chosen.seed, frames=chosen.frames)
+        simulation = simulated(name)
         shown = list(performed(simulation, chosen.step))
         for skeletons in (True, False):
             for row in rows_of(name, simulation, shown, skeletons=skeletons):
                 print(row, flush=True)
-    simulation = simulate("drinkFromMug", chosen.participant, chosen.seed, frames=chosen.frames)
+    simulation = simulated("drinkFromMug")
     for row in rows_of(
         "comes in, and leaves", simulation, list(coming_in(simulation)), skeletons=False
     ):
