@@ -61,11 +61,12 @@ class Left:
 
     def row(self, name: str) -> str:
         """A row of the table."""
-        shown = np.count_nonzero(self.sought)
+        frames, shown = len(self.sought), np.count_nonzero(self.sought)
+        left, most = 100 * np.mean(self.sought or [0]), 100 * max(self.sought, default=0.0)
+        held, rest = 100 * np.mean(self.held or [0]), 100 * np.mean(self.rest)
         return (
-            f"| {name} | {shown} of {len(self.sought)} | {100 * np.mean(self.sought or [0]):.3f} % | "
-            f"{100 * max(self.sought, default=0.0):.1f} % | {100 * np.mean(self.held or [0]):.0f} % | "
-            f"{100 * np.mean(self.rest):.0f} % | {self.blacked} |"
+            f"| {name} | {shown} of {frames} | {left:.3f} % | {most:.1f} % | {held:.0f} % | "
+            f"{rest:.0f} % | {self.blacked} |"
         )
 
 

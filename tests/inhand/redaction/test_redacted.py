@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import simplejpeg
+from inhand_capture.estimation.found_person import FoundPerson
 from inhand_capture.faces.finder import FaceFinder
 from inhand_recorder.inspection import inspect_recording
 from inhand_recorder.verification import examine_recording
@@ -17,12 +18,13 @@ from inhand_runtime.recording import (
     read_recording,
 )
 from inhand_runtime.recording.copying import copy_message, write_beside
+from inhand_schemas.joints import Joint
 from inhand_schemas.messages import RgbdFrame
 from inhand_schemas.topics import PREVIEW, RGBD, TOPICS
 from msgspec.structs import replace
 from numpy.typing import NDArray
-from posed_person import pixels_of, standing
-from walked_past import MUG, MUG_MM, PERSON, depth_at, person_at, told_finder, write_walk
+from posed_person import ToldNetwork, pixels_of, seen, standing
+from walked_past import MUG, MUG_MM, PERSON, ToldFaces, depth_at, person_at, told_finder, write_walk
 
 from inhand.redaction.hiding import What
 from inhand.redaction.redacted import WITHOUT_PICTURES, Redaction, redact_recording
@@ -142,6 +144,29 @@ def test_all_frames_are_hidden_where_nobody_is_ever_found_or_nothing_tells_that_
     flat = write_walk(tmp_path / "flat.mcap", [None] * 8 + [0.0], depth=False)
     done, _ = redact(flat, "people" if what == "faces" else "faces", [None] * 8 + [0.0])
     assert done.counts["frames all hidden"] == 3
+
+
+def test_a_leg_that_a_network_misplaces_is_hidden_by_its_depth(tmp_path: Path) -> None:
+    def misplaced(x: float) -> FoundPerson:
+        person = seen(standing(x))
+        right = [Joint.KNEE_RIGHT, Joint.ANKLE_RIGHT, Joint.FOOT_RIGHT]
+        left = [Joint.KNEE_LEFT, Joint.ANKLE_LEFT, Joint.FOOT_LEFT]
+        person.pixels[left] = person.pixels[right] - [30.0, 0.0]
+        return person
+
+    path = write_walk(tmp_path / "stands.mcap", [0.0] * 3)
+    network = ToldNetwork([[misplaced(0.0)]])
+    output = tmp_path / "out.mcap"
+    redact_recording(
+        [path],
+        output,
+        "people",
+        lambda: FaceFinder(ToldFaces(), network),  # type: ignore[arg-type]
+    )
+    for colour, depth in frames_of(output):
+        assert not depth[person_at(0.0)].any()
+        assert colour[person_at(0.0)].max() < BLACK
+        assert (depth > 0).mean() > 0.5
 
 
 def test_the_file_says_what_was_hidden_and_by_which_version_each_time(tmp_path: Path) -> None:
