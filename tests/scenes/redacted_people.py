@@ -19,6 +19,7 @@ import inhand_recorder
 import numpy as np
 from drawn_heads import head_pixels
 from inhand_lab.people.person import PEOPLE, USUAL_PEOPLE
+from inhand_lab.sensing.cameras import KINECT
 from inhand_lab.sensing.render import OBJECT, PERSON
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.messages import camera_info, person_message
@@ -183,7 +184,7 @@ def main() -> None:
         cast = Casting(
             name, chosen.participant, chosen.seed, views=chosen.views, people=chosen.people
         )
-        return simulate_cast(cast, chosen.frames)
+        return simulate_cast(cast, chosen.frames, KINECT)
 
     print("| | frames with any left | left | at most | object shown | rest shown | all hidden |")
     print("|---|---|---|---|---|---|---|")

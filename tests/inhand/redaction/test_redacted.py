@@ -146,12 +146,11 @@ def test_all_frames_are_hidden_where_nobody_is_ever_found_or_nothing_tells_that_
     assert done.counts["frames all hidden"] == 3
 
 
-def test_a_leg_that_a_network_misplaces_is_hidden_by_its_depth(tmp_path: Path) -> None:
+def test_legs_that_a_network_misplaces_are_hidden_by_their_depth(tmp_path: Path) -> None:
     def misplaced(x: float) -> FoundPerson:
         person = seen(standing(x))
-        right = [Joint.KNEE_RIGHT, Joint.ANKLE_RIGHT, Joint.FOOT_RIGHT]
-        left = [Joint.KNEE_LEFT, Joint.ANKLE_LEFT, Joint.FOOT_LEFT]
-        person.pixels[left] = person.pixels[right] - [30.0, 0.0]
+        legs = [joint for joint in Joint if joint.name.startswith(("KNEE", "ANKLE", "FOOT"))]
+        person.pixels[legs] -= [70.0, 0.0]
         return person
 
     path = write_walk(tmp_path / "stands.mcap", [0.0] * 3)
