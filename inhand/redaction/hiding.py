@@ -75,8 +75,8 @@ class CameraHiding:
         if self._what == "people" or self._sightings.missed(sighting):
             return self._without_people(sighting, metres, shape)
         headless = self._sightings.headless(sighting)
-        if sighting.heads or headless:
-            heads = mask_of_discs(sighting.heads, shape, shape)
+        if len(sighting.heads) or headless:
+            heads = mask_of_discs(sighting.discs, shape, shape)
             return Hidden(heads | mask_of_bodies(headless, self._info, shape))
         return self._all_or_nothing(metres, shape)
 
@@ -133,7 +133,7 @@ def people_mask(sightings: CameraSightings, sighting: Sighting, metres: Metres |
     beside these in the depth (h, w)."""
     info = sightings.info
     shape, bodies = (info.height, info.width), sightings.bodies(sighting)
-    mask = mask_of_bodies(bodies, info, shape) | mask_of_discs(sighting.heads, shape, shape)
+    mask = mask_of_bodies(bodies, info, shape) | mask_of_discs(sighting.discs, shape, shape)
     if metres is not None:
         mask |= Hidden(mask_as_far_as_trunks(bodies, info, metres)).of(shape)
     return _widened(mask)

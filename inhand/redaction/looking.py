@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from inhand_capture.faces.discs import Disc
@@ -17,6 +17,7 @@ from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import CameraInfo, Person, Skeletons
 from inhand_schemas.topics import SKELETONS
+from numpy.typing import NDArray
 
 from inhand.redaction.bodies import Body, found_body, skeleton_body
 from inhand.redaction.parameters import DEFAULT_REDACTION
@@ -28,11 +29,12 @@ Stamp = tuple[int, int]
 """Number and time of capture of a frame."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Sighting:
     """Who was found in one frame, in the camera's pixels.
 
-    ``heads`` are discs to hide, of shortly before and after it as well; ``bodies`` those of the
+    ``heads`` (N, 3) are x, y and radius of discs to hide, of shortly before and after it as well,
+    ``bodies`` those of the
     frame alone, ``headless`` those of them whose head nobody can say, ``counts`` how many the
     network found, and how many skeletons were recorded.
     """
@@ -41,7 +43,12 @@ class Sighting:
     bodies: tuple[Body, ...] = ()
     headless: tuple[Body, ...] = ()
     counts: tuple[int, int] = (0, 0)
-    heads: tuple[Disc, ...] = ()
+    heads: NDArray[np.float32] = field(default_factory=lambda: np.zeros((0, 3), np.float32))
+
+    @property
+    def discs(self) -> list[Disc]:
+        """What to hide of heads."""
+        return [Disc(x, y, radius) for x, y, radius in self.heads.tolist()]
 
 
 class CameraSightings:
@@ -117,8 +124,8 @@ def look_through(
         sightings.append(sighting)
         seen.append(heads)
     held = [
-        replace(one, heads=discs)
-        for one, discs in zip(sightings, _held(seen, sightings), strict=True)
+        replace(one, heads=heads)
+        for one, heads in zip(sightings, _held(seen, sightings), strict=True)
     ]
     return CameraSightings(info, list(zip(stamps, held, strict=True)))
 
@@ -146,16 +153,23 @@ def _look(
     )
 
 
-def _held(seen: Sequence[HeadsSeen], sightings: Sequence[Sighting]) -> Iterator[tuple[Disc, ...]]:
+def _held(
+    seen: Sequence[HeadsSeen], sightings: Sequence[Sighting]
+) -> Iterator[NDArray[np.float32]]:
     """Hold heads as the live way does, after they were seen last, and before they are first."""
-    after, before = HeldSightings(), HeldSightings()
-    forward = [after.see(one, of.time_ns) for one, of in zip(seen, sightings, strict=True)]
+    before = HeldSightings()
     backward = [
-        before.see(one, -of.time_ns)
+        _array(before.see(one, -of.time_ns))
         for one, of in zip(reversed(seen), reversed(sightings), strict=True)
     ]
-    for first, second in zip(forward, reversed(backward), strict=True):
-        yield tuple(dict.fromkeys((*first, *second)))
+    after = HeldSightings()
+    for one, of, others in zip(seen, sightings, reversed(backward), strict=True):
+        yield np.unique(np.vstack([_array(after.see(one, of.time_ns)), others]), axis=0)
+
+
+def _array(discs: Iterable[Disc]) -> NDArray[np.float32]:
+    rows = [(disc.x, disc.y, disc.radius) for disc in discs]
+    return np.array(rows, np.float32).reshape(-1, 3)
 
 
 def _scaled(seen: HeadsSeen, scale: float) -> HeadsSeen:

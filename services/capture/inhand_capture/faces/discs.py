@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from inhand_capture.estimation.found_person import Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Disc:
     """A disc about (x, y) in a picture, in pixels; it may reach out of it."""
 

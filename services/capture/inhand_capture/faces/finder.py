@@ -33,7 +33,7 @@ class FacesFound:
         return mask_of_discs(self.discs, self.size, (height, width))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class HeadsSeen:
     """What was seen in one picture, by itself: the heads of bodies and faces, a sequence for each
     who looked, as discs of the picture; and the bodies that the network found."""
