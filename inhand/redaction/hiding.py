@@ -14,6 +14,7 @@ from inhand_runtime.recording import RecordingError
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import ColourImage, DepthImage, Preview, RgbdFrame
 from msgspec.structs import replace
+from numpy.typing import NDArray
 
 from inhand.redaction.background import (
     Background,
@@ -77,7 +78,8 @@ class CameraHiding:
         headless = self._sightings.headless(sighting)
         if len(sighting.heads) or headless:
             heads = mask_of_discs(sighting.discs, shape, shape)
-            return Hidden(heads | mask_of_bodies(headless, self._info, shape))
+            mask = heads | mask_of_bodies(headless, self._info, shape)
+            return Hidden(mask | self._somebody_else(sighting, metres, shape))
         return self._all_or_nothing(metres, shape)
 
     def _without_people(
@@ -88,22 +90,36 @@ class CameraHiding:
         mask = people_mask(self._sightings, sighting, metres)
         if metres is None:
             return Hidden(mask)
-        new = new_things(metres, self._background)
-        numbers, areas = separate_things(new, metres, self._background, self._info)
+        numbers, areas = self._things(metres)
         chosen = areas >= DEFAULT_REDACTION.new_m2
         chosen[np.unique(numbers[Hidden(mask).of(metres.shape)])] = True
         chosen[0] = False
-        things = Hidden(chosen[numbers]).of(shape)
-        return Hidden(mask | _widened(things))
+        return Hidden(mask | _widened(Hidden(chosen[numbers]).of(shape)))
+
+    def _somebody_else(
+        self, sighting: Sighting, metres: Metres | None, shape: tuple[int, int]
+    ) -> Mask:
+        """Return where somebody may be beside those who were found, whose face would be seen."""
+        if metres is None:
+            return np.zeros(shape, bool)
+        numbers, areas = self._things(metres)
+        chosen = areas >= DEFAULT_REDACTION.somebody_m2
+        found = people_mask(self._sightings, sighting, metres)
+        chosen[np.unique(numbers[Hidden(found).of(metres.shape)])] = False
+        return _widened(Hidden(chosen[numbers]).of(shape))
 
     def _all_or_nothing(self, metres: Metres | None, shape: tuple[int, int]) -> Hidden:
         """Hide all of a frame unless its depth shows that nothing is before the background."""
         if metres is None:
             return ALL
-        new = new_things(metres, self._background)
-        _, areas = separate_things(new, metres, self._background, self._info)
+        _, areas = self._things(metres)
         nothing = (areas < DEFAULT_REDACTION.new_m2).all()
         return Hidden(np.zeros(shape, bool)) if nothing else ALL
+
+    def _things(self, metres: Metres) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """Number what is before the background, and measure the square metres of each."""
+        new = new_things(metres, self._background)
+        return separate_things(new, metres, self._background, self._info)
 
 
 def camera_hiding(

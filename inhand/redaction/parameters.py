@@ -42,6 +42,9 @@ class RedactionParameters:
     """Pixels of which something new is high and wide at the least."""
     new_m2: float = 0.02
     """Square metres from which something new may be of somebody: a hand and a wrist."""
+    somebody_m2: float = 0.1
+    """Square metres from which it may show a face, of somebody who was not found: a head and a
+    chest."""
     unmeasured_m: float = 2.0
     """Distance of what nothing is known of, metres."""
     edge: float = 1.0 / 128.0

@@ -1,7 +1,7 @@
 """A recording of somebody who walks past a camera, with whom a network finds told picture by
 picture."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -12,12 +12,13 @@ from inhand_capture.faces.discs import Disc
 from inhand_capture.faces.finder import FaceFinder
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_runtime.recording import RecordingWriter
+from inhand_schemas.joints import Joint
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import Message, ObjectPose, Preview, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, LABEL, PREVIEW, RGBD, SKELETONS, AnyTopic
 from numpy.typing import NDArray
 from posed_person import INFO as CAMERA
-from posed_person import WALL_M, ToldNetwork, depth_of, seen, standing
+from posed_person import WALL_M, ToldNetwork, depth_of, draw_ball, seen, standing
 
 START_NS = 1_700_000_000_000_000_000
 PERIOD_NS = 200_000_000
@@ -45,10 +46,20 @@ def told_finder(places: Sequence[float | None], *faces: Disc) -> Callable[[], Fa
     return lambda: FaceFinder(ToldFaces(faces), ToldNetwork(list(script)))  # type: ignore[arg-type]
 
 
+def _with_necks(places: Iterable[float | None]) -> NDArray[np.uint16]:
+    """Depth of people whose heads are joined to their trunks."""
+    people = [standing(x) for x in places if x is not None]
+    depth = depth_of(*people).astype(np.float64)
+    for joints in people:
+        for below in (0.12, 0.18, 0.24):
+            draw_ball(depth, joints[Joint.HEAD] + [0.0, below, 0.0], 0.07)
+    return depth.astype(np.uint16)
+
+
 @cache
-def depth_at(x: float | None) -> NDArray[np.uint16]:
-    """Depth (480, 640), millimetres, of somebody at a place, or of the wall alone."""
-    depth = depth_of() if x is None else depth_of(standing(x))
+def depth_at(*places: float | None) -> NDArray[np.uint16]:
+    """Depth (480, 640), millimetres, of people at places, and of the wall."""
+    depth = _with_necks(places)
     depth[MUG] = MUG_MM
     depth.flags.writeable = False
     return depth
@@ -57,23 +68,30 @@ def depth_at(x: float | None) -> NDArray[np.uint16]:
 @cache
 def person_at(x: float) -> NDArray[np.bool_]:
     """The pixels (480, 640) of somebody at a place."""
-    person = depth_of(standing(x)) < 1000 * WALL_M
+    person = _with_necks([x]) < 1000 * WALL_M
     person.flags.writeable = False
     return person
 
 
-def colour_at(x: float | None) -> NDArray[np.uint8]:
-    """The picture (480, 640, 3)."""
+def colour_at(*places: float | None) -> NDArray[np.uint8]:
+    """The picture (480, 640, 3) of people at places."""
     colour = np.full((480, 640, 3), WALL, np.uint8)
-    if x is not None:
-        colour[person_at(x)] = PERSON
+    for x in places:
+        if x is not None:
+            colour[person_at(x)] = PERSON
     return colour
 
 
 def write_walk(
-    path: Path, places: Sequence[float | None], *, info: bool = True, depth: bool = True
+    path: Path,
+    places: Sequence[float | None],
+    others: Sequence[float | None] | None = None,
+    *,
+    info: bool = True,
+    depth: bool = True,
 ) -> Path:
-    """Record frames, their previews and messages of other streams, five frames a second."""
+    """Record frames of one or two people, a place each for each frame, their previews and messages
+    of other streams, five frames a second."""
     with RecordingWriter(path) as writer:
 
         def write(topic: AnyTopic, name: str, message: Message) -> None:
@@ -88,12 +106,12 @@ def write_walk(
         writer.add_metadata("session", {"participant": "p01"})
         if info:
             write(INFO, "front", CAMERA)
-        for number, x in enumerate(places):
+        for number, people in enumerate(zip(places, others or [None] * len(places), strict=True)):
             stamp = {"sequence": number, "time_ns": START_NS + number * PERIOD_NS}
-            colour = colour_at(x)
+            colour = colour_at(*people)
             small = simplejpeg.encode_jpeg(np.ascontiguousarray(colour[::2, ::2]), 90, "RGB", "420")
             write(PREVIEW, "front", Preview(**stamp, width=320, height=240, jpeg=small))
-            measured = encode_depth(depth_at(x)) if depth else None
+            measured = encode_depth(depth_at(*people)) if depth else None
             write(RGBD, "front", RgbdFrame(**stamp, colour=encode_colour(colour), depth=measured))
             write(SKELETONS, "front", Skeletons(**stamp, people=()))
             label = {"object": "mug", "camera": "front", "state": "lost", "confidence": 0.0}

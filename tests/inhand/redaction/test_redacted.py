@@ -146,6 +146,20 @@ def test_all_frames_are_hidden_where_nobody_is_ever_found_or_nothing_tells_that_
     assert done.counts["frames all hidden"] == 3
 
 
+@pytest.mark.parametrize("what", ["faces", "people"])
+def test_somebody_else_who_is_never_found_is_hidden_while_they_move(
+    tmp_path: Path, what: What
+) -> None:
+    found, others = [0.1 * place - 0.4 for place in PAST], [*[None] * 5, 1.0, 0.8]
+    path = write_walk(tmp_path / "two.mcap", found, others)
+    _, output = redact(path, what, found)
+    for other, (colour, depth) in zip(others[5:], frames_of(output)[5:], strict=True):
+        assert other is not None
+        assert not depth[person_at(other)].any()
+        assert colour[person_at(other)].max() < BLACK
+        assert (depth > 0).mean() > 0.4
+
+
 def test_legs_that_a_network_misplaces_are_hidden_by_their_depth(tmp_path: Path) -> None:
     def misplaced(x: float) -> FoundPerson:
         person = seen(standing(x))
