@@ -7,6 +7,7 @@ import pytest
 from drawn_heads import head_pixels
 from fetched_weights import use_weights
 from inhand_capture.estimation.networks import open_network
+from inhand_capture.estimation.regions import Region
 from inhand_capture.estimation.weights import FACES, WeightsError, models_folder
 from inhand_capture.faces.discs import Disc
 from inhand_capture.faces.face_detector import FaceDetector
@@ -59,6 +60,29 @@ def test_a_fault_of_what_looks_for_faces_is_not_swallowed() -> None:
     finder = FaceFinder(Broken(), ToldNetwork([[]]))  # type: ignore[arg-type]
     with pytest.raises(RuntimeError, match="nobody thought of"):
         finder.find(np.zeros((48, 64, 3), np.uint8), 0, (), INFO)
+
+
+def test_with_time_both_ends_of_a_picture_are_looked_at_closer() -> None:
+    class Looked(ToldFaces):
+        def __init__(self) -> None:
+            super().__init__()
+            self.views: list[Region] = []
+
+        def find(self, _picture: NDArray[np.uint8], view: object) -> list[Disc]:
+            assert isinstance(view, Region)
+            self.views.append(view)
+            return []
+
+    grey, sides = np.full((480, 640, 3), 110, np.uint8), []
+    for both_ends in (False, True):
+        faces = Looked()
+        finder = FaceFinder(faces, ToldNetwork([[]]), both_ends=both_ends)  # type: ignore[arg-type]
+        for _ in range(2):
+            finder.look(grey, (), INFO)
+        sides.append([round(view.x) for view in faces.views])
+    live, recorded = sides
+    assert live == [320, live[1], 320, 640 - live[1]]
+    assert recorded == 2 * [320, live[1], 640 - live[1]]
 
 
 @pytest.fixture(scope="module")
