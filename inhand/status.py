@@ -11,7 +11,13 @@ from typing import Any
 
 import msgspec
 from inhand_runtime.exit_codes import DONE, FAILED
-from inhand_runtime.health_lines import closed_shutters, late_lines, left_unused, unused_counts
+from inhand_runtime.health_lines import (
+    late_lines,
+    left_unused,
+    shown_state,
+    stilled_instances,
+    unused_counts,
+)
 from inhand_runtime.roll import Heard, Instance, Roll
 from inhand_runtime.settings import SERVICES, load_rig_file
 from inhand_schemas.errors import KeyFormatError, MessageError
@@ -45,7 +51,11 @@ def run(arguments: argparse.Namespace) -> int:
     if state.living:
         output().print(_table(state.living))
     living = state.living
-    for line in (*closed_shutters(living), *left_unused(living), *late_lines(living)):
+    for line in (
+        *stilled_instances(living),
+        *left_unused(living),
+        *late_lines(living),
+    ):
         print(line)
     for line in state.problems:
         print(f"WRONG: {line}")
@@ -116,7 +126,7 @@ def _table(living: dict[Instance, Heard | None]) -> Table:
         latency = health.latency_ms
         table.add_row(
             " ".join(instance),
-            "shut" if health.shutter_closed else health.state,
+            shown_state(health),
             f"{health.uptime_s:.0f}",
             f"{health.resident_bytes / 1e6:.0f}",
             "" if latency is None else f"{latency.p50:.1f} / {latency.p99:.1f}",

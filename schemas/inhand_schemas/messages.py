@@ -277,6 +277,16 @@ class Latency(Struct, frozen=True, kw_only=True):
         require_finite("latency", (self.p50, self.p99))
 
 
+class RecordingState(Struct, frozen=True, kw_only=True):
+    """What a recorder does: whether it is ``paused``, and the name and size of the file that grows,
+    if one does.
+    """
+
+    paused: bool = False
+    file: Text | None = None
+    file_bytes: Count = 0
+
+
 class Health(Message, frozen=True, kw_only=True):
     """How an instance does, once a second.
 
@@ -285,6 +295,7 @@ class Health(Message, frozen=True, kw_only=True):
     it has just published, or handled. ``effort`` is the share of its usual work that a tracker does
     in a frame, so that frames do not come faster than they are tracked. While ``shutter_closed``
     a camera captures nothing, because somebody wants it so; None where there is no shutter.
+    ``recording`` is what a recorder does.
     """
 
     service: Name
@@ -299,6 +310,7 @@ class Health(Message, frozen=True, kw_only=True):
     loop_age_s: NonNegative = 0.0
     effort: Fraction | None = None
     shutter_closed: bool | None = None
+    recording: RecordingState | None = None
 
     def __post_init__(self) -> None:
         require_finite("time", (self.uptime_s, self.loop_age_s))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from inhand_recorder import service
+from inhand_recorder.commands import CommandDesk
 from inhand_recorder.journal import Journal
 from inhand_recorder.recording_file import Limits
 from inhand_runtime.health import HealthBoard
@@ -20,6 +21,7 @@ from recordings import START_NS, frame_messages
 class Daemon:
     """What the recorder needs of its daemon; it stops when all was read."""
 
+    instance: str = "disk"
     health: HealthBoard = field(default_factory=lambda: HealthBoard("recorder", "disk"))
     inbox: Inbox = field(default_factory=Inbox)
     stop: threading.Event = field(default_factory=threading.Event)
@@ -42,7 +44,8 @@ def test_keys_beyond_the_bound_are_counted_and_the_others_recorded(
         key = POSE.key(Site(), f"thing_{number}")
         lane.put(Received(key, payload, POSE.encoding, START_NS + number))
     journal = Journal(tmp_path, "rig", Limits(), daemon.health.drops)
-    service._Recorder(daemon, journal).run()  # type: ignore[arg-type]
+    desk = CommandDesk("disk")
+    service._Recorder(daemon, journal, desk).run()  # type: ignore[arg-type]
     (path,) = tmp_path.glob("*.mcap")
     assert len(list(read_recording(path))) == 5
     report = daemon.health.report()

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from inhand_recorder.service import RecorderSettings, check
+from inhand_recorder.settings import RecorderSettings, check
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import Settings, load_settings
 

@@ -15,6 +15,7 @@ from inhand_schemas.messages import (
     Person,
     Pose,
     Preview,
+    RecordingState,
     RgbdFrame,
     Skeletons,
     TopicHealth,
@@ -123,6 +124,12 @@ LATE = replace(
     effort=0.75,
 )
 SHUT = replace(LATE, service="capture", effort=None, shutter_closed=True)
+PAUSED = replace(
+    LATE,
+    service="recorder",
+    effort=None,
+    recording=RecordingState(paused=True, file="rig_20261129T201800Z.mcap", file_bytes=1 << 20),
+)
 REFUSED = replace(LATE, topics={"(other keys)": TopicHealth(refused=12)})
 
 PNG = RgbdFrame(
@@ -157,6 +164,7 @@ NAMED = Skeletons(sequence=12, time_ns=TIME_NS, people=(PERSON,), convention="az
 GOLDEN_MESSAGES: dict[str, Message] = {
     **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
     "Health.v1.late": LATE,
+    "Health.v1.paused": PAUSED,
     "Health.v1.refused": REFUSED,
     "Health.v1.shutter": SHUT,
     "ObjectPose.v1.truth": TRUTH,

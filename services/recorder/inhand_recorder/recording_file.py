@@ -45,6 +45,7 @@ class RecordingFile:
     """
 
     def __init__(self, path: Path, opened_s: float) -> None:
+        self.path = path
         self._part = path.with_name(path.name + PART_SUFFIX)
         self._opened_s = opened_s
         self._clock_steps: dict[int, int] = {}
@@ -58,9 +59,14 @@ class RecordingFile:
                 self._remove_part()
             raise
 
+    @property
+    def bytes_written(self) -> int:
+        """The size of the file so far, without what stands only in memory."""
+        return self._writer.bytes_written
+
     def full(self, limits: Limits, now_s: float) -> bool:
         """Whether it has reached a limit; ``now_s`` is of the clock that ``opened_s`` is of."""
-        by_size = 0 < limits.split_bytes <= self._writer.bytes_written
+        by_size = 0 < limits.split_bytes <= self.bytes_written
         by_time = 0 < limits.split_seconds <= now_s - self._opened_s
         return by_size or by_time
 
@@ -68,6 +74,10 @@ class RecordingFile:
         """Write that the wall clock was set at a time, and by how much."""
         self._clock_steps[at_ns] = step_ns
         self._writer.add_metadata(CLOCK_RECORD, format_clock_steps(self._clock_steps))
+
+    def note(self, name: str, values: Mapping[str, str]) -> None:
+        """Write a named record about the recording; a later one of that name replaces it."""
+        self._writer.add_metadata(name, values)
 
     def repeat(self, entry: Entry, received_ns: int) -> None:
         """Add an entry of before this file, as if it were received with the file's first one."""

@@ -2,25 +2,24 @@
 
 import time
 from pathlib import Path
-from typing import Annotated
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
-from inhand_runtime.errors import SettingsError
 from inhand_runtime.inbox import Received
 from inhand_runtime.recording import RecordingError
-from inhand_runtime.settings import FilePath, Section, Settings
-from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.settings import Settings
 from inhand_runtime.wording import counted
-from inhand_runtime.writable import try_folder
 from inhand_schemas.errors import KeyFormatError, MessageError
-from inhand_schemas.topics import PREVIEW, RGBD, TOPICS, topic_of
-from pydantic import AfterValidator, ByteSize, Field
+from inhand_schemas.messages import RecordingState
+from inhand_schemas.procedures import PAUSE, RESUME, SPLIT, RecorderReply
+from inhand_schemas.topics import RGBD, TOPICS, topic_of
 
 from inhand_recorder.clock import ClockWatch
+from inhand_recorder.commands import CommandDesk
 from inhand_recorder.gaps import GapReporter
 from inhand_recorder.journal import Journal
 from inhand_recorder.recording_file import Limits
+from inhand_recorder.settings import RecorderSettings, check
 from inhand_recorder.stamps import entry_apart, entry_of
 
 SYNC_PERIOD_S = 0.75
@@ -32,62 +31,6 @@ MOST_KEYS = 10_000
 """Number of keys that are recorded; a file holds 65,535 channels, and a site has some dozens."""
 REFUSED_KEYS_LAST_S = 5.0
 FRAMES_WEIGHT = 3 * (len(TOPICS) - 1)
-SMALLEST_SPLIT_BYTES = 1 << 20
-SMALLEST_SPLIT_S = 1.0
-SPLIT_S = 3600.0
-"""Seconds after which a new file begins, unless the settings say otherwise."""
-
-
-def _known_streams(streams: tuple[str, ...]) -> tuple[str, ...]:
-    for stream in streams:
-        if stream not in TOPICS:
-            raise ValueError(f"there is no stream {stream!r}" + suggestion(stream, TOPICS))
-    return streams
-
-
-def _zero_or_a_mebibyte(size: ByteSize) -> ByteSize:
-    if 0 < size < SMALLEST_SPLIT_BYTES:
-        raise ValueError("a file must hold 1 MiB at least; 0 means never")
-    return size
-
-
-def _zero_or_a_second(seconds: float) -> float:
-    if 0 < seconds < SMALLEST_SPLIT_S:
-        raise ValueError("a file must last 1 s at least; 0 means never")
-    return seconds
-
-
-class RecorderSettings(Section):
-    """``[recorder.NAME]``.
-
-    A new file begins after ``split_bytes`` or ``split_seconds``; 0 means never. Without a word it
-    is each hour, so that no file grows for ever, and what is copied or recovered is an hour at the
-    most. What the disk cannot take at once waits in memory, ``queue_bytes`` at the most; then the
-    oldest is dropped and counted. Without a word all ``streams`` are recorded but previews, which
-    are made only while somebody listens, and show less than the frames do.
-    """
-
-    folder: FilePath = Field(default=Path("recordings"), validate_default=True)
-    streams: Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_known_streams)] = (
-        tuple(stream for stream in TOPICS if stream != PREVIEW.stream)
-    )
-    split_bytes: Annotated[ByteSize, Field(ge=0), AfterValidator(_zero_or_a_mebibyte)] = ByteSize(0)
-    split_seconds: Annotated[
-        float, Field(ge=0, allow_inf_nan=False), AfterValidator(_zero_or_a_second)
-    ] = SPLIT_S
-    queue_bytes: Annotated[ByteSize, Field(ge=1 << 20)] = ByteSize(256 << 20)
-
-
-def check(settings: Settings[RecorderSettings]) -> None:
-    """Check all that can be known before a start; raises SettingsError."""
-    folder = settings.service.folder
-    try:
-        try_folder(folder)
-    except OSError as error:
-        raise SettingsError(
-            f"cannot write to the folder {folder}: {error.strerror}: change folder in the "
-            "recorder's settings"
-        ) from None
 
 
 def run(settings: Settings[RecorderSettings]) -> None:
@@ -105,9 +48,13 @@ def run(settings: Settings[RecorderSettings]) -> None:
             Limits(chosen.split_bytes, chosen.split_seconds),
             daemon.health.drops,
         )
+        if chosen.start_paused:
+            journal.pause(time.time_ns())
         for stream, size in queue_shares(chosen.streams, chosen.queue_bytes).items():
             daemon.subscribe(TOPICS[stream], samples=QUEUE_SAMPLES, size=size)
-        _Recorder(daemon, journal).run()
+        desk = CommandDesk(daemon.instance)
+        desk.open(daemon)
+        _Recorder(daemon, journal, desk).run()
 
 
 def queue_shares(streams: tuple[str, ...], queue_bytes: int) -> dict[str, int]:
@@ -121,9 +68,10 @@ def queue_shares(streams: tuple[str, ...], queue_bytes: int) -> dict[str, int]:
 
 
 class _Recorder:
-    def __init__(self, daemon: Daemon, journal: Journal) -> None:
+    def __init__(self, daemon: Daemon, journal: Journal, desk: CommandDesk) -> None:
         self._daemon = daemon
         self._journal = journal
+        self._desk = desk
         self._gaps = GapReporter(daemon.health.error)
         self._keys: set[str] = set()
         self._clock = ClockWatch()
@@ -147,15 +95,18 @@ class _Recorder:
         end = time.monotonic() + seconds
         while (rest := end - time.monotonic()) > 0.0:
             self._daemon.health.came_round()
-            if self._daemon.stop.wait(min(rest, SYNC_PERIOD_S)):
+            self._desk.serve(self._do)
+            if self._daemon.stop.wait(min(rest, IDLE_S)):
                 return
 
     def _write_until_stopped(self) -> None:
         self._journal.sync()
+        self._show_state()
         self._daemon.health.state = "running"
         self._daemon.health.well("disk")
         next_sync = time.monotonic() + SYNC_PERIOD_S
         while not self._daemon.stop.is_set():
+            self._desk.serve(self._do)
             sample = self._daemon.receive(IDLE_S)
             if sample is not None:
                 self._write(sample)
@@ -165,7 +116,35 @@ class _Recorder:
                 self._journal.sync()
                 self._gaps.report()
                 self._infos.check(time.monotonic())
+                self._show_state()
                 next_sync = time.monotonic() + SYNC_PERIOD_S
+
+    def _do(self, verb: str) -> RecorderReply:
+        """Do what was asked for; what fails on the disk is tried again as all writing is."""
+        finished: Path | None = None
+        problem: str | None = None
+        try:
+            if verb == PAUSE.verb:
+                finished = self._journal.pause(time.time_ns())
+            elif verb == RESUME.verb:
+                self._journal.resume(time.time_ns())
+            elif verb == SPLIT.verb:
+                finished = self._journal.close()
+        except RecordingError as error:
+            problem = str(error)
+            self._daemon.health.error(problem)
+        return RecorderReply(
+            recorder=self._daemon.instance,
+            recording=self._show_state(),
+            finished=None if finished is None else finished.name,
+            problem=problem,
+        )
+
+    def _show_state(self) -> RecordingState:
+        """Show in the health what the recorder does, and return it."""
+        state = self._journal.state
+        self._daemon.health.recording = state
+        return state
 
     def _write_the_rest(self) -> None:
         self._daemon.inbox.close()

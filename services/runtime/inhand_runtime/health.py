@@ -10,7 +10,7 @@ from fnmatch import fnmatchcase
 
 import psutil
 from inhand_schemas.fields import ServiceState
-from inhand_schemas.messages import Health, Latency, TopicHealth
+from inhand_schemas.messages import Health, Latency, RecordingState, TopicHealth
 
 log = logging.getLogger(__name__)
 
@@ -51,6 +51,7 @@ class HealthBoard:
         self.state: ServiceState = "starting"
         self.effort: float | None = None
         self.shutter_closed: bool | None = None
+        self.recording: RecordingState | None = None
         self.service = service
         self._instance = instance
         self._now = now
@@ -230,6 +231,7 @@ class HealthBoard:
                 latency_ms=self._current_latency(now),
                 effort=self.effort,
                 shutter_closed=self.shutter_closed,
+                recording=self.recording,
                 last_error=self._last_error,
                 troubles=troubles,
                 loop_age_s=max(now - self._came_round, 0.0),

@@ -22,14 +22,30 @@ def unused_counts(health: Health) -> dict[str, int]:
     }
 
 
-def closed_shutters(living: dict[Instance, Heard | None]) -> list[str]:
-    """One line for each camera whose shutter is closed."""
-    return [
-        f"{' '.join(instance)}: the shutter is closed: no pictures and no skeletons until "
-        f"`inhand shutter open --camera {instance[1]}`"
-        for instance, heard in living.items()
-        if heard is not None and heard.health.shutter_closed
-    ]
+def stilled_instances(living: dict[Instance, Heard | None]) -> list[str]:
+    """One line for each camera whose shutter is closed, and each recorder that is paused."""
+    lines = []
+    for (service, name), heard in living.items():
+        if heard is None:
+            continue
+        if heard.health.shutter_closed:
+            lines.append(
+                f"{service} {name}: the shutter is closed: no pictures and no skeletons until "
+                f"`inhand shutter open --camera {name}`"
+            )
+        if heard.health.recording and heard.health.recording.paused:
+            lines.append(
+                f"{service} {name}: paused: nothing is recorded until `inhand recorder resume "
+                f"--name {name}`"
+            )
+    return lines
+
+
+def shown_state(health: Health) -> str:
+    """The state of an instance in a word: what somebody wants of it goes before how it is."""
+    if health.shutter_closed:
+        return "shut"
+    return "paused" if health.recording and health.recording.paused else health.state
 
 
 def late_lines(living: dict[Instance, Heard | None]) -> list[str]:
