@@ -38,3 +38,12 @@ def test_previews_are_recorded_only_where_somebody_asks(tmp_path: Path) -> None:
     assert "preview" not in loaded(tmp_path, "").service.streams
     asked = loaded(tmp_path, 'streams = ["preview"]').service.streams
     assert asked == ("preview",)
+
+
+def test_a_pattern_that_excludes_all_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="nothing would be recorded"):
+        loaded(tmp_path, 'streams = ["pose/mug"]\nexclude = ["po*"]')
+
+
+def test_nothing_is_excluded_without_a_word(tmp_path: Path) -> None:
+    assert loaded(tmp_path, "").service.exclude == ()

@@ -1,6 +1,7 @@
 """The recorder's daemon: takes what arrives, and keeps the disk's troubles from what receives."""
 
 import time
+from functools import lru_cache
 from pathlib import Path
 
 from inhand_runtime.camera_infos import InfoWatch
@@ -50,11 +51,22 @@ def run(settings: Settings[RecorderSettings]) -> None:
         )
         if chosen.start_paused:
             journal.pause(time.time_ns())
-        for stream, size in queue_shares(chosen.streams, chosen.queue_bytes).items():
-            daemon.subscribe(TOPICS[stream], samples=QUEUE_SAMPLES, size=size)
+        _subscribe(daemon, chosen)
         desk = CommandDesk(daemon.instance)
         desk.open(daemon)
         _Recorder(daemon, journal, desk).run()
+
+
+def _subscribe(daemon: Daemon, chosen: RecorderSettings) -> None:
+    """Let what is chosen arrive."""
+    subscriptions = chosen.chosen.subscriptions()
+    wanted = lru_cache(MOST_KEYS)(chosen.chosen.holds)
+    streams = tuple(topic.stream for topic in subscriptions)
+    sizes = queue_shares(streams, chosen.queue_bytes)
+    for topic, names in subscriptions.items():
+        size = sizes[topic.stream] // len(names)
+        for name in names:
+            daemon.subscribe(topic, name, samples=QUEUE_SAMPLES, size=size, wanted=wanted)
 
 
 def queue_shares(streams: tuple[str, ...], queue_bytes: int) -> dict[str, int]:
