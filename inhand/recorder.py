@@ -25,6 +25,7 @@ HELP = {
     "pause": "make the file under way whole, and record nothing until resume",
     "resume": "record again",
     "split": "make the file under way whole, and begin another",
+    "snapshot": "make a clip of the last seconds, and of those after",
     "status": "say what is recorded",
 }
 
@@ -102,4 +103,8 @@ def _text(reply: RecorderReply) -> str:
         text = "records from the next message on"
     else:
         text = f"records into {state.file}, {state.file_bytes / 1e6:.1f} MB so far"
+    if state.ring_bytes:
+        text += f"; holds {state.ring_seconds:.1f} s, {state.ring_bytes / 1e6:.1f} MB"
+    if state.clip is not None:
+        text += f"; makes the clip {state.clip}"
     return text if reply.finished is None else f"{text}; {reply.finished} is whole"

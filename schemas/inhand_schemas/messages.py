@@ -280,11 +280,20 @@ class Latency(Struct, frozen=True, kw_only=True):
 class RecordingState(Struct, frozen=True, kw_only=True):
     """What a recorder does: whether it is ``paused``, and the name and size of the file that grows,
     if one does.
+
+    The last ``ring_seconds`` are held in ``ring_bytes`` of memory, and ``clip`` is the name of the
+    file that is made of them, while one is.
     """
 
     paused: bool = False
     file: Text | None = None
     file_bytes: Count = 0
+    ring_seconds: NonNegative = 0.0
+    ring_bytes: Count = 0
+    clip: Text | None = None
+
+    def __post_init__(self) -> None:
+        require_finite("time", (self.ring_seconds,))
 
 
 class Health(Message, frozen=True, kw_only=True):

@@ -183,9 +183,10 @@ RELOAD = Procedure("tracker", "reload", ReloadRequest, ReloadReply, "tracker")
 PAUSE = Procedure("recorder", "pause", RecorderRequest, RecorderReply, "recorder")
 RESUME = Procedure("recorder", "resume", RecorderRequest, RecorderReply, "recorder")
 SPLIT = Procedure("recorder", "split", RecorderRequest, RecorderReply, "recorder")
+SNAPSHOT = Procedure("recorder", "snapshot", RecorderRequest, RecorderReply, "recorder")
 STATUS = Procedure("recorder", "status", RecorderRequest, RecorderReply, "recorder")
 
-RECORDER_PROCEDURES = (PAUSE, RESUME, SPLIT, STATUS)
+RECORDER_PROCEDURES = (PAUSE, RESUME, SPLIT, SNAPSHOT, STATUS)
 PROCEDURES: tuple[Procedure[Any, Any], ...] = (
     SHUTTER,
     CONTROL,

@@ -47,3 +47,12 @@ def test_a_pattern_that_excludes_all_is_refused(tmp_path: Path) -> None:
 
 def test_nothing_is_excluded_without_a_word(tmp_path: Path) -> None:
     assert loaded(tmp_path, "").service.exclude == ()
+
+
+def test_events_make_clips_only_of_a_ring_and_where_they_are_recorded(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="ring_events needs ring_seconds"):
+        loaded(tmp_path, 'ring_events = ["fall"]')
+    with pytest.raises(SettingsError, match="ring_events needs the stream event"):
+        loaded(tmp_path, 'ring_seconds = 5\nring_events = ["fall"]\nexclude = ["event"]')
+    with pytest.raises(SettingsError, match=r"did you mean fall\?"):
+        loaded(tmp_path, 'ring_seconds = 5\nring_events = ["Fall"]')

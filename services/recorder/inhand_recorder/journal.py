@@ -7,15 +7,14 @@ import contextlib
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
-from datetime import UTC, datetime
 from pathlib import Path
 
 from inhand_runtime.recording import RecordingError
 from inhand_schemas.messages import RecordingState
 
+from inhand_recorder.file_names import free_path
 from inhand_recorder.recording_file import Entry, Limits, RecordingFile
 
-SUFFIX = ".mcap"
 PAUSES_RECORD = "pauses"
 """The name of the metadata record that says when a recorder was paused before or after a file."""
 
@@ -147,7 +146,7 @@ class Journal:
                 f"cannot create {self._folder}: {error.strerror}: bring its disk or folder back"
             ) from error
         try:
-            file = RecordingFile(self._free_path(now_ns), self._clock())
+            file = RecordingFile(free_path(self._folder, self._rig, now_ns), self._clock())
         except RecordingError as error:
             raise self._left_no_file(error) from error.__cause__
         with self._giving_up_on_failure(file):
@@ -187,14 +186,6 @@ class Journal:
             f"cannot write to {self._folder}: {error.__cause__.strerror}: make room or use another "
             "disk; until then what arrives waits in memory"
         )
-
-    def _free_path(self, now_ns: int) -> Path:
-        began = datetime.fromtimestamp(now_ns / 1e9, UTC).strftime("%Y%m%dT%H%M%SZ")
-        name, number = f"{self._rig}_{began}", 1
-        while any(self._folder.glob(f"{name}{SUFFIX}*")):
-            number += 1
-            name = f"{self._rig}_{began}_{number}"
-        return self._folder / f"{name}{SUFFIX}"
 
 
 def format_pauses(pauses: Mapping[int, int | None]) -> dict[str, str]:

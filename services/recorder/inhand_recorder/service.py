@@ -12,14 +12,16 @@ from inhand_runtime.settings import Settings
 from inhand_runtime.wording import counted
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.messages import RecordingState
-from inhand_schemas.procedures import PAUSE, RESUME, SPLIT, RecorderReply
+from inhand_schemas.procedures import PAUSE, RESUME, SNAPSHOT, SPLIT, RecorderReply
 from inhand_schemas.topics import RGBD, TOPICS, topic_of
+from msgspec.structs import replace
 
 from inhand_recorder.clock import ClockWatch
 from inhand_recorder.commands import CommandDesk
+from inhand_recorder.event_clips import EventClips, event_clips
 from inhand_recorder.gaps import GapReporter
 from inhand_recorder.journal import Journal
-from inhand_recorder.recording_file import Limits
+from inhand_recorder.recording_file import Entry, Limits
 from inhand_recorder.settings import RecorderSettings, check
 from inhand_recorder.stamps import entry_apart, entry_of
 
@@ -54,7 +56,7 @@ def run(settings: Settings[RecorderSettings]) -> None:
         _subscribe(daemon, chosen)
         desk = CommandDesk(daemon.instance)
         desk.open(daemon)
-        _Recorder(daemon, journal, desk).run()
+        _Recorder(daemon, journal, desk, event_clips(daemon, settings)).run()
 
 
 def _subscribe(daemon: Daemon, chosen: RecorderSettings) -> None:
@@ -80,10 +82,17 @@ def queue_shares(streams: tuple[str, ...], queue_bytes: int) -> dict[str, int]:
 
 
 class _Recorder:
-    def __init__(self, daemon: Daemon, journal: Journal, desk: CommandDesk) -> None:
+    def __init__(
+        self,
+        daemon: Daemon,
+        journal: Journal,
+        desk: CommandDesk,
+        clips: EventClips | None = None,
+    ) -> None:
         self._daemon = daemon
         self._journal = journal
         self._desk = desk
+        self._clips = clips
         self._gaps = GapReporter(daemon.health.error)
         self._keys: set[str] = set()
         self._clock = ClockWatch()
@@ -122,6 +131,8 @@ class _Recorder:
             sample = self._daemon.receive(IDLE_S)
             if sample is not None:
                 self._write(sample)
+            if self._clips is not None:
+                self._clips.clips.step(time.monotonic(), all_came=sample is None)
             if time.monotonic() >= next_sync:
                 if (step := self._clock.step()) is not None:
                     self._journal.note_clock_step(*step)
@@ -142,6 +153,10 @@ class _Recorder:
                 self._journal.resume(time.time_ns())
             elif verb == SPLIT.verb:
                 finished = self._journal.close()
+            elif verb == SNAPSHOT.verb and self._clips is None:
+                problem = "it holds no seconds to make a clip of: set ring_seconds in its settings"
+            elif verb == SNAPSHOT.verb and self._clips is not None:
+                self._clips.clips.trigger("snapshot", time.time_ns(), time.monotonic())
         except RecordingError as error:
             problem = str(error)
             self._daemon.health.error(problem)
@@ -155,6 +170,14 @@ class _Recorder:
     def _show_state(self) -> RecordingState:
         """Show in the health what the recorder does, and return it."""
         state = self._journal.state
+        if self._clips is not None:
+            clips = self._clips.clips
+            state = replace(
+                state,
+                ring_seconds=clips.ring.seconds,
+                ring_bytes=clips.ring.bytes,
+                clip=clips.under_way,
+            )
         self._daemon.health.recording = state
         return state
 
@@ -174,6 +197,8 @@ class _Recorder:
         while (sample := self._daemon.inbox.get(0)) is not None:
             self._write(sample)
         self._journal.close()
+        if self._clips is not None:
+            self._clips.clips.close(time.monotonic())
         self._gaps.report()
 
     def _write(self, sample: Received) -> None:
@@ -190,7 +215,7 @@ class _Recorder:
             entry = entry_of(sample)
         except (MessageError, KeyFormatError) as error:
             self._daemon.health.malformed(sample.key, error)
-            self._journal.write(entry_apart(sample))
+            self._keep(sample, entry_apart(sample))
             return
         counted = entry.sequence if topic.gaps_are_losses else None
         self._daemon.health.received(entry.key, counted)
@@ -199,6 +224,11 @@ class _Recorder:
         if counted is not None:
             self._gaps.count(entry.key, counted)
         self._infos.note(topic.stream, parsed.name, time.monotonic())
+        self._keep(sample, entry)
+
+    def _keep(self, sample: Received, entry: Entry) -> None:
+        if self._clips is not None:
+            self._clips.take(sample, entry)
         self._journal.write(entry)
 
     def _refuse_key(self, key: str) -> None:

@@ -6,10 +6,10 @@ from typing import Annotated, Self
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import FilePath, Section, Settings
 from inhand_runtime.writable import try_folder
-from inhand_schemas.topics import PREVIEW, TOPICS
+from inhand_schemas.topics import EVENT, PREVIEW, TOPICS
 from pydantic import AfterValidator, ByteSize, Field, model_validator
 
-from inhand_recorder.topic_patterns import Chosen, checked_patterns
+from inhand_recorder.topic_patterns import Chosen, checked_name, checked_patterns
 
 SMALLEST_SPLIT_BYTES = 1 << 20
 SMALLEST_SPLIT_S = 1.0
@@ -29,6 +29,10 @@ def _zero_or_a_second(seconds: float) -> float:
     return seconds
 
 
+def _checked_names(patterns: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(map(checked_name, patterns))
+
+
 class RecorderSettings(Section):
     """``[recorder.NAME]``.
 
@@ -39,6 +43,10 @@ class RecorderSettings(Section):
     are made only while somebody listens, and show less than the frames do. ``streams`` and
     ``exclude`` are patterns ``STREAM`` or ``STREAM/NAME``, in which ``*`` is any text. With
     ``start_paused`` it records nothing until it is asked to resume.
+
+    The last ``ring_seconds`` are held in memory, in ``ring_bytes`` at the most; 0 seconds is none.
+    A snapshot, or an event whose name or kind one of ``ring_events`` matches, makes a clip of them
+    and of the ``after_seconds``.
     """
 
     folder: FilePath = Field(default=Path("recordings"), validate_default=True)
@@ -52,6 +60,10 @@ class RecorderSettings(Section):
     ] = SPLIT_S
     queue_bytes: Annotated[ByteSize, Field(ge=1 << 20)] = ByteSize(256 << 20)
     start_paused: bool = False
+    ring_seconds: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    ring_bytes: Annotated[ByteSize, Field(ge=1 << 20)] = ByteSize(256 << 20)
+    after_seconds: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 5.0
+    ring_events: Annotated[tuple[str, ...], AfterValidator(_checked_names)] = ()
 
     @property
     def chosen(self) -> Chosen:
@@ -62,6 +74,10 @@ class RecorderSettings(Section):
     def _fits(self) -> Self:
         if not self.chosen.subscriptions():
             raise ValueError("exclude leaves out all that streams names: nothing would be recorded")
+        if self.ring_events and not self.ring_seconds:
+            raise ValueError("ring_events needs ring_seconds, how many seconds before are kept")
+        if self.ring_events and EVENT not in self.chosen.subscriptions():
+            raise ValueError("ring_events needs the stream event, which is not recorded")
         return self
 
 
