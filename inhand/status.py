@@ -12,6 +12,7 @@ from typing import Any
 import msgspec
 from inhand_runtime.exit_codes import DONE, FAILED
 from inhand_runtime.health_lines import (
+    deleted_recordings,
     late_lines,
     left_unused,
     shown_state,
@@ -53,6 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
     living = state.living
     for line in (
         *stilled_instances(living),
+        *deleted_recordings(living),
         *left_unused(living),
         *late_lines(living),
     ):

@@ -282,7 +282,9 @@ class RecordingState(Struct, frozen=True, kw_only=True):
     if one does.
 
     The last ``ring_seconds`` are held in ``ring_bytes`` of memory, and ``clip`` is the name of the
-    file that is made of them, while one is.
+    file that is made of them, while one is. All recordings of its folder take ``folder_bytes``,
+    ``free_bytes`` of the disk are free, and ``deleted`` is how many recordings its quotas have
+    deleted since it started.
     """
 
     paused: bool = False
@@ -291,6 +293,9 @@ class RecordingState(Struct, frozen=True, kw_only=True):
     ring_seconds: NonNegative = 0.0
     ring_bytes: Count = 0
     clip: Text | None = None
+    folder_bytes: Count = 0
+    free_bytes: Count = 0
+    deleted: Count = 0
 
     def __post_init__(self) -> None:
         require_finite("time", (self.ring_seconds,))

@@ -56,3 +56,10 @@ def test_events_make_clips_only_of_a_ring_and_where_they_are_recorded(tmp_path: 
         loaded(tmp_path, 'ring_seconds = 5\nring_events = ["fall"]\nexclude = ["event"]')
     with pytest.raises(SettingsError, match=r"did you mean fall\?"):
         loaded(tmp_path, 'ring_seconds = 5\nring_events = ["Fall"]')
+
+
+def test_quotas_that_cannot_be_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="needs free_bytes, how much of the disk stays free"):
+        loaded(tmp_path, 'when_full = "delete-oldest"')
+    with pytest.raises(SettingsError, match="4 MiB must be kept at least"):
+        loaded(tmp_path, 'keep_bytes = "1 MiB"')

@@ -130,6 +130,19 @@ PAUSED = replace(
     effort=None,
     recording=RecordingState(paused=True, file="rig_20261129T201800Z.mcap", file_bytes=1 << 20),
 )
+KEEPING = replace(
+    PAUSED,
+    recording=RecordingState(
+        file="rig_20261129T201800Z.mcap",
+        file_bytes=1 << 20,
+        ring_seconds=29.5,
+        ring_bytes=1 << 27,
+        clip="rig_20261129T201801Z.mcap",
+        folder_bytes=1 << 33,
+        free_bytes=1 << 34,
+        deleted=3,
+    ),
+)
 REFUSED = replace(LATE, topics={"(other keys)": TopicHealth(refused=12)})
 
 PNG = RgbdFrame(
@@ -163,6 +176,7 @@ NAMED = Skeletons(sequence=12, time_ns=TIME_NS, people=(PERSON,), convention="az
 
 GOLDEN_MESSAGES: dict[str, Message] = {
     **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
+    "Health.v1.keeping": KEEPING,
     "Health.v1.late": LATE,
     "Health.v1.paused": PAUSED,
     "Health.v1.refused": REFUSED,

@@ -2,14 +2,14 @@
 
 import logging
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from inhand_runtime.recording import RecordingError
 
 from inhand_recorder.file_names import free_path
-from inhand_recorder.recording_file import Entry, RecordingFile
+from inhand_recorder.recording_file import PLAIN_FILES, Entry, FileHandling, RecordingFile
 from inhand_recorder.ring import Ring, RingBounds
 
 log = logging.getLogger(__name__)
@@ -30,11 +30,13 @@ RETRY_S = 2.0
 
 @dataclass(frozen=True)
 class ClipsFolder:
-    """Where clips go, of which rig they are, and how many seconds after a trigger they end."""
+    """Where clips go, of which rig they are, how many seconds after a trigger they end, and what
+    is the same for all files."""
 
     path: Path
     rig: str
     after_s: float
+    files: FileHandling = PLAIN_FILES
 
 
 @dataclass
@@ -156,9 +158,9 @@ class Clips:
             clip.path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise RecordingError(f"cannot create {clip.path.parent}: {error.strerror}") from error
-        file = RecordingFile(clip.path, 0.0)
+        file = RecordingFile(clip.path, 0.0, self._folder.files.make_room)
         try:
-            file.note(CLIP_RECORD, _triggers(clip))
+            file.note_all(self._records(clip))
             for entry in self._kept_before.values():
                 file.repeat(entry, received_ns)
         except RecordingError:
@@ -169,7 +171,7 @@ class Clips:
     def _finish(self, clip: _Clip, now: float) -> None:
         if clip.file is not None:
             try:
-                clip.file.note(CLIP_RECORD, _triggers(clip))
+                clip.file.note_all(self._records(clip))
                 path = clip.file.finish({})
             except RecordingError as error:
                 self._fail(clip, error, now)
@@ -178,6 +180,10 @@ class Clips:
             self._report(None)
         self._clip = None
 
+    def _records(self, clip: _Clip) -> Mapping[str, Mapping[str, str]]:
+        triggers = {str(at_ns): why for at_ns, why in clip.triggers.items()}
+        return {**self._folder.files.records(), CLIP_RECORD: triggers}
+
     def _fail(self, clip: _Clip, error: RecordingError, now: float) -> None:
         """Remove what there is of the file, and begin anew in a while."""
         if clip.file is not None:
@@ -185,7 +191,3 @@ class Clips:
         clip.file, clip.unsynced = None, 0
         clip.next, clip.retry_at = self.ring.first, now + RETRY_S
         self._report(f"clip: {error}")
-
-
-def _triggers(clip: _Clip) -> dict[str, str]:
-    return {str(at_ns): why for at_ns, why in clip.triggers.items()}

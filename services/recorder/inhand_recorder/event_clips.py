@@ -9,7 +9,7 @@ from inhand_runtime.settings import Settings
 from inhand_schemas.topics import EVENT, topic_of
 
 from inhand_recorder.clips import CLIPS_FOLDER, Clips, ClipsFolder
-from inhand_recorder.recording_file import Entry
+from inhand_recorder.recording_file import Entry, FileHandling
 from inhand_recorder.ring import RingBounds
 from inhand_recorder.settings import RecorderSettings
 
@@ -39,7 +39,9 @@ class EventClips:
         return f"event {kind}" if kind == parsed.name else f"event {kind} of {parsed.name}"
 
 
-def event_clips(daemon: Daemon, settings: Settings[RecorderSettings]) -> EventClips | None:
+def event_clips(
+    daemon: Daemon, settings: Settings[RecorderSettings], files: FileHandling
+) -> EventClips | None:
     """What makes clips; None where no ring is wanted."""
     chosen = settings.service
     if not chosen.ring_seconds:
@@ -52,6 +54,6 @@ def event_clips(daemon: Daemon, settings: Settings[RecorderSettings]) -> EventCl
             daemon.health.trouble("clip", problem)
 
     path = chosen.folder / CLIPS_FOLDER
-    folder = ClipsFolder(path, settings.site.rig, chosen.after_seconds)
+    folder = ClipsFolder(path, settings.site.rig, chosen.after_seconds, files)
     clips = Clips(folder, RingBounds(chosen.ring_seconds, chosen.ring_bytes), report)
     return EventClips(clips, chosen.ring_events, daemon.instance)

@@ -13,7 +13,7 @@ from inhand_runtime.recording import RecordingError
 from inhand_schemas.messages import RecordingState
 
 from inhand_recorder.file_names import free_path
-from inhand_recorder.recording_file import Entry, Limits, RecordingFile
+from inhand_recorder.recording_file import PLAIN_FILES, Entry, FileHandling, Limits, RecordingFile
 
 PAUSES_RECORD = "pauses"
 """The name of the metadata record that says when a recorder was paused before or after a file."""
@@ -25,7 +25,7 @@ class Journal:
     ``write``, ``sync`` and ``close`` raise RecordingError; the next call then begins another
     file, and ``waiting`` entries go into it. ``dropped`` says how many messages of each key were
     lost so far in a queue before the journal. How long a file lasts is measured by the ``clock``,
-    in seconds, which nobody sets.
+    in seconds, which nobody sets. ``files`` says what is the same for all files.
 
     A pause makes the file whole. It and the next one note the pause, so that nobody takes what is
     missing between them for lost.
@@ -38,12 +38,16 @@ class Journal:
         limits: Limits,
         dropped: Callable[[], Mapping[str, int]],
         clock: Callable[[], float] = time.monotonic,
+        files: FileHandling = PLAIN_FILES,
     ) -> None:
         self._folder = folder
         self._rig = rig
         self._limits = limits
         self._dropped = dropped
         self._clock = clock
+        self._handling = files
+        self.file_limit = 0
+        """Bytes after which a file is finished, beside the limits; 0 is never."""
         self._dropped_before: Mapping[str, int] = {}
         self._waiting: deque[Entry] = deque()
         self._kept: dict[str, Entry] = {}
@@ -132,11 +136,15 @@ class Journal:
             self._kept[entry.key] = entry
 
     def _file_at(self, now_ns: int) -> RecordingFile:
-        if self._file is not None and self._file.full(self._limits, self._clock()):
+        if self._file is not None and self._is_full(self._file):
             self._finish(self._file)
         if self._file is None:
             self._file = self._begin(now_ns)
         return self._file
+
+    def _is_full(self, file: RecordingFile) -> bool:
+        beyond = 0 < self.file_limit <= file.bytes_written
+        return beyond or file.full(self._limits, self._clock())
 
     def _begin(self, now_ns: int) -> RecordingFile:
         try:
@@ -146,10 +154,12 @@ class Journal:
                 f"cannot create {self._folder}: {error.strerror}: bring its disk or folder back"
             ) from error
         try:
-            file = RecordingFile(free_path(self._folder, self._rig, now_ns), self._clock())
+            path = free_path(self._folder, self._rig, now_ns)
+            file = RecordingFile(path, self._clock(), self._handling.make_room)
         except RecordingError as error:
             raise self._left_no_file(error) from error.__cause__
         with self._giving_up_on_failure(file):
+            file.note_all(self._handling.records())
             if self._pauses:
                 file.note(PAUSES_RECORD, format_pauses(self._pauses))
             for entry in self._kept.values():
@@ -160,6 +170,7 @@ class Journal:
     def _finish(self, file: RecordingFile) -> Path:
         dropped = Counter(self._dropped())
         with self._giving_up_on_failure(file):
+            file.note_all(self._handling.records())
             if self.paused:
                 file.note(PAUSES_RECORD, format_pauses(self._pauses))
             path = file.finish(dropped - Counter(self._dropped_before))

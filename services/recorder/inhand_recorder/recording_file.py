@@ -1,12 +1,12 @@
 """One file under way: what it holds, what of it stands only in memory, and when it is full."""
 
 import contextlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from inhand_runtime.recording import RecordingError, RecordingWriter
-from inhand_runtime.recording.part_file import PART_SUFFIX
+from inhand_runtime.recording.part_file import PART_SUFFIX, no_room
 
 from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
@@ -37,6 +37,19 @@ class Limits:
     split_seconds: float = 0.0
 
 
+@dataclass(frozen=True)
+class FileHandling:
+    """What is the same for all files of a recorder: the named records with which each begins, and
+    ends where they are others by then; and what makes room on a full disk, where it can."""
+
+    records: Callable[[], Mapping[str, Mapping[str, str]]] = dict
+    make_room: Callable[[], bool] = no_room
+
+
+PLAIN_FILES = FileHandling()
+"""Files without records of their own, that fail on a full disk."""
+
+
 class RecordingFile:
     """Writes entries and counts losses.
 
@@ -44,16 +57,19 @@ class RecordingFile:
     It is ``worth_keeping`` as soon as the disk holds an entry that memory does not.
     """
 
-    def __init__(self, path: Path, opened_s: float) -> None:
+    def __init__(
+        self, path: Path, opened_s: float, make_room: Callable[[], bool] = no_room
+    ) -> None:
         self.path = path
         self._part = path.with_name(path.name + PART_SUFFIX)
         self._opened_s = opened_s
         self._clock_steps: dict[int, int] = {}
         self._losses = LossCounter()
         self._in_memory: list[Entry] = []
+        self._noted: dict[str, dict[str, str]] = {}
         self.worth_keeping = False
         try:
-            self._writer = RecordingWriter(path)
+            self._writer = RecordingWriter(path, make_room=make_room)
         except RecordingError as error:
             if isinstance(error.__cause__, OSError):
                 self._remove_part()
@@ -78,6 +94,13 @@ class RecordingFile:
     def note(self, name: str, values: Mapping[str, str]) -> None:
         """Write a named record about the recording; a later one of that name replaces it."""
         self._writer.add_metadata(name, values)
+
+    def note_all(self, records: Mapping[str, Mapping[str, str]]) -> None:
+        """Write those of the named records that do not stand in the file yet."""
+        for name, values in records.items():
+            if self._noted.get(name) != values:
+                self.note(name, values)
+                self._noted[name] = dict(values)
 
     def repeat(self, entry: Entry, received_ns: int) -> None:
         """Add an entry of before this file, as if it were received with the file's first one."""

@@ -41,6 +41,16 @@ def stilled_instances(living: dict[Instance, Heard | None]) -> list[str]:
     return lines
 
 
+def deleted_recordings(living: dict[Instance, Heard | None]) -> list[str]:
+    """One line for each recorder whose quotas have deleted recordings since it started."""
+    return [
+        f"{' '.join(instance)}: its quotas have deleted "
+        f"{counted(heard.health.recording.deleted, 'recording')} since it started"
+        for instance, heard in living.items()
+        if heard is not None and heard.health.recording and heard.health.recording.deleted
+    ]
+
+
 def shown_state(health: Health) -> str:
     """The state of an instance in a word: what somebody wants of it goes before how it is."""
     if health.shutter_closed:

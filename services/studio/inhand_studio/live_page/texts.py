@@ -4,6 +4,7 @@ import time
 from collections.abc import Sequence
 
 from inhand_runtime.health_lines import (
+    deleted_recordings,
     late_lines,
     left_unused,
     shown_state,
@@ -43,6 +44,7 @@ def processes_html(roll: Roll) -> str:
     table = table_html(("process", "state", "ms", "msg/s", "MB", "unused"), rows)
     notes = [
         *stilled_instances(living),
+        *deleted_recordings(living),
         *left_unused(living),
         *late_lines(living),
     ]
