@@ -11,6 +11,7 @@ from inhand_recorder.settings import RecorderSettings, check
 from inhand_runtime.entry import daemon_main
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED
+from inhand_runtime.roll import short_key
 from inhand_runtime.settings import RigFile, load_rig_file
 from inhand_runtime.settings_errors import suggestion
 from inhand_runtime.writable import require_writable_file
@@ -71,6 +72,11 @@ def _ask(arguments: argparse.Namespace) -> int:
             raise nothing_heard(look.site, arguments.seconds)
     for name, reply in sorted(replies.items()):
         print(f"{name}: {_text(reply)}")
+        for key, kinds in reply.losses.items():
+            print(
+                f"{name}, {short_key(key)}: {kinds.transport} never came, {kinds.queue} came too "
+                f"fast, {kinds.disk} could not be written"
+            )
     problems = [
         *(f"{name}: {reply.problem}" for name, reply in sorted(replies.items()) if reply.problem),
         *(f"{name} does not answer: {UNREACHED}" for name in expected if name not in replies),

@@ -252,6 +252,7 @@ class TopicHealth(Struct, frozen=True, kw_only=True):
     ``dropped`` reached the instance and was too late or too much to be used, ``refused`` is what it
     does not take at all, ``lost`` is what the numbers of those that came show as missing.
     ``late_ms`` is the longest time, in milliseconds, from capture to arrival since the last report.
+    ``unwritten`` is how many of those dropped a recorder's disk could not take.
     """
 
     published: Count = 0
@@ -262,6 +263,7 @@ class TopicHealth(Struct, frozen=True, kw_only=True):
     lost: Count = 0
     late_ms: NonNegative | None = None
     refused: Count = 0
+    unwritten: Count = 0
 
     def __post_init__(self) -> None:
         require_finite("rate", (self.rate_hz, self.late_ms or 0.0))

@@ -112,12 +112,23 @@ class RecorderRequest(Struct, frozen=True, kw_only=True):
     recorder: Name | None = None
 
 
+class KindsOfLoss(Struct, frozen=True, kw_only=True):
+    """How many messages of a key are missing in recordings, since the recorder started: never came
+    (``transport``), came too fast (``queue``), or the ``disk`` could not take them."""
+
+    transport: Count = 0
+    queue: Count = 0
+    disk: Count = 0
+
+
 class RecorderReply(Struct, frozen=True, kw_only=True):
     """What a recorder does from now on; ``finished`` is the name of the file that a pause or a
-    split has made whole, and ``problem`` is why a request was not done."""
+    split has made whole, and ``problem`` is why a request was not done. ``losses`` are by key, of
+    those that have any."""
 
     recorder: Name
     recording: RecordingState
+    losses: Annotated[dict[str, KindsOfLoss], Meta(max_length=4096)] = {}
     finished: Text | None = None
     problem: Text | None = None
 

@@ -38,7 +38,7 @@ EVERYBODY = tuple(PEOPLE)
 PERMITTED = {
     "front": {"info/front", "rgbd/front", "skeletons/front", "preview/front", "health/front"},
     "mug": {"pose/mug", "health/mug"},
-    "disk": {"health/disk"},
+    "disk": {"event/disk", "health/disk"},
     "desk": {"health/desk"},
     "anna": set[str](),
 }

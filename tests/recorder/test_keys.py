@@ -1,7 +1,5 @@
 """A sender that invents ever new keys fills no file's channels, and is told."""
 
-import threading
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
@@ -15,36 +13,20 @@ from inhand_recorder.recording_file import Limits
 from inhand_recorder.recording_loop import RecorderParts, RecordingLoop
 from inhand_recorder.retention import Retention
 from inhand_recorder.settings import RecorderSettings
-from inhand_runtime.health import HealthBoard
-from inhand_runtime.inbox import Inbox, Received
+from inhand_runtime.inbox import Received
 from inhand_runtime.recording import read_recording
 from inhand_runtime.settings import load_settings
 from inhand_schemas.keys import Site
 from inhand_schemas.topics import POSE
 from recordings import START_NS, frame_messages
-
-
-@dataclass
-class Daemon:
-    """What the recorder needs of its daemon; it stops when all was read."""
-
-    instance: str = "disk"
-    health: HealthBoard = field(default_factory=lambda: HealthBoard("recorder", "disk"))
-    inbox: Inbox = field(default_factory=Inbox)
-    stop: threading.Event = field(default_factory=threading.Event)
-
-    def receive(self, _timeout_s: float) -> Received | None:
-        sample = self.inbox.get(0)
-        if sample is None:
-            self.stop.set()
-        return sample
+from unread_daemon import EndingDaemon
 
 
 def test_keys_beyond_the_bound_are_counted_and_the_others_recorded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(recording_loop, "MOST_KEYS", 5)
-    daemon = Daemon()
+    daemon = EndingDaemon()
     lane = daemon.inbox.lane(samples=100, on_drop=daemon.health.dropped)
     payload = frame_messages(0, 1)[2][2]
     for number in range(8):

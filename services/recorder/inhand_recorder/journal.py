@@ -48,7 +48,8 @@ class Journal:
         self._handling = files
         self.file_limit = 0
         """Bytes after which a file is finished, beside the limits; 0 is never."""
-        self._dropped_before: Mapping[str, int] = {}
+        self._dropped_before: Counter[str] = Counter()
+        self._unwritten_before: Counter[str] = Counter()
         self._waiting: deque[Entry] = deque()
         self._kept: dict[str, Entry] = {}
         self._file: RecordingFile | None = None
@@ -97,6 +98,7 @@ class Journal:
             self._pauses = {self._paused_since_ns: at_ns}
             self._paused_since_ns = None
             self._dropped_before = Counter(self._dropped())
+            self._unwritten_before = Counter(self._handling.unwritten())
 
     def note_clock_step(self, at_ns: int, step_ns: int) -> None:
         """Write into the file that the wall clock was set, and by how much, in nanoseconds."""
@@ -168,13 +170,13 @@ class Journal:
         return file
 
     def _finish(self, file: RecordingFile) -> Path:
-        dropped = Counter(self._dropped())
+        dropped, unwritten = Counter(self._dropped()), Counter(self._handling.unwritten())
         with self._giving_up_on_failure(file):
             file.note_all(self._handling.records())
             if self.paused:
                 file.note(PAUSES_RECORD, format_pauses(self._pauses))
-            path = file.finish(dropped - Counter(self._dropped_before))
-        self._dropped_before = dropped
+            path = file.finish(dropped - self._dropped_before, unwritten - self._unwritten_before)
+        self._dropped_before, self._unwritten_before = dropped, unwritten
         self._pauses = {}
         self._file = None
         return path

@@ -40,10 +40,12 @@ class Limits:
 @dataclass(frozen=True)
 class FileHandling:
     """What is the same for all files of a recorder: the named records with which each begins, and
-    ends where they are others by then; and what makes room on a full disk, where it can."""
+    ends where they are others by then; what makes room on a full disk, where it can; and how many
+    messages of each key the disk was to blame for so far."""
 
     records: Callable[[], Mapping[str, Mapping[str, str]]] = dict
     make_room: Callable[[], bool] = no_room
+    unwritten: Callable[[], Mapping[str, int]] = dict
 
 
 PLAIN_FILES = FileHandling()
@@ -129,9 +131,13 @@ class RecordingFile:
             ) from error
         self._in_memory.clear()
 
-    def finish(self, dropped: Mapping[str, int]) -> Path:
-        """Write the losses (with the drops of a queue by key) and give the file its name."""
-        self._writer.add_metadata(LOSSES_RECORD, format_losses(self._losses.losses(dropped)))
+    def finish(
+        self, dropped: Mapping[str, int], unwritten: Mapping[str, int] | None = None
+    ) -> Path:
+        """Write the losses (with the drops of a queue by key, and those for which the disk was to
+        blame) and give the file its name."""
+        losses = self._losses.losses(dropped, unwritten)
+        self._writer.add_metadata(LOSSES_RECORD, format_losses(losses))
         return self._writer.close()
 
     def give_up(self) -> list[Entry]:

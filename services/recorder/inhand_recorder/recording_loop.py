@@ -11,13 +11,14 @@ from inhand_runtime.recording import RecordingError
 from inhand_runtime.wording import counted
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.messages import RecordingState
-from inhand_schemas.procedures import PAUSE, RESUME, SNAPSHOT, SPLIT, RecorderReply
+from inhand_schemas.procedures import PAUSE, RESUME, SNAPSHOT, SPLIT, KindsOfLoss, RecorderReply
 from inhand_schemas.topics import HEALTH, topic_of
 from msgspec.structs import replace
 
 from inhand_recorder.announcing import Announcer
 from inhand_recorder.clock import ClockWatch
 from inhand_recorder.commands import CommandDesk
+from inhand_recorder.drop_causes import DropCauses
 from inhand_recorder.event_clips import EventClips
 from inhand_recorder.gaps import GapReporter
 from inhand_recorder.journal import Journal
@@ -61,6 +62,7 @@ class RecordingLoop:
         self._keys: set[str] = set()
         self._clock = ClockWatch()
         self._infos = InfoWatch(daemon.health)
+        self._drops = DropCauses(daemon.health.drops, daemon.health.unwritten)
         self._stopped = False
         self._next_tidy = 0.0
 
@@ -99,11 +101,15 @@ class RecordingLoop:
         self._show_state()
 
     def _wait(self, seconds: float) -> None:
+        """Wait while the disk takes nothing: what is dropped meanwhile is its fault."""
+        self._drops.note(disk_failed=False)
         end = time.monotonic() + seconds
         while (rest := end - time.monotonic()) > 0.0:
             self._daemon.health.came_round()
             self._parts.desk.serve(self._do)
-            if self._daemon.stop.wait(min(rest, IDLE_S)):
+            stops = self._daemon.stop.wait(min(rest, IDLE_S))
+            self._drops.note(disk_failed=True)
+            if stops:
                 return
 
     def _write_until_stopped(self) -> None:
@@ -131,6 +137,7 @@ class RecordingLoop:
         self._journal.sync()
         self._tidy()
         self._require_room()
+        self._drops.note(disk_failed=False)
         self._gaps.report()
         self._infos.check(time.monotonic())
         self._show_state()
@@ -176,9 +183,23 @@ class RecordingLoop:
         return RecorderReply(
             recorder=self._daemon.instance,
             recording=self._show_state(),
+            losses=self._losses(),
             finished=None if finished is None else finished.name,
             problem=problem,
         )
+
+    def _losses(self) -> dict[str, KindsOfLoss]:
+        """What is missing in recordings, by key and kind."""
+        health = self._daemon.health
+        lost, dropped, unwritten = health.lost_counts(), health.drops(), health.unwritten_counts()
+        return {
+            key: KindsOfLoss(
+                transport=lost.get(key, 0),
+                queue=dropped.get(key, 0) - unwritten.get(key, 0),
+                disk=unwritten.get(key, 0),
+            )
+            for key in sorted(lost.keys() | dropped.keys())
+        }
 
     def _show_state(self) -> RecordingState:
         """Show in the health what the recorder does, and return it."""
@@ -267,8 +288,8 @@ class RecordingLoop:
         while (sample := self._daemon.inbox.get(0)) is not None:
             left[sample.key] += 1
         for key, messages in left.items():
-            for _ in range(messages):
-                self._daemon.health.dropped(key)
+            self._daemon.health.dropped(key, messages)
+            self._daemon.health.unwritten(key, messages)
         if left:
             self._daemon.health.error(
                 f"could not be written any more: {counted(left.total(), 'message')}"

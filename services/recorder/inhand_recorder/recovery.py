@@ -105,6 +105,7 @@ class _Rescue:
         self.faults = FaultLedger({number: one.topic for number, one in by_number.items()})
         self._counter = LossCounter()
         self._dropped: dict[str, int] = {}
+        self._unwritten: dict[str, int] = {}
         self.found: set[str] = set()
         self.messages = 0
         self.skipped_bytes = 0
@@ -125,7 +126,7 @@ class _Rescue:
                 self.faults.note(record, UNCHECKED)
 
     def finish(self, source: Path) -> None:
-        losses = self._counter.losses(self._dropped)
+        losses = self._counter.losses(self._dropped, self._unwritten)
         self._writer.add_metadata(LOSSES_RECORD, format_losses(losses))
         origin = {
             "source": source.name,
@@ -174,6 +175,7 @@ class _Rescue:
         with suppress(ValueError):
             written = parse_losses(record.metadata)
             self._dropped = {key: losses.dropped for key, losses in written.items()}
+            self._unwritten = {key: losses.unwritten for key, losses in written.items()}
 
 
 def _known(path: Path, by_number: dict[int, Channel]) -> dict[int, tuple[str, AnyTopic]]:

@@ -108,7 +108,8 @@ def left_unused(living: dict[Instance, Heard | None]) -> list[str]:
 def _reasons(topics: Sequence[TopicHealth]) -> str:
     """Why messages of these keys were not used, and how many for each reason."""
     counts = (
-        (sum(topic.dropped for topic in topics), "came too late or too fast"),
+        (sum(topic.dropped - topic.unwritten for topic in topics), "came too late or too fast"),
+        (sum(topic.unwritten for topic in topics), "could not be written to the disk"),
         (sum(topic.refused for topic in topics), "came on more keys than are recorded"),
         (sum(topic.malformed for topic in topics), "could not be read"),
         (sum(topic.lost for topic in topics), "never came"),
