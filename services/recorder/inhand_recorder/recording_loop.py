@@ -29,7 +29,7 @@ from inhand_recorder.stamps import entry_apart, entry_of
 
 SYNC_PERIOD_S = 0.75
 """A crash loses this much and what a sync takes itself: a second at the most."""
-TIDY_PERIOD_S = 2.0
+TIDY_PERIOD_S = 5.0
 IDLE_S = 0.1
 FIRST_RETRY_S, LAST_RETRY_S = 1.0, 5.0
 MOST_KEYS = 10_000

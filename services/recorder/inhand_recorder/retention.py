@@ -84,12 +84,11 @@ class Retention:
         floor = self._quotas.free_bytes
         if not floor or self._quotas.when_full != "stop":
             return None
-        free = self.free_bytes
-        if free >= floor * (ROOM_TO_RESUME if stopped else 1.0):
+        if self.free_bytes >= floor * (ROOM_TO_RESUME if stopped else 1.0):
             return None
         return (
-            f"{_size(free)} of the disk of {self._folder} are free, and {_size(floor)} shall stay "
-            "so (free_bytes): make room; until then what arrives waits in memory"
+            f"less than {_size(floor)} of the disk of {self._folder} are free (free_bytes): make "
+            "room; until then what arrives waits in memory"
         )
 
     def short(self) -> bool:
@@ -109,14 +108,14 @@ class Retention:
         """Why a quota is not held, though nothing is left to delete."""
         if self._quotas.keep_bytes and self.folder_bytes > self._quotas.keep_bytes:
             return (
-                f"files in {self._folder} take {_size(self.folder_bytes)}, more than keep_bytes, "
-                "and no other may be deleted: recover or move away what is left of crashes, and "
-                "what others have put there"
+                f"files in {self._folder} take more than {_size(self._quotas.keep_bytes)} "
+                "(keep_bytes), and no other may be deleted: recover or move away what is left of "
+                "crashes, and what others have put there"
             )
         if self.short():
             return (
-                f"{_size(self.free_bytes)} of the disk of {self._folder} are free, less than "
-                "free_bytes, and no recording is left to delete: make room"
+                f"less than {_size(self._quotas.free_bytes)} of the disk of {self._folder} are "
+                "free (free_bytes), and no recording is left to delete: make room"
             )
         return None
 
