@@ -42,7 +42,7 @@ VERBS = {
     "bench": "measure tracker, training, transport, hub, skeletons, objects, labels, likelihood, "
     "constants, ablation",
     "models": "get the networks that find people in images: fetch",
-    "recording": "info, verify, recover, repair and complete recordings",
+    "recording": "info, verify, recover, repair, complete, convert, export and import recordings",
     "topics": "list what a running site publishes",
     "echo": "print messages",
     "rate": "measure rates, gaps and sizes",

@@ -32,6 +32,7 @@ from inhand_lab.benchmarks.parameters import (
     DEFAULT_COMPARISON,
     DEFAULT_FRAME_COST,
     DEFAULT_HUB_COST,
+    DEFAULT_RECORDER_COST,
     DEFAULT_TRAINING_COST,
     DEFAULT_TRANSPORT,
 )
@@ -48,6 +49,12 @@ from rich.console import Console, Group, RenderableType
 
 from inhand.bench_hub import rigs_table, running_routers, security_table
 from inhand.bench_label_tables import labels_table
+from inhand.bench_recorder import (
+    measure_recorder,
+    recorder_steps,
+    recorders_table,
+    writers_table,
+)
 from inhand.bench_skeleton_tables import actions_table, costs_table, joints_table, rules_table
 from inhand.bench_tables import (
     ablation_table,
@@ -241,6 +248,12 @@ def _hub(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     return Group(rigs_table(costs), security_table(costs)), {**asdict(costs), "security": security}
 
 
+def _recorder(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    with progress_bar("measuring", recorder_steps(DEFAULT_RECORDER_COST)) as advance:
+        costs = measure_recorder(advance, DEFAULT_RECORDER_COST)
+    return Group(writers_table(costs), recorders_table(costs)), asdict(costs)
+
+
 def _labels(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     dataset = load_dataset(arguments.source)
     recordings = sum(map(len, chosen_entries(dataset).values()))
@@ -280,6 +293,7 @@ SUBJECTS_HELP = {
     "likelihood": "where its optimum is beside the truth, on rendered objects; or how true poses "
     "score, and refine, on real frames of YCB-Video",
     "objects": "new objects, by measures and by the camera, beside the true meshes",
+    "recorder": "writing recordings beside other writers, and what a recorder takes",
     "skeletons": "skeletons from images: found people, joints' errors, and what a frame costs",
     "tracker": "poses weighed in a second, and what a frame costs, by itself or against other code",
     "training": "time and memory of training by its size",
@@ -296,6 +310,7 @@ SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "labels": _labels,
     "likelihood": _likelihood,
     "objects": _objects,
+    "recorder": _recorder,
     "skeletons": _skeletons,
     "tracker": _tracker,
     "training": _training,

@@ -17,6 +17,9 @@ from inhand_runtime.wording import counted
 from rich.table import Table
 
 from inhand.looking import output
+from inhand.recording_convert import add_action as add_convert_action
+from inhand.recording_export import add_action as add_export_action
+from inhand.recording_import import add_action as add_import_action
 from inhand.results import listing, write_json
 
 RECOVERED_SUFFIX = ".recovered.mcap"
@@ -48,6 +51,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             action.add_argument(
                 "-o", "--output", type=Path, metavar="OUT", help="the file to write (of one FILE)"
             )
+
+    add_convert_action(actions)
+    add_export_action(actions)
+    add_import_action(actions)
 
 
 def _add_skeleton_arguments(action: argparse.ArgumentParser) -> None:

@@ -5,6 +5,7 @@ or two publish the same.
 """
 
 import argparse
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,9 +22,9 @@ from inhand_runtime.health_lines import (
 )
 from inhand_runtime.roll import Heard, Instance, Roll
 from inhand_runtime.settings import SERVICES, load_rig_file
+from inhand_runtime.wording import printable
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.topics import HEALTH
-from rich.console import Console
 from rich.table import Table
 
 from inhand.instances import problems
@@ -102,12 +103,15 @@ def expected_instances(config: Path | None) -> tuple[Instance, ...]:
 
 
 def _listen(look: Look, roll: Roll, expected: tuple[Instance, ...], seconds: float | None) -> None:
+    remarks: set[str] = set()
     for sample in look.samples(seconds):
         if sample is not None:
             try:
-                roll.hear(HEALTH.decode(sample.payload, sample.encoding))
+                roll.hear(HEALTH.received(sample.key, sample.payload, sample.encoding))
             except (MessageError, KeyFormatError) as error:
-                Console(stderr=True).print(f"{sample.key}: {error}", soft_wrap=True)
+                if (remark := printable(f"{sample.key}: {error}")) not in remarks:
+                    remarks.add(remark)
+                    print(remark, file=sys.stderr)
         if roll.settled(expected):
             return
 

@@ -10,6 +10,7 @@ from inhand_capture.settings import CaptureSettings
 from inhand_recorder.settings import RecorderSettings
 from inhand_tracker.settings import TrackerSettings
 from running_rig import ROOT, RunningRig
+from small_rig import write_rig
 
 from inhand.__main__ import main
 
@@ -85,3 +86,20 @@ def test_the_reader_of_formats_md_prints_poses_and_ends(rig: RunningRig) -> None
     lines = reader.stdout.splitlines()
     assert len(lines) == 10
     assert all(line.startswith("mug ") for line in lines)
+
+
+def test_the_programs_of_reading_md_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_rig(tmp_path / "recordings" / "a.mcap")
+    write_rig(tmp_path / "recordings" / "b.mcap", first=10)
+    monkeypatch.chdir(tmp_path)
+    printed = []
+    for program in blocks("reading.md", "python"):
+        exec(compile(program, "reading.md", "exec"), {})
+        printed.append(capsys.readouterr().out)
+    counts, loop, pictures, times = printed
+    assert counts.startswith("0.6 s, 81 messages\ninfo/front 1\nlabel/mug 20\n")
+    assert len(loop.splitlines()) == 20 + 16
+    assert pictures.startswith("(48, 64, 3) 60.0 ")
+    assert times == "tracked (16, 3) 10\n"

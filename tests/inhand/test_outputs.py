@@ -48,8 +48,18 @@ def test_no_argument_that_names_a_place_to_write_goes_unchecked(verb: str) -> No
     """Arguments with a path are read, or their names are among those that are checked."""
     read = {
         *("config", "dataset", "test_on", "bodies", "data", "models", "recording", "files"),
-        *("info", "sources", "source", "contrib", "others", "against", "mesh", "keyframes"),
-        *("start", "plain"),
+        *(
+            "info",
+            "sources",
+            "source",
+            "contrib",
+            "others",
+            "against",
+            "mesh",
+            "keyframes",
+            "objects",
+        ),
+        *("start", "plain", "objects"),
         # --print writes nothing there, and what does has a line of its own (test_install).
         "root",
     }

@@ -53,6 +53,13 @@ def test_the_first_chunk_may_be_damaged_and_the_index_gone(whole: Path, tmp_path
     assert contents(report.output) == everything[:6] + everything[7:]
 
 
+def test_a_damaged_channel_lends_no_message_to_another_key(whole: Path, tmp_path: Path) -> None:
+    data = whole.read_bytes().replace(b"rig/pose/mug\x07", b"rig/pose/mud\x07")  # also the index's
+    assert data != whole.read_bytes()
+    report = recover_recording(damaged_copy(tmp_path, data), tmp_path / "saved.mcap")
+    assert contents(report.output) == contents(whole)
+
+
 def test_damage_in_every_chunk_costs_only_the_messages_that_it_hits(
     whole: Path, tmp_path: Path
 ) -> None:

@@ -108,10 +108,10 @@ def measure_hub(
     routers: Routers, on_progress: Callable[[], None], parameters: HubCostParameters
 ) -> HubCosts:
     """Measure a hub by its rigs, and two hubs beside a plain router; raises InhandError."""
-    streams, rigs = _streams(parameters), routers.rigs
+    streams, rigs = rig_streams(parameters), routers.rigs
 
     def load(*chosen: RigEnds) -> Load:
-        return Load(chosen, streams, parameters.warming_s, parameters.measured_s, routers.hub)
+        return Load(chosen, streams, parameters.warming_s, parameters.measured_s, (routers.hub,))
 
     costs = []
     for count in parameters.rig_counts:
@@ -139,8 +139,8 @@ def _turned(names: list[int], by: int) -> list[int]:
     return names[by:] + names[:by]
 
 
-def _streams(parameters: HubCostParameters) -> dict[str, Stream]:
-    """The messages that are sent again and again."""
+def rig_streams(parameters: HubCostParameters) -> dict[str, Stream]:
+    """Return what a rig of one camera publishes, by stream: each message is sent often."""
     transport = parameters.transport
     shown = simulate(INTERACTION, 0, transport.seed, transport.shown_frame + 1)
     person = person_message(shown, transport.shown_frame)
@@ -233,8 +233,8 @@ def _cost(sent: Sent, delays: Delays, *, stuck: bool) -> HubCost:
     return HubCost(
         len(rigs),
         stuck,
-        sent.hub_cpu_s / sent.passed_s,
-        sent.hub_mb,
+        sent.cpu_s / sent.passed_s,
+        sent.mb,
         sent.busy,
         frames / len(rigs) / sent.passed_s,
         {stream: _delay(sent, delays, told, stream) for stream in READERS},

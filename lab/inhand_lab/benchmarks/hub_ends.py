@@ -1,4 +1,4 @@
-"""The two processes between which the messages of rigs go by way of a hub.
+"""The two processes between which the messages of rigs go, by way of a hub or to recorders.
 
 One has a session for each member that publishes, the other one for each that reads. A message bears
 the time at which it was put; the reader notes how old it is when its bytes are there.
@@ -7,7 +7,7 @@ the time at which it was put; the reader notes how old it is when its bytes are 
 import heapq
 import time
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -61,13 +61,13 @@ class Stream:
 @dataclass(frozen=True)
 class Load:
     """What the ends agree on: the rigs, what each publishes by topic's stream, seconds before those
-    that count, seconds that count, and the process of the hub."""
+    that count, seconds that count, and the processes whose cost is measured."""
 
     rigs: tuple[RigEnds, ...]
     streams: Mapping[str, Stream]
     warming_s: float
     measured_s: float
-    hub: int
+    processes: tuple[int, ...]
 
     def first(self, stream: str) -> int:
         """Number of a stream's first message that counts."""
@@ -76,13 +76,14 @@ class Load:
 
 @dataclass(frozen=True)
 class Sent:
-    """Number of messages by rig and stream, and while they were sent: the hub's processor time and
-    the time that passed, in seconds, its memory at the end, in MB, and the machine's busy share."""
+    """Number of messages that count by rig and stream, and while they were sent: the processor time
+    of the measured processes and the time that passed, in seconds, their memory at the end, in MB,
+    and the machine's busy share."""
 
     messages: Mapping[tuple[int, str], int]
-    hub_cpu_s: float
+    cpu_s: float
     passed_s: float
-    hub_mb: float
+    mb: float
     busy: float
 
 
@@ -152,6 +153,8 @@ def _publishers(load: Load) -> Iterator[Publishers]:
             for role, topics in PUBLISHED.items():
                 session = stack.enter_context(open_session(rig.members[role]))
                 for topic in topics:
+                    if topic.stream not in load.streams:
+                        continue
                     key = topic.key(rig.site, role)
                     publishers[number, topic.stream] = Publisher(session, topic, key, _uncounted)
         yield publishers
@@ -180,10 +183,10 @@ def _send_when_due(load: Load, publishers: Publishers) -> Sent:
     ]
     heapq.heapify(due)
     numbers: Counter[tuple[int, str]] = Counter()
-    hub, before = psutil.Process(load.hub), None
+    measured, before = [psutil.Process(one) for one in load.processes], None
     while (next_at := due[0][0]) < end:
         if before is None and next_at >= counting_from:
-            before = _processor_time(hub), time.monotonic(), psutil.cpu_percent()
+            before = _processor_time(measured), time.monotonic(), psutil.cpu_percent()
         time.sleep(max(0.0, next_at - time.monotonic()))
         at, number, stream = due[0]
         one = load.streams[stream]
@@ -197,13 +200,13 @@ def _send_when_due(load: Load, publishers: Publishers) -> Sent:
         raise InhandError("no message was due in the time that counts")
     return Sent(
         {place: count - load.first(place[1]) for place, count in numbers.items()},
-        _processor_time(hub) - before[0],
+        _processor_time(measured) - before[0],
         time.monotonic() - before[1],
-        hub.memory_info().rss / 1e6,
+        sum(one.memory_info().rss for one in measured) / 1e6,
         psutil.cpu_percent() / 100.0,
     )
 
 
-def _processor_time(process: psutil.Process) -> float:
-    times = process.cpu_times()
-    return times.user + times.system
+def _processor_time(processes: Sequence[psutil.Process]) -> float:
+    times = [one.cpu_times() for one in processes]
+    return sum(one.user + one.system for one in times)

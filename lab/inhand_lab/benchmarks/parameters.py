@@ -194,11 +194,29 @@ class HubCostParameters:
     """Number of pairs of processes between which the hub is compared with a plain router."""
 
 
+@dataclass(frozen=True)
+class RecorderCostParameters:
+    """What writers are handed, and which rigs recorders are measured with."""
+
+    written_frames: int = 900
+    """Frames that each writer is handed in a turn, with their skeletons and poses: half a minute
+    of a rig."""
+    turns: int = 6
+    """Number of times that each writer writes them."""
+    rig_counts: tuple[int, ...] = (1, 4)
+    """Numbers of rigs, each with a recorder."""
+    warming_s: float = 4.0
+    """Seconds at the beginning in which no processor time counts."""
+    measured_s: float = 30.0
+    """Seconds in which it does."""
+
+
 DEFAULT_COMPARISON = ComparisonParameters()
 DEFAULT_FRAME_COST = FrameCostParameters()
 DEFAULT_FUSION_COST = FusionCostParameters()
 DEFAULT_HUB_COST = HubCostParameters()
 DEFAULT_LIKELIHOOD_CHECK = LikelihoodCheckParameters()
+DEFAULT_RECORDER_COST = RecorderCostParameters()
 DEFAULT_TRACKER_SPEED = TrackerSpeedParameters()
 DEFAULT_TRAINING_COST = TrainingCostParameters()
 DEFAULT_TRANSPORT = TransportParameters()

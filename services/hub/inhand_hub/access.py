@@ -18,10 +18,12 @@ from inhand_schemas.topics import (
     INFO,
     POSE,
     PREVIEW,
+    RELIABLE,
     RGBD,
     SKELETONS,
     TOPICS,
     AnyTopic,
+    Delivery,
 )
 from msgspec import Meta, Struct
 
@@ -67,7 +69,7 @@ ROLES: dict[RoleName, Role] = {
 }
 
 
-class Member(Struct, frozen=True, kw_only=True):
+class Member(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Who may take part: its name in its rig, its role, and its certificate's common name.
 
     A camera publishes under its own name, a tracker the poses of its ``objects``. One that joins
@@ -92,7 +94,7 @@ class Member(Struct, frozen=True, kw_only=True):
         return self.objects if self.role == "tracker" else (self.name,)
 
 
-class LinkedHub(Struct, frozen=True, kw_only=True):
+class LinkedHub(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A further hub of the site, which connects to the first: its name, its certificate's common
     name, under which hosts it is reached, and when that certificate ends, in seconds since the
     epoch.
@@ -143,6 +145,20 @@ def link_rules(realm: str, rigs: Iterable[str], *, far: bool) -> tuple[Rule, ...
         keys += [procedure.pattern(site) for procedure in PROCEDURES]
         keys += [site.live_pattern(), site.all_claims_pattern()]
     return tuple(Rule(flow, get_args(Operation), tuple(keys)) for flow in get_args(Flow))
+
+
+def deliveries(realm: str, rigs: Iterable[str]) -> list[tuple[Delivery, tuple[str, ...]]]:
+    """Return how what passes a hub is delivered, by keys: as Inhand's own processes send it."""
+    sites = [Site(realm, rig) for rig in rigs]
+    found = []
+    for topic in TOPICS.values():
+        keys = [topic.pattern(site) for site in sites]
+        if topic.delivery.kept:
+            keys += [beside(key) for key in keys]
+        found.append((topic.delivery, tuple(keys)))
+    questions = [procedure.pattern(site) for procedure in PROCEDURES for site in sites]
+    questions += [site.access_pattern() for site in sites]
+    return [*found, (RELIABLE, tuple(questions))]
 
 
 def access_control(

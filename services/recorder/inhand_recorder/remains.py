@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from inhand_runtime.recording.checksums import digest
+from inhand_runtime.recording.checksums import Checksums
 from mcap.records import (
     Channel,
     McapRecord,
@@ -36,7 +36,7 @@ class Remains:
         return bool(self.doubtful) or any(isinstance(one, Message) for one in self.records)
 
 
-def remains_of(data: bytes, digests: frozenset[bytes], times: tuple[int, int]) -> Remains:
+def remains_of(data: bytes, checksums: Checksums, times: tuple[int, int]) -> Remains:
     """Walk a chunk's records, and past what is broken to the next one that proves itself.
 
     A message proves itself by its checksum, where the file has any, and else by a time of reception
@@ -49,14 +49,14 @@ def remains_of(data: bytes, digests: frozenset[bytes], times: tuple[int, int]) -
     unread = offset = 0
     while offset < len(data):
         record = record_at(data, offset)
-        if isinstance(record, Message) and _proves_itself(record, digests, times):
-            (proved if digests else doubtful).append(record)
+        if isinstance(record, Message) and _proves_itself(record, checksums, times):
+            (proved if checksums else doubtful).append(record)
             offset += length_at(data, offset)
         elif isinstance(record, Schema | Channel):
             proved.append(record)
             offset += length_at(data, offset)
         else:
-            following = _next_inner(data, offset, digests, times)
+            following = _next_inner(data, offset, checksums, times)
             head = message_head(data, offset)
             if head is not None and times[0] <= head.log_time <= times[1]:
                 if record is None and following == len(data):
@@ -68,44 +68,41 @@ def remains_of(data: bytes, digests: frozenset[bytes], times: tuple[int, int]) -
     return Remains(tuple(proved), tuple(doubtful), tuple(broken), cut_off, unread)
 
 
-def _next_inner(data: bytes, offset: int, digests: frozenset[bytes], times: tuple[int, int]) -> int:
+def _next_inner(data: bytes, offset: int, checksums: Checksums, times: tuple[int, int]) -> int:
     """Where the next record of a damaged chunk is that proves itself; its end where none does."""
     record = record_at(data, offset)
     if isinstance(record, Message):
         # A payload alone may be damaged: then the record behind it stands where its length says.
         behind = offset + length_at(data, offset)
-        if behind == len(data) or _stands(data, behind, digests, times):
+        if behind == len(data) or _stands(data, behind, checksums, times):
             return behind
     for match in _INNER_ANCHOR.finditer(data, offset + 1):
-        if _stands(data, match.start(), digests, times):
+        if _stands(data, match.start(), checksums, times):
             return match.start()
     return len(data)
 
 
-def _stands(data: bytes, offset: int, digests: frozenset[bytes], times: tuple[int, int]) -> bool:
+def _stands(data: bytes, offset: int, checksums: Checksums, times: tuple[int, int]) -> bool:
     """Whether a record begins here: it proves itself, or its head lies within the chunk's times."""
-    if _is_inner(record_at(data, offset), digests, times):
+    if _is_inner(record_at(data, offset), checksums, times):
         return True
     head = message_head(data, offset)
     return head is not None and times[0] <= head.log_time <= times[1]
 
 
-def _is_inner(record: McapRecord | None, digests: frozenset[bytes], times: tuple[int, int]) -> bool:
+def _is_inner(record: McapRecord | None, checksums: Checksums, times: tuple[int, int]) -> bool:
     if isinstance(record, Message):
-        return _proves_itself(record, digests, times)
+        return _proves_itself(record, checksums, times)
     return isinstance(record, Schema | Channel)
 
 
-def _proves_itself(message: Message, digests: frozenset[bytes], times: tuple[int, int]) -> bool:
-    if not digests:
+def _proves_itself(message: Message, checksums: Checksums, times: tuple[int, int]) -> bool:
+    if not checksums:
         return times[0] <= message.log_time <= times[1]
-    return (
-        digest(
-            message.channel_id,
-            message.sequence,
-            message.log_time,
-            message.publish_time,
-            message.data,
-        )
-        in digests
+    return checksums.holds(
+        message.channel_id,
+        message.sequence,
+        message.log_time,
+        message.publish_time,
+        message.data,
     )

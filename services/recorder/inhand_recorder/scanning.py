@@ -16,7 +16,13 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from inhand_runtime.recording import RecordingError
-from inhand_runtime.recording.checksums import CHECKSUMS_RECORD, parse_digests
+from inhand_runtime.recording.checksums import (
+    CHECKSUMS_RECORD,
+    NO_CHECKSUMS,
+    Checksums,
+    parse_channels,
+    parse_checksums,
+)
 from inhand_runtime.recording.chunk_walk import size_without_zeros
 from inhand_runtime.recording.opening import opening
 from mcap.opcode import Opcode
@@ -114,72 +120,82 @@ def has_checksums(data: Bytes) -> bool:
 
 
 def channels(data: Bytes) -> dict[int, Channel]:
-    """The channels by their number, from wherever they still stand in the file."""
+    """The channels by their number, from wherever they still stand in the file.
+
+    Whom a checksum proves comes first: that of the index, of a whole chunk, or their own beside the
+    messages' checksums.
+    """
     found: dict[int, Channel] = {}
+    proved: dict[int, Channel] = {}
     doubtful: dict[int, Channel] = {}
-    for start in (summary_start(data), len(MAGIC)):
+    index = summary_start(data)
+    for start in (index, len(MAGIC)):
         for stretch in scan(data, start) if start is not None else ():
+            of_chunk = stretch.state == "whole" and data[stretch.offset] == Opcode.CHUNK
+            place = found if of_chunk or start == index else doubtful
             for record in stretch.records:
                 if isinstance(record, Channel):
-                    place = doubtful if stretch.state == "damaged" else found
                     place.setdefault(record.id, record)
+                elif isinstance(record, Metadata) and record.name == CHECKSUMS_RECORD:
+                    for number, (key, encoding) in parse_channels(record.metadata).items():
+                        proved[number] = Channel(number, key, encoding, {}, 0)
         if found:  # an index need not repeat the channels: then the data says them
             break
-    return doubtful | found
+    return doubtful | proved | found
 
 
 def scan(data: Bytes, offset: int = len(MAGIC)) -> Iterator[Stretch]:
     """All stretches from ``offset`` on, without a hole between them."""
     end = len(data) - len(MAGIC) if data[-len(MAGIC) :] == MAGIC else len(data)
-    digests: tuple[bytes, ...] = ()
+    checksums = NO_CHECKSUMS
     while offset < end:
-        stretch = _stretch_at(data, offset, digests)
+        stretch = _stretch_at(data, offset, checksums)
         yield stretch
         # Checksums are those of the chunk behind them, and of no other.
         if data[offset] == Opcode.CHUNK or stretch.state != "whole":
-            digests = ()
+            checksums = NO_CHECKSUMS
         for record in stretch.records:
             if isinstance(record, Metadata) and record.name == CHECKSUMS_RECORD:
-                digests = parse_digests(record.metadata)
+                checksums = parse_checksums(record.metadata)
         offset += stretch.length
-    if digests:  # the file ends between a chunk's checksums and the chunk
-        yield Stretch(end, 0, "cut", expected=len(digests))
+    if checksums:  # the file ends between a chunk's checksums and the chunk
+        yield Stretch(end, 0, "cut", expected=checksums.count)
 
 
-def _stretch_at(data: Bytes, offset: int, digests: tuple[bytes, ...]) -> Stretch:
+def _stretch_at(data: Bytes, offset: int, checksums: Checksums) -> Stretch:
     record = record_at(data, offset)
     if isinstance(record, Chunk):
-        return _chunk(record, offset, length_at(data, offset), digests)
+        return _chunk(record, offset, length_at(data, offset), checksums)
     if record is not None:
         return Stretch(offset, length_at(data, offset), "whole", (record,))
     anchor = _next_anchor(data, offset + 1)
     if anchor is not None:
-        length, expected = anchor - offset, len(digests) or None
+        length, expected = anchor - offset, checksums.count or None
         return Stretch(offset, length, "damaged", unread_bytes=length, expected=expected)
-    return _cut(data, offset, digests)
+    return _cut(data, offset, checksums)
 
 
-def _chunk(chunk: Chunk, offset: int, length: int, digests: tuple[bytes, ...]) -> Stretch:
+def _chunk(chunk: Chunk, offset: int, length: int, checksums: Checksums) -> Stretch:
     records = checked_records(chunk)
     if records is not None:
         return Stretch(offset, length, "whole", records)
     if chunk.compression:
         return Stretch(offset, length, "damaged", unread_bytes=length)
     times = chunk.message_start_time, chunk.message_end_time
-    remains = remains_of(chunk.data, frozenset(digests), times)
+    remains = remains_of(chunk.data, checksums, times)
     unread = length if not remains.messages else remains.unread_bytes
-    return _left(offset, length, "damaged", remains, unread, digests)
+    return _left(offset, length, "damaged", remains, unread, checksums)
 
 
-def _cut(data: Bytes, offset: int, digests: tuple[bytes, ...]) -> Stretch:
+def _cut(data: Bytes, offset: int, checksums: Checksums) -> Stretch:
     rest = data[offset:]
     chunk_head = struct.Struct("<BQQQQIIQ")
     if len(rest) >= chunk_head.size:
         opcode, _, start, end, _, _, compression_length, _ = chunk_head.unpack_from(rest)
         if opcode == Opcode.CHUNK and compression_length == 0:
-            remains = remains_of(rest[chunk_head.size :], frozenset(digests), (start, end))
-            return _left(offset, len(rest), "cut", remains, remains.unread_bytes, digests)
-    expected = len(digests) or None
+            remains = remains_of(rest[chunk_head.size :], checksums, (start, end))
+            return _left(offset, len(rest), "cut", remains, remains.unread_bytes, checksums)
+    expected = checksums.count or None
     return Stretch(offset, len(rest), "cut", unread_bytes=len(rest), expected=expected)
 
 
@@ -189,7 +205,7 @@ def _left(
     state: State,
     remains: Remains,
     unread_bytes: int,
-    digests: tuple[bytes, ...],
+    checksums: Checksums,
 ) -> Stretch:
     return Stretch(
         offset,
@@ -200,7 +216,7 @@ def _left(
         remains.doubtful,
         remains.broken,
         remains.cut_off,
-        len(digests) or None,
+        checksums.count or None,
     )
 
 

@@ -33,6 +33,7 @@ from inhand_runtime.session import (
     Subscription,
     certified,
     connected,
+    count_links,
     end_subscription,
     hear_namesakes,
     open_session,
@@ -205,9 +206,13 @@ class Daemon:
         """Whether no other process is connected now."""
         return not connected(self._session)
 
-    def certified(self) -> dict[str, str]:
-        """The common names of the certificates that others show now, with their hosts."""
+    def certified(self) -> dict[str, list[str]]:
+        """The common names of the certificates that others show now, with the host of each link."""
         return certified(self._session)
+
+    def count_links(self) -> int:
+        """How many links to others are up."""
+        return count_links(self._session)
 
     def receive(self, timeout_s: float) -> Received | None:
         """The next sample of the inbox, or None; a main loop that calls it is seen to live."""
@@ -217,7 +222,7 @@ class Daemon:
     def decode(self, topic: Topic[T], sample: Received) -> T | None:
         """The sample's message; None when it is malformed, which is counted and logged."""
         try:
-            message = topic.decode(sample.payload, sample.encoding)
+            message = topic.received(sample.key, sample.payload, sample.encoding)
         except (MessageError, KeyFormatError) as error:
             self.health.malformed(sample.key, error)
             return None

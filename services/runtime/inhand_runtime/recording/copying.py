@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from inhand_runtime.errors import InhandError
 from inhand_runtime.recording.layout import RecordedMessage
 from inhand_runtime.recording.part_file import PART_SUFFIX
 from inhand_runtime.recording.reading import read_metadata
@@ -13,7 +12,7 @@ from inhand_runtime.recording.writing import RecordingWriter
 
 @contextmanager
 def written_or_gone(output: Path) -> Iterator[RecordingWriter]:
-    """Write a new recording in a block; where that fails, nothing of it stays.
+    """Write a new recording in a block; where that fails or is interrupted, nothing of it stays.
 
     Raises RecordingError where there is a file of that name, or one that grows into it.
     """
@@ -21,7 +20,7 @@ def written_or_gone(output: Path) -> Iterator[RecordingWriter]:
     try:
         with opened as writer:
             yield writer
-    except InhandError:
+    except BaseException:
         output.with_name(output.name + PART_SUFFIX).unlink(missing_ok=True)
         raise
 

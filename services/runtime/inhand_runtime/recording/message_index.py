@@ -23,6 +23,7 @@ from mcap.writer import MCAP0_MAGIC
 from inhand_runtime.recording.chunk_table import HEADER, ChunkTable, Entries, IndexedTable, Integers
 from inhand_runtime.recording.chunk_walk import WalkedTable
 from inhand_runtime.recording.layout import (
+    APART_ENCODING,
     MESSAGE_ENCODING,
     PROFILE,
     SEQUENCE_MASK,
@@ -36,6 +37,9 @@ from inhand_runtime.recording.reading import (
     explaining_damage,
     in_order_of_reception,
 )
+
+_OFFSET_BITS = 40
+"""Bits that hold a place in a chunk, or in a file without chunks: one of up to a terabyte."""
 
 
 class _Key(NamedTuple):
@@ -80,6 +84,29 @@ class RecordingIndex:
                 counts[one.name] += sum(map(self._table.count, one.channels))
         return dict(counts)
 
+    def keys(self) -> dict[str, AnyTopic]:
+        """Return the keys of Inhand's with their topics."""
+        return {one.key: one.topic for one in self._keys}
+
+    @property
+    def apart(self) -> int:
+        """Number of messages that are kept apart, as they could not be read on their keys."""
+        of_apart = [
+            number
+            for number, channel in self._table.channels.items()
+            if channel.message_encoding == APART_ENCODING
+        ]
+        return sum(map(self._table.count, of_apart))
+
+    def count(self, key: str) -> int:
+        """Return the number of messages of a key."""
+        found = [one for one in self._keys if one.key == key]
+        return sum(self._table.count(channel) for one in found for channel in one.channels)
+
+    def messages_of(self, key: str) -> "IndexedMessages":
+        """Return the messages of one key; raises RecordingError where the index is damaged."""
+        return self._messages(next((one for one in self._keys if one.key == key), None))
+
     def messages(self, stream: str, name: str) -> "IndexedMessages":
         """Return the messages of a stream by their numbers; none where there are none.
 
@@ -92,7 +119,9 @@ class RecordingIndex:
                 f"{self.path} holds {stream} of {name} on {len(found)} keys ({keys}): give a "
                 "recording of one rig"
             )
-        key = found[0] if found else None
+        return self._messages(found[0] if found else None)
+
+    def _messages(self, key: _Key | None) -> "IndexedMessages":
         with explaining_damage(self.path):
             parts = [self._table.entries(one) for one in (key.channels if key else ())]
         return IndexedMessages(self, key, self._in_order(_joined(parts)))
@@ -144,6 +173,11 @@ class IndexedMessages(Sequence[RecordedMessage]):
             raise IndexError(f"there are {len(self)} messages, and none of number {number}")
         entry = int(self._entries.chunks[number]), int(self._entries.offsets[number])
         return self._index.read(self._key, *entry)
+
+    @cached_property
+    def places(self) -> Integers:
+        """Numbers (N,) that order messages of several keys as they stand in the file."""
+        return self._entries.chunks << _OFFSET_BITS | self._entries.offsets
 
     @cached_property
     def stamps(self) -> Stamps:

@@ -10,7 +10,7 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Metadata
 
-from inhand_runtime.recording.checksums import digest, parse_digests
+from inhand_runtime.recording.checksums import NO_CHECKSUMS, Checksums, parse_checksums
 from inhand_runtime.recording.chunk_table import HEADER, Chunks, Entries
 from inhand_runtime.recording.chunk_walk import FILE_ITSELF, MESSAGE_HEAD, unpacked
 
@@ -38,7 +38,7 @@ class MessageReader:
 
     def __init__(self, descriptor: int, size: int, chunks: Chunks) -> None:
         self._descriptor, self._size, self._chunks = descriptor, size, chunks
-        self._digests = lru_cache(_CHECKSUMS_KEPT)(self._read_digests)
+        self._checksums = lru_cache(_CHECKSUMS_KEPT)(self._read_checksums)
         self._contents = lru_cache(_CHUNKS_KEPT)(self._read_contents)
 
     def read(self, chunk: int, offset: int) -> tuple[Stamp, bytes]:
@@ -46,11 +46,11 @@ class MessageReader:
         chunks = self._chunks
         if chunks.starts[chunk] == FILE_ITSELF:
             return self._read_plain(offset)
-        digests = frozenset() if chunks.compressed[chunk] else self._digests(chunk)
-        if not digests:
+        checksums = NO_CHECKSUMS if chunks.compressed[chunk] else self._checksums(chunk)
+        if not checksums:
             return _message_in(self._contents(chunk), offset)
         stamp, payload = self._read_plain(int(chunks.contents[chunk]) + offset)
-        if digest(*stamp, payload) not in digests:
+        if not checksums.holds(*stamp, payload):
             raise McapError(f"the checksum of message {stamp.sequence} does not hold")
         return stamp, payload
 
@@ -80,14 +80,14 @@ class MessageReader:
             raise McapError("a message is longer than the file")
         return stamp, os.pread(self._descriptor, size, place + MESSAGE_HEAD.size)
 
-    def _read_digests(self, chunk: int) -> frozenset[bytes]:
+    def _read_checksums(self, chunk: int) -> Checksums:
         """Read the checksums of a chunk's messages; none where it has none."""
         start = int(self._chunks.checksums[chunk])
         if start < 0:
-            return frozenset()
+            return NO_CHECKSUMS
         record = os.pread(self._descriptor, int(self._chunks.starts[chunk]) - start, start)
         metadata: Metadata = Metadata.read(ReadDataStream(BytesIO(record[HEADER.size :])))
-        return frozenset(parse_digests(metadata.metadata))
+        return parse_checksums(metadata.metadata)
 
     def _read_contents(self, chunk: int) -> bytes:
         """Read the contents of a whole chunk, of which the checksum holds."""

@@ -11,7 +11,7 @@ from inhand_schemas.json_schema import json_schema
 from inhand_schemas.topics import topic_of
 from mcap.writer import CompressionType, Writer
 
-from inhand_runtime.recording.checksums import CHECKSUMS_RECORD, digest, format_digests
+from inhand_runtime.recording.checksums import CHECKSUMS_RECORD, digest, format_checksums
 from inhand_runtime.recording.layout import (
     APART_ENCODING,
     CHUNK_BYTES,
@@ -48,6 +48,7 @@ class RecordingWriter:
         self._channels: dict[tuple[str, bool], int] = {}
         self._schemas: dict[str, int] = {}
         self._digests: list[bytes] = []
+        self._in_chunk: dict[int, tuple[str, str]] = {}
         self._chunk_bytes = 0
         self._file = _create(path, part_suffix, make_room)
         self._writer = Writer(
@@ -98,6 +99,7 @@ class RecordingWriter:
             stamp = channel, sequence & SEQUENCE_MASK, received_ns, captured_ns
             self._writer.add_message(channel, received_ns, payload, captured_ns, stamp[1])
             self._digests.append(digest(*stamp, payload))
+            self._in_chunk[channel] = key, APART_ENCODING if apart else MESSAGE_ENCODING
             self._chunk_bytes += len(payload)
             if self._chunk_bytes > CHUNK_BYTES:
                 self._end_chunk()
@@ -105,8 +107,11 @@ class RecordingWriter:
     def _end_chunk(self) -> None:
         """Write the messages' checksums, and then the chunk that waits in memory."""
         if self._digests:
-            self._writer.add_metadata(CHECKSUMS_RECORD, format_digests(self._digests))
+            self._writer.add_metadata(
+                CHECKSUMS_RECORD, format_checksums(self._digests, self._in_chunk)
+            )
         self._digests.clear()
+        self._in_chunk.clear()
         self._chunk_bytes = 0
         self._writer.flush()  # type: ignore[no-untyped-call]
 

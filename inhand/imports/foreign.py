@@ -1,0 +1,71 @@
+"""What foreign recordings are read as, and how they become one of Inhand's."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
+from inhand_runtime.recording import RecordingError, RecordingWriter
+from inhand_runtime.recording.copying import written_or_gone
+from inhand_schemas.errors import MessageError
+from inhand_schemas.keys import Site
+from inhand_schemas.messages import Message
+from inhand_schemas.topics import AnyTopic
+
+IMPORT_RECORD = "import"
+"""The name of the metadata record that says what a recording was made of."""
+
+
+@dataclass(frozen=True)
+class ForeignMessage:
+    """A message for ``topic`` and ``name``, and when it was received, in nanoseconds since the
+    epoch: where nothing says that, when it was captured."""
+
+    topic: AnyTopic
+    name: str
+    message: Message
+    received_ns: int
+
+
+def write_imported(
+    output: Path,
+    site: Site,
+    messages: Iterable[ForeignMessage],
+    about: dict[str, str],
+    on_message: Callable[[], None] = lambda: None,
+) -> dict[str, int]:
+    """Write messages, which come in the order of their reception, to a new recording.
+
+    Returns the numbers of messages by topic; raises RecordingError, also where there are none, and
+    then leaves no file.
+    """
+    counts: dict[str, int] = {}
+    with written_or_gone(output) as writer:
+        counter = LossCounter()
+        for one in messages:
+            _write(writer, site, one, counter)
+            topic = f"{one.topic.stream}/{one.name}"
+            counts[topic] = counts.get(topic, 0) + 1
+            on_message()
+        if not counts:
+            raise RecordingError("nothing in it can be imported")
+        writer.add_metadata(LOSSES_RECORD, format_losses(counter.losses()))
+        writer.add_metadata(IMPORT_RECORD, about)
+    return counts
+
+
+def _write(writer: RecordingWriter, site: Site, one: ForeignMessage, counter: LossCounter) -> None:
+    key = one.topic.key(site, one.name)
+    try:
+        payload = one.topic.encode(one.message)  # type: ignore[arg-type]
+        one.topic.decode(payload)
+    except MessageError as error:
+        raise RecordingError(f"{key}, captured at {one.message.time_ns}: {error}") from None
+    writer.write(
+        key,
+        payload,
+        received_ns=one.received_ns,
+        captured_ns=one.message.time_ns,
+        sequence=one.message.sequence,
+    )
+    counter.count(key, one.message.sequence)

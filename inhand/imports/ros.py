@@ -1,0 +1,229 @@
+"""Bags of ROS 1 and 2, and MCAP files with messages of ROS 2: colour, depth and the lens."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from inhand_runtime.errors import InhandError
+from inhand_schemas.keys import require_name
+from inhand_schemas.messages import ColourImage, DepthImage, RgbdFrame
+from inhand_schemas.topics import INFO, RGBD
+from rosbags.highlevel import AnyReader, AnyReaderError
+from rosbags.interfaces import Connection
+from rosbags.typesys import Stores, get_typestore
+
+from inhand.imports.foreign import ForeignMessage
+from inhand.imports.pairing import nearest_partners
+from inhand.imports.ros_images import colour_of, depth_of, info_of, is_depth
+
+IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+LENS = "sensor_msgs/msg/CameraInfo"
+_STAMPS = {True: struct.Struct("<4xiI"), False: struct.Struct("<4xII")}
+"""Where a message's header has its time: of ROS 2, and of ROS 1."""
+
+
+@dataclass(frozen=True)
+class RosTopics:
+    """The topics that a camera's frames come from; None where there is no such images."""
+
+    colour: str | None
+    depth: str | None
+    camera_info: str
+
+
+@dataclass
+class RosBag:
+    """An open bag with the topics that are read, and how its frames are paired.
+
+    ``frames`` has each frame's time of capture by the times of its images, colour and depth, -1
+    where it has none of these. ``unreadable`` counts images that could not be read, and ``reason``
+    says why the first of them could not.
+    """
+
+    reader: AnyReader
+    topics: RosTopics
+    frames: list[tuple[int, int]]
+    frame_rate: float
+    unreadable: int = 0
+    reason: str = ""
+    _pending: dict[tuple[int, int], dict[str, Any]] = field(default_factory=dict)
+
+    def messages(self, camera: str) -> Iterator[ForeignMessage]:
+        """Yield the camera's info and its frames, each when its last image was received."""
+        require_name("camera", camera)
+        by_time = {
+            (name, time_ns): frame
+            for frame in self.frames
+            for name, time_ns in zip(("colour", "depth"), frame, strict=True)
+            if time_ns >= 0
+        }
+        names = {self.topics.colour: "colour", self.topics.depth: "depth"}
+        number, begun = 0, False
+        for connection, received_ns, raw in self._raw():
+            if not begun:
+                yield self._info(camera, received_ns)
+                begun = True
+            name = names[connection.topic]
+            frame = by_time.pop((name, _stamp(self.reader, raw, received_ns)), None)
+            if frame is None:
+                continue
+            images = self._pending.setdefault(frame, {})
+            images[name] = self._image(name, connection, raw)
+            if len(images) < sum(time_ns >= 0 for time_ns in frame):
+                continue
+            del self._pending[frame]
+            message = _frame(number, frame, images.get("colour"), images.get("depth"))
+            if message is not None:
+                yield ForeignMessage(RGBD, camera, message, received_ns)
+                number += 1
+        if number == 0:
+            raise InhandError(f"no frame of it can be read: {self.reason or 'it has none'}")
+
+    def _raw(self) -> Iterator[tuple[Connection, int, bytes]]:
+        wanted = (self.topics.colour, self.topics.depth)
+        chosen = [one for one in self.reader.connections if one.topic in wanted]
+        yield from self.reader.messages(chosen)
+
+    def _image(self, name: str, connection: Connection, raw: bytes) -> Any:
+        try:
+            message = self.reader.deserialize(raw, connection.msgtype)
+            return colour_of(message) if name == "colour" else depth_of(message)
+        except (InhandError, AnyReaderError) as error:
+            self.unreadable += 1
+            self.reason = self.reason or f"{connection.topic}: {error}"
+            return None
+
+    def _info(self, camera: str, received_ns: int) -> ForeignMessage:
+        chosen = [one for one in self.reader.connections if one.topic == self.topics.camera_info]
+        for connection, _, raw in self.reader.messages(chosen):
+            message = self.reader.deserialize(raw, connection.msgtype)
+            time_ns = min(max(frame) for frame in self.frames)
+            info = info_of(message, time_ns, self.frame_rate)
+            return ForeignMessage(INFO, camera, info, received_ns)
+        raise InhandError(f"{self.topics.camera_info} has no message")
+
+
+@contextmanager
+def open_bag(path: Path) -> Iterator[AnyReader]:
+    """Open a bag of ROS 1 (a file), of ROS 2 (a folder), or an MCAP file with messages of ROS 2.
+
+    Raises InhandError for what is none.
+    """
+    try:
+        reader = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE))
+        reader.open()
+    except (AnyReaderError, OSError) as error:
+        raise InhandError(f"{path} is no bag of ROS that can be read: {error}") from None
+    try:
+        yield reader
+    finally:
+        reader.close()
+
+
+def plan_import(reader: AnyReader, asked: Mapping[str, str | None]) -> RosBag:
+    """Choose the topics of an open bag and pair its images.
+
+    ``asked`` has a topic for ``colour``, ``depth`` and ``camera_info`` where one is chosen. Raises
+    InhandError where one is missing, or there are several and none is chosen.
+    """
+    topics = _topics(reader, asked)
+    frames = _frames(_times(reader, topics.colour), _times(reader, topics.depth))
+    steps = np.diff([max(frame) for frame in frames])
+    rate = float(1e9 / np.median(steps)) if len(steps) and np.median(steps) > 0 else 30.0
+    return RosBag(reader, topics, frames, rate)
+
+
+def _topics(reader: AnyReader, asked: Mapping[str, str | None]) -> RosTopics:
+    images: dict[str, list[str]] = {"colour": [], "depth": []}
+    for connection in reader.connections:
+        if connection.msgtype in IMAGES and (message := _first(reader, connection)) is not None:
+            of_kind = images["depth" if is_depth(message) else "colour"]
+            if connection.topic not in of_kind:
+                of_kind.append(connection.topic)
+    chosen = {name: _one(name, topics, asked[name]) for name, topics in images.items()}
+    if chosen["colour"] is None and chosen["depth"] is None:
+        raise InhandError(f"no image is in it; its topics are: {_listed(reader)}")
+    lenses = sorted({one.topic for one in reader.connections if one.msgtype == LENS})
+    beside = [
+        topic
+        for image in (chosen["colour"] or chosen["depth"],)
+        for topic in lenses
+        if image is not None and image.startswith(topic.rpartition("/")[0] + "/")
+    ]
+    info = _one("camera_info", beside or lenses, asked["camera_info"])
+    if info is None:
+        raise InhandError(
+            f"no CameraInfo is in it, without which nothing can be measured; its topics are: "
+            f"{_listed(reader)}"
+        )
+    return RosTopics(chosen["colour"], chosen["depth"], info)
+
+
+def _one(name: str, topics: Sequence[str], asked: str | None) -> str | None:
+    """Return the topic that is chosen, or the only one; None without any."""
+    option = f"--{name.replace('_', '-')}"
+    if asked is not None:
+        if asked not in topics:
+            there = ", ".join(topics) or "none"
+            raise InhandError(f"{option} {asked}: there is no such topic; of this kind: {there}")
+        return asked
+    if len(topics) > 1:
+        raise InhandError(f"choose one with {option}: {', '.join(topics)}")
+    return topics[0] if topics else None
+
+
+def _listed(reader: AnyReader) -> str:
+    return ", ".join(sorted(f"{one.topic} ({one.msgtype})" for one in reader.connections))
+
+
+def _first(reader: AnyReader, connection: Connection) -> Any:
+    """Return the first message of a connection; None without any."""
+    for _, _, raw in reader.messages([connection]):
+        try:
+            return reader.deserialize(raw, connection.msgtype)
+        except AnyReaderError as error:
+            raise InhandError(f"{connection.topic} cannot be read: {error}") from None
+    return None
+
+
+def _times(reader: AnyReader, topic: str | None) -> list[int]:
+    """Return the times of capture of a topic's messages, each once, as they rise."""
+    chosen = [one for one in reader.connections if one.topic == topic]
+    if not chosen:
+        return []
+    return sorted({_stamp(reader, raw, at_ns) for _, at_ns, raw in reader.messages(chosen)})
+
+
+def _stamp(reader: AnyReader, raw: bytes, received_ns: int) -> int:
+    """Return a message's time of capture in nanoseconds; that of its reception without one."""
+    seconds, rest = _STAMPS[reader.is2].unpack_from(raw)
+    time_ns: int = 1_000_000_000 * seconds + rest
+    return time_ns if time_ns > 0 else received_ns
+
+
+def _frames(colour: list[int], depth: list[int]) -> list[tuple[int, int]]:
+    if not colour:
+        return [(-1, time_ns) for time_ns in depth]
+    return list(zip(colour, nearest_partners(colour, depth), strict=True))
+
+
+def _frame(
+    number: int, times: tuple[int, int], colour: ColourImage | None, depth: DepthImage | None
+) -> RgbdFrame | None:
+    if colour is None and depth is None:
+        return None
+    time_ns = times[0] if times[0] >= 0 else times[1]
+    apart_ns = abs(times[0] - times[1]) if min(times) >= 0 else 0
+    return RgbdFrame(
+        sequence=number,
+        time_ns=time_ns,
+        time_uncertainty_ns=apart_ns,
+        colour=colour,
+        depth=depth,
+    )

@@ -1,0 +1,99 @@
+"""``inhand recording import``: recordings made of what other programs recorded."""
+
+import argparse
+from dataclasses import asdict
+from pathlib import Path
+
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.exit_codes import DONE
+from inhand_runtime.wording import counted
+from inhand_schemas.errors import KeyFormatError
+from inhand_schemas.keys import Site, require_name
+
+from inhand.progress import progress_bar
+from inhand.results import write_json
+
+
+def add_action(actions: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Add the action and its arguments."""
+    text = "make a recording of what another program recorded"
+    action = actions.add_parser("import", help=text, description=text)
+    action.add_argument("source", type=Path, metavar="IN")
+    action.add_argument(
+        "--from",
+        choices=("tum", "ros"),
+        required=True,
+        dest="format",
+        help="a TUM RGB-D folder; a bag of ROS 1 or 2, or MCAP with messages of ROS 2",
+    )
+    action.add_argument("-o", "--output", type=Path, required=True, metavar="OUT")
+    action.add_argument("--rig", default="rig", metavar="NAME", help="its rig (default: rig)")
+    action.add_argument("--camera", default="camera", metavar="NAME", help="default: camera")
+    action.add_argument("--object", metavar="NAME", help="whose poses the ground truth has")
+    for name in ("colour", "depth", "camera-info"):
+        text = "which topic of ROS, of several"
+        action.add_argument(f"--{name}", metavar="TOPIC", help=text)
+    action.add_argument("--json", type=Path, metavar="FILE", help="write the result there")
+    action.set_defaults(run_action=_import)
+
+
+def _import(arguments: argparse.Namespace) -> int:
+    site = _site(arguments)
+    counts = (_import_ros if arguments.format == "ros" else _import_tum)(arguments, site)
+    print(f"{arguments.output}: " + ", ".join(f"{n:,} {topic}" for topic, n in counts.items()))
+    if arguments.json is not None:
+        write_json(arguments.json, {"output": str(arguments.output), "counts": counts})
+    return DONE
+
+
+def _import_tum(arguments: argparse.Namespace, site: Site) -> dict[str, int]:
+    from inhand.imports.foreign import write_imported
+    from inhand.imports.tum import messages_of, read_tum
+
+    folder = read_tum(arguments.source, arguments.object)
+    about = {"source": arguments.source.name, "format": arguments.format}
+    frames = folder.frames
+    total = 1 + len(frames) * (1 if folder.truth is None else 2)
+    with progress_bar("messages", total) as advance:
+        messages = messages_of(folder, arguments.camera)
+        counts = write_imported(arguments.output, site, messages, about, advance)
+    if folder.depth:
+        _say_without_depth(len(frames), sum(depth is None for _, _, depth, _ in frames))
+    return counts
+
+
+def _import_ros(arguments: argparse.Namespace, site: Site) -> dict[str, int]:
+    from inhand.imports.foreign import write_imported
+    from inhand.imports.ros import open_bag, plan_import
+
+    asked = {name: getattr(arguments, name) for name in ("colour", "depth", "camera_info")}
+    with open_bag(arguments.source) as reader:
+        bag = plan_import(reader, asked)
+        topics = {k: v for k, v in asdict(bag.topics).items() if v is not None}
+        about = {"source": arguments.source.name, "format": arguments.format, **topics}
+        with progress_bar("messages", 1 + len(bag.frames)) as advance:
+            messages = bag.messages(arguments.camera)
+            counts = write_imported(arguments.output, site, messages, about, advance)
+    for name, topic in topics.items():
+        print(f"{name} of {topic}")
+    if bag.topics.depth is not None:
+        _say_without_depth(len(bag.frames), sum(depth < 0 for _, depth in bag.frames))
+    if bag.unreadable:
+        print(f"{counted(bag.unreadable, 'image')} left out; the first: {bag.reason}")
+    return counts
+
+
+def _say_without_depth(frames: int, without: int) -> None:
+    if without:
+        print(f"{without:,} of {counted(frames, 'frame')} have no depth within 20 ms")
+
+
+def _site(arguments: argparse.Namespace) -> Site:
+    """Return the rig; raises SettingsError for names that no key can have."""
+    try:
+        for what in ("camera", "object"):
+            if (name := getattr(arguments, what)) is not None:
+                require_name(what, name)
+        return Site(rig=arguments.rig)
+    except KeyFormatError as error:
+        raise SettingsError(str(error)) from None
