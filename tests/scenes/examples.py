@@ -42,6 +42,16 @@ RUNNING = Health(
 )
 """What an instance says of itself that has nothing to tell."""
 
+RECORDING = RecordingState(
+    file="rig_20261129T201800Z.mcap",
+    file_bytes=1 << 20,
+    ring_seconds=29.5,
+    ring_bytes=1 << 27,
+    clip="rig_20261129T201801Z.mcap",
+    folder_bytes=1 << 33,
+    free_bytes=1 << 34,
+    deleted=3,
+)
 EXAMPLES: tuple[Message, ...] = (
     CameraInfo(
         sequence=1,
@@ -115,6 +125,7 @@ EXAMPLES: tuple[Message, ...] = (
         loop_age_s=0.25,
         effort=0.75,
         shutter_closed=True,
+        recording=RECORDING,
     ),
 )
 LATE = replace(
@@ -122,6 +133,7 @@ LATE = replace(
     sequence=10,
     topics={"inhand/@v1/rig/rgbd/kitchen": TopicHealth(received=360, late_ms=7.5)},
     effort=0.75,
+    recording=None,
 )
 SHUT = replace(LATE, service="capture", effort=None, shutter_closed=True)
 PAUSED = replace(
@@ -132,16 +144,7 @@ PAUSED = replace(
 )
 KEEPING = replace(
     PAUSED,
-    recording=RecordingState(
-        file="rig_20261129T201800Z.mcap",
-        file_bytes=1 << 20,
-        ring_seconds=29.5,
-        ring_bytes=1 << 27,
-        clip="rig_20261129T201801Z.mcap",
-        folder_bytes=1 << 33,
-        free_bytes=1 << 34,
-        deleted=3,
-    ),
+    recording=RECORDING,
 )
 REFUSED = replace(LATE, topics={"(other keys)": TopicHealth(refused=12)})
 

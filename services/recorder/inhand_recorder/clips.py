@@ -160,6 +160,7 @@ class Clips:
             raise RecordingError(f"cannot create {clip.path.parent}: {error.strerror}") from error
         file = RecordingFile(clip.path, 0.0, self._folder.files.make_room)
         try:
+            file.introduce(self._folder.files, received_ns)
             file.note_all(self._records(clip))
             for entry in self._kept_before.values():
                 file.repeat(entry, received_ns)

@@ -161,7 +161,7 @@ class Journal:
         except RecordingError as error:
             raise self._left_no_file(error) from error.__cause__
         with self._giving_up_on_failure(file):
-            file.note_all(self._handling.records())
+            file.introduce(self._handling, now_ns)
             if self._pauses:
                 file.note(PAUSES_RECORD, format_pauses(self._pauses))
             for entry in self._kept.values():

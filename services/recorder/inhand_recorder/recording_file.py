@@ -11,6 +11,10 @@ from inhand_runtime.recording.part_file import PART_SUFFIX, no_room
 from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
 
+MESH_PLACE = "objects/{}/mesh.ply"
+MESH_TYPE = "model/ply"
+"""The name and the type of the attachment that holds an object's mesh."""
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -39,13 +43,17 @@ class Limits:
 
 @dataclass(frozen=True)
 class FileHandling:
-    """What is the same for all files of a recorder: the named records with which each begins, and
-    ends where they are others by then; what makes room on a full disk, where it can; and how many
-    messages of each key the disk was to blame for so far."""
+    """What is the same for all files of a recorder.
+
+    Each begins with the named ``records``, and ends with those that are others by then; ``meshes``
+    are attached by the names of their objects. ``make_room`` makes room on a full disk, where it
+    can, and ``unwritten`` says how many messages of each key the disk was to blame for so far.
+    """
 
     records: Callable[[], Mapping[str, Mapping[str, str]]] = dict
     make_room: Callable[[], bool] = no_room
     unwritten: Callable[[], Mapping[str, int]] = dict
+    meshes: Callable[[], Mapping[str, bytes]] = dict
 
 
 PLAIN_FILES = FileHandling()
@@ -103,6 +111,14 @@ class RecordingFile:
             if self._noted.get(name) != values:
                 self.note(name, values)
                 self._noted[name] = dict(values)
+
+    def introduce(self, handling: FileHandling, now_ns: int) -> None:
+        """Write what each file of a recorder begins with."""
+        self.note_all(handling.records())
+        for name, data in handling.meshes().items():
+            self._writer.add_attachment(
+                MESH_PLACE.format(name), MESH_TYPE, data, received_ns=now_ns
+            )
 
     def repeat(self, entry: Entry, received_ns: int) -> None:
         """Add an entry of before this file, as if it were received with the file's first one."""

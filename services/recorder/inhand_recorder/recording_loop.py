@@ -1,5 +1,6 @@
 """Writes what arrives, and keeps the disk's troubles from what receives."""
 
+import contextlib
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ from inhand_runtime.wording import counted
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.messages import RecordingState
 from inhand_schemas.procedures import PAUSE, RESUME, SNAPSHOT, SPLIT, KindsOfLoss, RecorderReply
-from inhand_schemas.topics import HEALTH, topic_of
+from inhand_schemas.topics import HEALTH, POSE, topic_of
 from msgspec.structs import replace
 
 from inhand_recorder.announcing import Announcer
@@ -265,8 +266,11 @@ class RecordingLoop:
         if counted is not None:
             self._gaps.count(entry.key, counted)
         self._infos.note(topic.stream, parsed.name, time.monotonic())
+        if topic is POSE:
+            self._parts.provenance.follow(parsed.name)
         if topic is HEALTH:
-            self._parts.provenance.hear(HEALTH.decode(sample.payload))
+            with contextlib.suppress(MessageError):  # in another's name: recorded, not believed
+                self._parts.provenance.hear(HEALTH.received(sample.key, sample.payload))
         self._keep(sample, entry)
 
     def _keep(self, sample: Received, entry: Entry) -> None:

@@ -43,7 +43,12 @@ def _parts(daemon: Daemon, settings: Settings[RecorderSettings]) -> RecorderPart
     provenance = Provenance(settings)
     announcer = Announcer(daemon.publisher(EVENT, daemon.instance).put)
     retention = Retention(chosen.folder, chosen.quotas, announcer.deleted)
-    files = FileHandling(provenance.records, retention.make_room, daemon.health.unwritten_counts)
+    files = FileHandling(
+        records=provenance.records,
+        meshes=provenance.meshes,
+        make_room=retention.make_room,
+        unwritten=daemon.health.unwritten_counts,
+    )
     journal = Journal(
         chosen.folder,
         settings.site.rig,

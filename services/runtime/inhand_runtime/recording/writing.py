@@ -120,6 +120,11 @@ class RecordingWriter:
         with self._reporting():
             self._writer.add_metadata(name, dict(values))
 
+    def add_attachment(self, name: str, media_type: str, data: bytes, *, received_ns: int) -> None:
+        """Add a file that belongs to the recording."""
+        with self._reporting():
+            self._writer.add_attachment(0, received_ns, name, media_type, data)
+
     def sync(self) -> None:
         """Bring everything so far to the disk, so that even a power cut leaves it."""
         with self._reporting():
