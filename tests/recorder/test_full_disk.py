@@ -88,7 +88,7 @@ def test_with_delete_oldest_it_never_stops_and_never_deletes_a_clip(
     )
     _, folder = start_on_small_disk(rig, settings)
     events = wire.hear(EVENT)
-    rig.publisher("--frame-bytes", "300000", "--frames", "250")
+    rig.publisher("--frame-bytes", "300000", "--frames", "180")
     eventually("a deletion", lambda: events)
     wire.publisher(EVENT, "now").put(Event(sequence=0, time_ns=time.time_ns(), kind="now"))
     (clip,) = eventually("a clip", lambda: list(folder.glob("clips/*.mcap")))
@@ -96,12 +96,12 @@ def test_with_delete_oldest_it_never_stops_and_never_deletes_a_clip(
         while file.write(bytes(1 << 16)) == 1 << 16:  # another program fills the disk at once
             pass
     (folder / "foreign").unlink()
-    arrived(rig, last=249)
+    arrived(rig, last=179)
     make_whole(rig)
     assert list(folder.glob("*.part")) == []
     assert set(kinds(events)) == {"recording_deleted", "now"}
     assert flaws(clip) == []
     recorded = numbers(sorted(folder.glob("*.mcap")))
-    assert recorded[-1] == 249
+    assert recorded[-1] == 179
     shown = rig.done("status", "--config", rig.config).stdout
     assert "recorder disk: its quotas have deleted" in shown

@@ -119,7 +119,7 @@ def test_what_cannot_be_read_is_counted_told_once_a_kind_and_kept_apart(
 
 def test_a_full_disk_is_told_and_costs_nothing_once_it_is_freed(rig: RunningRig) -> None:
     recorder = start_recorder(rig)
-    publisher = rig.publisher("--frame-bytes", "100000", "--frames", "300")
+    publisher = rig.publisher("--frame-bytes", "100000", "--frames", "200")
     eventually("30 frames on the disk", lambda: frames_in(rig) >= 30)
     resource.prlimit(recorder.pid, resource.RLIMIT_FSIZE, (1 << 16, resource.RLIM_INFINITY))
     recorder.said("saves what was written")
@@ -128,13 +128,13 @@ def test_a_full_disk_is_told_and_costs_nothing_once_it_is_freed(rig: RunningRig)
     assert "make room or use another disk; until then" in health["last_error"]
     unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
     resource.prlimit(recorder.pid, resource.RLIMIT_FSIZE, unlimited)
-    publisher.said("published 300")
+    publisher.said("published 200")
     eventually("running again", lambda: rig.health("disk")["state"] == "running")
     assert recorder.stop() == 0
     (part,) = recordings(rig, "*.part")  # the failed retries left none
     saved = rig.folder / "saved.mcap"
     assert rig.done("recording", "recover", part, "-o", saved).popen.returncode == 0
-    assert sorted({*numbers([saved]), *numbers(recordings(rig))}) == list(range(300))
+    assert sorted({*numbers([saved]), *numbers(recordings(rig))}) == list(range(200))
 
 
 def degraded(rig: RunningRig) -> dict[str, object] | None:
