@@ -27,7 +27,7 @@ from inhand_lab.demonstration.preparation import free_port
 from inhand_recorder.inspection import inspect_recording
 from inhand_recorder.journal import Journal
 from inhand_recorder.recording_file import Limits
-from inhand_recorder.service import SYNC_PERIOD_S
+from inhand_recorder.recording_loop import SYNC_PERIOD_S
 from inhand_recorder.stamps import entry_of
 from inhand_runtime.errors import InhandError
 from inhand_runtime.inbox import Received
