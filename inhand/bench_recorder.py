@@ -27,7 +27,7 @@ from inhand_lab.demonstration.preparation import free_port
 from inhand_recorder.inspection import inspect_recording
 from inhand_recorder.journal import Journal
 from inhand_recorder.recording_file import Limits
-from inhand_recorder.service import SYNC_PERIOD_S
+from inhand_recorder.recording_loop import SYNC_PERIOD_S
 from inhand_recorder.stamps import entry_of
 from inhand_runtime.errors import InhandError
 from inhand_runtime.inbox import Received
@@ -197,13 +197,13 @@ def _recorded(
     folder: Path, count: int, streams: Mapping[str, Stream], parameters: RecorderCostParameters
 ) -> RecorderCost:
     """Let recorders of some rigs record what a process sends."""
-    rigs = tuple(_rig(number) for number in range(count))
+    rigs = tuple(bench_rig(number) for number in range(count))
     recorded = {name: one for name, one in streams.items() if name not in UNRECORDED}
     context = get_context("spawn")
     with tempfile.TemporaryDirectory(dir=folder) as name:
         place = Path(name)
         with ExitStack() as stack:
-            processes = [stack.enter_context(_recorder(place, rig)) for rig in rigs]
+            processes = [stack.enter_context(running_recorder(place, rig)) for rig in rigs]
             load = Load(
                 rigs, recorded, parameters.warming_s, parameters.measured_s, tuple(processes)
             )
@@ -220,20 +220,22 @@ def _recorded(
     return RecorderCost(count, sent.cpu_s / sent.passed_s, sent.mb, messages, messages - found)
 
 
-def _rig(number: int) -> RigEnds:
+def bench_rig(number: int) -> RigEnds:
+    """Return a rig of its own number, whose processes meet at a free port of this machine."""
     meeting = f"tcp/127.0.0.1:{free_port()}"
     site = Site(SITE.realm, f"{SITE.rig}_{number}")
     return RigEnds(site, dict.fromkeys(PUBLISHED, ZenohSettings(meeting=meeting)))
 
 
 @contextmanager
-def _recorder(folder: Path, rig: RigEnds) -> Iterator[int]:
-    """Run the recorder of a rig until the block ends, and give its process."""
+def running_recorder(folder: Path, rig: RigEnds, settings: str = "") -> Iterator[int]:
+    """Run the recorder of a rig, into a folder in this one, until the block ends, and give its
+    process; ``settings`` are more of its own. Raises InhandError where it failed."""
     name, (meeting, *_) = rig.site.rig, [one.meeting for one in rig.members.values()]
     config = folder / f"{name}.toml"
     config.write_text(
         f'realm = "{rig.site.realm}"\nrig = "{name}"\n[zenoh]\nmeeting = "{meeting}"\n'
-        f'[recorder.disk]\nfolder = "{name}"\n',
+        f'[recorder.disk]\nfolder = "{name}"\n{settings}\n',
         encoding="utf-8",
     )
     command = [sys.executable, "-m", "inhand", "recorder", "--config", str(config)]

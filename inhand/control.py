@@ -7,6 +7,7 @@ import argparse
 
 from inhand_runtime.errors import InhandError
 from inhand_runtime.exit_codes import DONE
+from inhand_runtime.wording import printable
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import require_name
 from inhand_schemas.procedures import CONTROL, ControlReply, ControlRequest
@@ -42,7 +43,7 @@ def run(arguments: argparse.Namespace) -> int:
     if not replies:
         raise InhandError(f"{arguments.camera} does not answer: {UNREACHED}")
     if (problem := replies[-1].problem) is not None:
-        raise InhandError(f"{arguments.camera}: {problem}")
+        raise InhandError(f"{arguments.camera}: {printable(problem)}")
     print(f"{arguments.camera}: done, until it ends")
     return DONE
 

@@ -34,13 +34,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print every finding, what must be mended last; SettingsError for a file that is none."""
+    """Print every finding as it comes, what must be mended last; SettingsError for a file that is
+    none."""
     rig_file = load_rig_file(arguments.config)
-    findings = list(all_findings(rig_file, arguments.config))
-    wrong = [finding for finding in findings if finding.mend is not None]
-    for finding in findings:
+    findings = []
+    for finding in all_findings(rig_file, arguments.config):
+        findings.append(finding)
         if finding.mend is None:
-            print(f"ok     {finding.what}")
+            print(f"ok     {finding.what}", flush=True)
+    wrong = [finding for finding in findings if finding.mend is not None]
     for finding in wrong:
         print(f"WRONG  {finding.what}: {finding.mend}")
     if arguments.json is not None:

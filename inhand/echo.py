@@ -8,7 +8,7 @@ from typing import Any
 
 import msgpack
 from inhand_runtime.inbox import Received
-from inhand_runtime.wording import counted
+from inhand_runtime.wording import counted, printable
 from rich.console import Console
 from rich.pretty import pretty_repr
 
@@ -21,6 +21,9 @@ from inhand.looking import (
     stream_and_name,
     unreadable,
 )
+
+DEEPEST = 64
+"""Lists and maps in each other, at the most, that a message is shown with."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -62,29 +65,36 @@ def _readable(look: Look, seconds: float | None) -> Iterator[tuple[Received, Any
         remark = unreadable(sample)
         if remark is None:
             try:
-                yield sample, msgpack.unpackb(sample.payload)
+                yield sample, _shown(msgpack.unpackb(sample.payload))
                 continue
             except ValueError as error:
                 remark = f"{sample.key}: no MessagePack: {error}"
         if remark not in remarks:
             remarks.add(remark)
-            print(remark, file=sys.stderr)
+            print(printable(remark), file=sys.stderr)
 
 
 def _as_json(key: str, message: Any) -> str:
-    return json.dumps({"key": key, "message": _sizes_for_bytes(message)})
+    return json.dumps({"key": key, "message": message})
 
 
 def _as_text(key: str, message: Any) -> str:
     width = Console().width
-    return f"{key}\n{pretty_repr(_sizes_for_bytes(message), max_width=width)}"
+    return f"{key}\n{pretty_repr(message, max_width=width)}"
 
 
-def _sizes_for_bytes(value: Any) -> Any:
+def _shown(value: Any, depth: int = 0) -> Any:
+    """Return a message with sizes in place of bytes; raises ValueError for what none of ours is."""
+    if depth > DEEPEST:
+        raise ValueError("it is nested too deep")
     if isinstance(value, bytes):
         return f"<{counted(len(value), 'byte')}>"
     if isinstance(value, list):
-        return [_sizes_for_bytes(item) for item in value]
+        return [_shown(item, depth + 1) for item in value]
     if isinstance(value, dict):
-        return {key: _sizes_for_bytes(item) for key, item in value.items()}
-    return value
+        if not all(isinstance(key, str) for key in value):
+            raise ValueError("a name in it is no text")
+        return {key: _shown(item, depth + 1) for key, item in value.items()}
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    raise ValueError(f"it holds a {type(value).__name__}")

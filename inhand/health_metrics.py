@@ -10,7 +10,7 @@ from typing import get_args
 from inhand_runtime.roll import Heard, Instance, Roll
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.fields import ServiceState
-from inhand_schemas.keys import parse_key
+from inhand_schemas.keys import Site, parse_key
 from inhand_schemas.messages import Health, TopicHealth
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
@@ -44,6 +44,10 @@ COUNTERS: dict[str, tuple[str, Callable[[TopicHealth], float]]] = {
     "inhand_messages_published": ("Messages sent", lambda one: one.published),
     "inhand_messages_received": ("Messages that came", lambda one: one.received),
     "inhand_messages_dropped": ("Messages that came too late or fast", lambda one: one.dropped),
+    "inhand_messages_unwritten": (
+        "Those of the dropped that a recorder's disk could not take",
+        lambda one: one.unwritten,
+    ),
     "inhand_messages_refused": ("Messages on more keys than are taken", lambda one: one.refused),
     "inhand_messages_malformed": ("Messages that cannot be read", lambda one: one.malformed),
     "inhand_messages_lost": ("Messages that never came", lambda one: one.lost),
@@ -54,11 +58,12 @@ class HealthMetrics(Collector):
     """What a roll knows at the moment at which it is asked, from any thread."""
 
     def __init__(
-        self, roll: Roll, expected: Iterable[Instance], can_hear: Callable[[], bool]
+        self, roll: Roll, site: Site, expected: Iterable[Instance], can_hear: Callable[[], bool]
     ) -> None:
-        """``expected`` are those whom the settings name, and who are down when they do not live;
-        ``can_hear`` says whether anything can be heard at all."""
+        """``site`` is the rig's, ``expected`` are those whom the settings name, and who are down
+        when they do not live; ``can_hear`` says whether anything can be heard at all."""
         self._roll = roll
+        self._site = site
         self._expected = tuple(expected)
         self._can_hear = can_hear
 
@@ -82,7 +87,7 @@ class HealthMetrics(Collector):
             sorted(up.items()),
         )
         yield from _of_instances(heard)
-        yield from _of_keys(heard)
+        yield from _of_keys(heard, self._site)
 
 
 def _of_instances(heard: dict[Instance, Heard]) -> Iterator[Metric]:
@@ -119,9 +124,9 @@ def _of_instances(heard: dict[Instance, Heard]) -> Iterator[Metric]:
     )
 
 
-def _of_keys(heard: dict[Instance, Heard]) -> Iterator[Metric]:
+def _of_keys(heard: dict[Instance, Heard], site: Site) -> Iterator[Metric]:
     keys = [
-        ((*one, *_stream_and_name(key)), topic)
+        ((*one, *_stream_and_name(key, site)), topic)
         for one, said in heard.items()
         for key, topic in said.health.topics.items()
     ]
@@ -151,10 +156,11 @@ def _gauge(name: str, text: str, labels: tuple[str, ...], rows: Iterable[Row]) -
     return family
 
 
-def _stream_and_name(key: str) -> tuple[str, str]:
-    """The stream and name of a key; a foreign key is the name of no stream."""
+def _stream_and_name(key: str, site: Site) -> tuple[str, str]:
+    """The stream and name of a key of the rig; any other, as where a hub shows itself in another
+    rig, is the name of no stream."""
     try:
         parsed = parse_key(key)
     except KeyFormatError:
         return "", key
-    return parsed.stream, parsed.name
+    return (parsed.stream, parsed.name) if parsed.site == site else ("", key)

@@ -4,6 +4,7 @@ Needs root, unless ``--root`` names a folder of one's own.
 """
 
 import argparse
+import os
 import sys
 from pathlib import Path
 
@@ -62,9 +63,21 @@ def _install(root: Path) -> int:
         )
     files = deployed_files(command)
     changed = Installation(root).install(files)
+    if missing := _missing_program(root, command):
+        print(
+            f"its units run {missing}, which is not in {root}: put Inhand there, or run its own: "
+            f"chroot {root} /opt/inhand/bin/inhand install",
+            file=sys.stderr,
+        )
     print(f"{counted(len(files), 'file')} in place, {len(changed)} of them changed")
     print(AFTERWARDS.format(samples="/usr/local/share/inhand/settings"))
     return DONE
+
+
+def _missing_program(root: Path, command: str) -> str | None:
+    """Return the program of a command, unless it is there below the root."""
+    program_path = command.split()[0]
+    return None if os.path.lexists(root / program_path.lstrip("/")) else program_path
 
 
 def _uninstall(root: Path) -> int:

@@ -79,7 +79,7 @@ class Look:
 
         def receive(sample: Received) -> None:
             with contextlib.suppress(MessageError, KeyFormatError):  # `inhand status` names them
-                on_health(HEALTH.decode(sample.payload, sample.encoding))
+                on_health(HEALTH.received(sample.key, sample.payload, sample.encoding))
 
         pattern = HEALTH.pattern(self.site)
         self._subscribers.append(subscribe(self._session, pattern, HEALTH.delivery, receive))
@@ -213,8 +213,9 @@ def stream_and_name(text: str) -> tuple[AnyTopic, str | None]:
 
 
 def output() -> Console:
-    """Standard output for tables; what is no terminal takes wide lines."""
-    console = Console()
+    """Standard output for tables, in which whatever others sent is only text; what is no terminal
+    takes wide lines."""
+    console = Console(markup=False, emoji=False)
     if not console.is_terminal:
         console.width = FILE_WIDTH
     return console

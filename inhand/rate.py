@@ -77,7 +77,7 @@ class Meter:
         """Take note of a message; one without number and time is none."""
         try:
             stamp = _decoder.decode(sample.payload)
-        except msgspec.MsgspecError:
+        except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
             return
         self._losses.count(sample.key, stamp.sequence)
         window = self._window.setdefault(sample.key, deque(maxlen=WINDOW_SAMPLES))

@@ -35,7 +35,7 @@ class Shown:
 
     def __init__(self, values: Mapping[str, Any], folder: Path) -> None:
         """``values`` are those of the file and the environment, right or wrong; ``folder`` is
-        the file's, which a relative ``password_file`` follows."""
+        the file's, which a relative path of a password follows."""
         self._secrets: set[str] = set()
         self.settings = self._table(
             {name: value for name, value in values.items() if name not in SERVICES}, RigFile
@@ -99,7 +99,9 @@ def _options_model(source: Any) -> Any:
 
 
 def _password_files(values: Mapping[str, Any], folder: Path) -> Iterator[Path]:
-    studios = values.get("studio")
+    zenoh, studios = values.get("zenoh"), values.get("studio")
+    if isinstance(zenoh, Mapping) and isinstance(path := zenoh.get("password"), str):
+        yield folder / path
     for table in studios.values() if isinstance(studios, Mapping) else ():
         if isinstance(table, Mapping) and isinstance(path := table.get("password_file"), str):
             yield folder / path

@@ -10,6 +10,7 @@ from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED
 from inhand_runtime.settings import RigFile, load_rig_file
 from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.wording import printable
 from inhand_schemas.keys import Site
 from inhand_schemas.procedures import SHUTTER, ShutterReply, ShutterRequest
 
@@ -66,7 +67,9 @@ def _report(replies: dict[str, ShutterReply]) -> list[str]:
     for camera, reply in sorted(replies.items()):
         print(f"{camera}: {'closed' if reply.closed else 'open'}")
     return [
-        f"{camera}: {reply.problem}" for camera, reply in sorted(replies.items()) if reply.problem
+        f"{camera}: {printable(reply.problem)}"
+        for camera, reply in sorted(replies.items())
+        if reply.problem
     ]
 
 

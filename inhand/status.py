@@ -5,18 +5,26 @@ or two publish the same.
 """
 
 import argparse
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import msgspec
 from inhand_runtime.exit_codes import DONE, FAILED
-from inhand_runtime.health_lines import closed_shutters, late_lines, left_unused, unused_counts
+from inhand_runtime.health_lines import (
+    deleted_recordings,
+    late_lines,
+    left_unused,
+    shown_state,
+    stilled_instances,
+    unused_counts,
+)
 from inhand_runtime.roll import Heard, Instance, Roll
 from inhand_runtime.settings import SERVICES, load_rig_file
+from inhand_runtime.wording import printable
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.topics import HEALTH
-from rich.console import Console
 from rich.table import Table
 
 from inhand.instances import problems
@@ -45,7 +53,12 @@ def run(arguments: argparse.Namespace) -> int:
     if state.living:
         output().print(_table(state.living))
     living = state.living
-    for line in (*closed_shutters(living), *left_unused(living), *late_lines(living)):
+    for line in (
+        *stilled_instances(living),
+        *deleted_recordings(living),
+        *left_unused(living),
+        *late_lines(living),
+    ):
         print(line)
     for line in state.problems:
         print(f"WRONG: {line}")
@@ -90,12 +103,15 @@ def expected_instances(config: Path | None) -> tuple[Instance, ...]:
 
 
 def _listen(look: Look, roll: Roll, expected: tuple[Instance, ...], seconds: float | None) -> None:
+    remarks: set[str] = set()
     for sample in look.samples(seconds):
         if sample is not None:
             try:
-                roll.hear(HEALTH.decode(sample.payload, sample.encoding))
+                roll.hear(HEALTH.received(sample.key, sample.payload, sample.encoding))
             except (MessageError, KeyFormatError) as error:
-                Console(stderr=True).print(f"{sample.key}: {error}", soft_wrap=True)
+                if (remark := printable(f"{sample.key}: {error}")) not in remarks:
+                    remarks.add(remark)
+                    print(remark, file=sys.stderr)
         if roll.settled(expected):
             return
 
@@ -116,7 +132,7 @@ def _table(living: dict[Instance, Heard | None]) -> Table:
         latency = health.latency_ms
         table.add_row(
             " ".join(instance),
-            "shut" if health.shutter_closed else health.state,
+            shown_state(health),
             f"{health.uptime_s:.0f}",
             f"{health.resident_bytes / 1e6:.0f}",
             "" if latency is None else f"{latency.p50:.1f} / {latency.p99:.1f}",

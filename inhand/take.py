@@ -90,7 +90,7 @@ class _View:
         """Look at a sample; returns whether it belongs to this camera's recording."""
         try:
             topic, parsed = topic_of(sample.key)
-            message = topic.decode(sample.payload, sample.encoding)
+            message = topic.received(sample.key, sample.payload, sample.encoding)
         except (MessageError, KeyFormatError) as error:
             self.say(f"! A message on {sample.key} cannot be read: {error}")
             return False

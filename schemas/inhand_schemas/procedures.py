@@ -12,7 +12,7 @@ from msgspec import Meta, Struct
 from inhand_schemas.errors import MessageError
 from inhand_schemas.fields import Count, Fraction, Name, Nanoseconds, Text
 from inhand_schemas.keys import Site, require_name
-from inhand_schemas.messages import Pose
+from inhand_schemas.messages import Pose, RecordingState
 
 MOST_HYPOTHESES = 1000
 """Number of hypotheses of an object that a reply holds at the most: the likeliest."""
@@ -101,6 +101,38 @@ class HypothesesReply(Struct, frozen=True, kw_only=True):
     objects: Annotated[tuple[ObjectHypotheses, ...], Meta(max_length=1024)]
 
 
+class RecorderRequest(Struct, frozen=True, kw_only=True):
+    """Do what the verb says, of one recorder or of all.
+
+    Requests with one ``id`` are one: who asks again, because not all have answered, has nothing
+    done twice.
+    """
+
+    id: Text
+    recorder: Name | None = None
+
+
+class KindsOfLoss(Struct, frozen=True, kw_only=True):
+    """How many messages of a key are missing in recordings, since the recorder started: never came
+    (``transport``), came too fast (``queue``), or the ``disk`` could not take them."""
+
+    transport: Count = 0
+    queue: Count = 0
+    disk: Count = 0
+
+
+class RecorderReply(Struct, frozen=True, kw_only=True):
+    """What a recorder does from now on; ``finished`` is the name of the file that a pause or a
+    split has made whole, and ``problem`` is why a request was not done. ``losses`` are by key, of
+    those that have any."""
+
+    recorder: Name
+    recording: RecordingState
+    losses: Annotated[dict[str, KindsOfLoss], Meta(max_length=4096)] = {}
+    finished: Text | None = None
+    problem: Text | None = None
+
+
 @dataclass(frozen=True)
 class Procedure(Generic[Q, R]):
     """One verb of a service, ``{realm}/@v1/{rig}/@rpc/{service}/{verb}/{instance}``.
@@ -159,4 +191,17 @@ CONTROL = Procedure("capture", "control", ControlRequest, ControlReply, "camera"
 HYPOTHESES = Procedure("tracker", "hypotheses", HypothesesRequest, HypothesesReply, "tracker")
 RELOAD = Procedure("tracker", "reload", ReloadRequest, ReloadReply, "tracker")
 
-PROCEDURES: tuple[Procedure[Any, Any], ...] = (SHUTTER, CONTROL, HYPOTHESES, RELOAD)
+PAUSE = Procedure("recorder", "pause", RecorderRequest, RecorderReply, "recorder")
+RESUME = Procedure("recorder", "resume", RecorderRequest, RecorderReply, "recorder")
+SPLIT = Procedure("recorder", "split", RecorderRequest, RecorderReply, "recorder")
+SNAPSHOT = Procedure("recorder", "snapshot", RecorderRequest, RecorderReply, "recorder")
+STATUS = Procedure("recorder", "status", RecorderRequest, RecorderReply, "recorder")
+
+RECORDER_PROCEDURES = (PAUSE, RESUME, SPLIT, SNAPSHOT, STATUS)
+PROCEDURES: tuple[Procedure[Any, Any], ...] = (
+    SHUTTER,
+    CONTROL,
+    HYPOTHESES,
+    RELOAD,
+    *RECORDER_PROCEDURES,
+)

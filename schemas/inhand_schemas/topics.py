@@ -44,7 +44,8 @@ class Topic(Generic[T]):
 
     ``gaps_are_losses`` says that a key's messages are numbered one by one. Skeletons, poses and
     previews have the numbers of the frames that they are of: who estimates and is behind leaves
-    some out, and previews are of few.
+    some out, and previews are of few. ``named`` is the field of a message that has the name of its
+    key, where one does.
     """
 
     def __init__(
@@ -54,11 +55,13 @@ class Topic(Generic[T]):
         delivery: Delivery,
         *,
         gaps_are_losses: bool = True,
+        named: str | None = None,
     ) -> None:
         self.stream = stream
         self.message_type = message_type
         self.delivery = delivery
         self.gaps_are_losses = gaps_are_losses
+        self.named = named
         self.encoding = f"application/msgpack;{message_type.__name__}.v1"
         self._decoder = msgspec.msgpack.Decoder(message_type)
 
@@ -90,6 +93,18 @@ class Topic(Generic[T]):
         except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
             raise MessageError(f"no valid {self.message_type.__name__}: {error}") from None
 
+    def received(self, key: str, data: bytes, encoding: str | None = None) -> T:
+        """The message in ``data`` that came on a key, on whose name alone its sender may be let.
+
+        Raises MessageError, also for a message in another's name, or UnknownVersionError.
+        """
+        message = self.decode(data, encoding)
+        if self.named is not None:
+            name = getattr(message, self.named)
+            if name != key.rpartition("/")[2]:
+                raise MessageError(f"a {self.message_type.__name__} in the name of {name!r}")
+        return message
+
     def _check_encoding(self, encoding: str) -> None:
         match = _ENCODING.fullmatch(encoding)
         if match is None or match[1] != self.message_type.__name__:
@@ -105,10 +120,10 @@ INFO = Topic("info", messages.CameraInfo, KEPT)
 RGBD = Topic("rgbd", messages.RgbdFrame, BULK)
 PREVIEW = Topic("preview", messages.Preview, BULK, gaps_are_losses=False)
 SKELETONS = Topic("skeletons", messages.Skeletons, URGENT, gaps_are_losses=False)
-POSE = Topic("pose", messages.ObjectPose, URGENT, gaps_are_losses=False)
+POSE = Topic("pose", messages.ObjectPose, URGENT, gaps_are_losses=False, named="object")
 EVENT = Topic("event", messages.Event, RELIABLE)
-LABEL = Topic("label", messages.ObjectPose, RELIABLE)
-HEALTH = Topic("health", messages.Health, URGENT)
+LABEL = Topic("label", messages.ObjectPose, RELIABLE, named="object")
+HEALTH = Topic("health", messages.Health, URGENT, named="instance")
 
 AnyTopic = (
     Topic[messages.CameraInfo]

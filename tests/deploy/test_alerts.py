@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from examples import RUNNING
 from inhand_runtime.roll import Roll
+from inhand_schemas.keys import Site
 from inhand_schemas.messages import Latency, TopicHealth
 from msgspec.structs import replace
 from prometheus_client import CollectorRegistry, generate_latest
@@ -59,7 +60,7 @@ def test_each_metric_and_label_that_a_rule_names_is_there() -> None:
     roll.change("tracker", "mug", True)
     roll.hear(HEALTH)
     registry = CollectorRegistry()
-    registry.register(HealthMetrics(roll, (), lambda: True))
+    registry.register(HealthMetrics(roll, Site(), (), lambda: True))
     given = generate_latest(registry).decode()
     samples = {line.partition("{")[0].partition(" ")[0] for line in given.splitlines()}
     labels = set(re.findall(r"(\w+)=\"", given))

@@ -90,7 +90,7 @@ def test_a_daemon_runs_with_user_and_password_that_nobody_else_sees(
         f'connect = ["{guests.address}"]\nuser = "{given.user}"\npassword = "{given.password}"\n'
         f'authority = "{given.authority}"\n[capture.side]\nsource = "simulator"\n'
     )
-    camera = guests.rig.inhand("capture", "--config", config)
+    camera = guests.rig.inhand("capture", "--config", config, RUST_LOG="debug")
     with guests.joined_by(login(guests, "guest")) as viewer:
         infos = viewer.hear(INFO)
         eventually("its info", lambda: infos)

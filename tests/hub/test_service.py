@@ -73,3 +73,19 @@ def test_files_that_are_not_the_hub_s_are_refused(
     spoil(site.hub)
     with pytest.raises(SettingsError, match=words):
         checked(site, f'realm = "{REALM}"\nrig = "{RIG}"')
+
+
+def test_a_file_of_users_that_others_may_read_is_warned_of(
+    site: SiteFolder, caplog: pytest.LogCaptureFixture
+) -> None:
+    site.add_hub("guests", ("localhost",), passwords=True)
+    given = site.folder_of_hub("guests")
+    settings = f'folder = "{given}"\nconnect = ["tls/hub.local:7448"]'
+    top = f'realm = "{REALM}"\nrig = "{RIG}"'
+    checked(site, top, "guests", settings)
+    assert not caplog.messages
+    (given / "users").chmod(0o644)
+    checked(site, top, "guests", settings)
+    assert caplog.messages == [
+        f"other users of this machine may read users {given / 'users'}: chmod 600"
+    ]

@@ -285,3 +285,16 @@ def test_what_is_no_host_is_refused(tmp_path: Path, host: str) -> None:
     with pytest.raises(SettingsError, match="is no host"):
         create_site(tmp_path / "site", REALM, (RIG,), (host,))
     assert not (tmp_path / "site").exists()
+
+
+def test_a_link_in_the_place_of_a_member_s_folder_is_not_followed(
+    site: SiteFolder, tmp_path: Path
+) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "kept").touch()
+    (site.path / "members" / f"{RIG}.front").symlink_to(elsewhere)
+    with pytest.raises(InhandError, match=r"cannot write .*symbolic link"):
+        site.add("camera", "front", RIG, ())
+    assert [one.name for one in elsewhere.iterdir()] == ["kept"]
+    assert site.load().members == ()

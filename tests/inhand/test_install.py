@@ -40,6 +40,19 @@ def test_what_is_printed_is_what_is_put_there(
     assert oct((tmp_path / UNIT).stat().st_mode)[-3:] == "644"
 
 
+def test_units_that_run_what_is_not_in_the_system_are_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = program().split()[0]
+    assert _install(tmp_path) == 0
+    assert f"its units run {command}, which is not in {tmp_path}" in capsys.readouterr().err
+    there = tmp_path / command.lstrip("/")
+    there.parent.mkdir(parents=True)
+    there.touch()
+    assert _install(tmp_path) == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_uninstall_removes_exactly_what_was_put_there(tmp_path: Path) -> None:
     other = tmp_path / "etc/systemd/system/other.service"
     other.parent.mkdir(parents=True)

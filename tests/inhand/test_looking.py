@@ -2,13 +2,16 @@
 
 import argparse
 
+import msgpack
 import pytest
 from inhand_runtime.inbox import Received
 from inhand_schemas.keys import Site
-from inhand_schemas.topics import POSE
+from inhand_schemas.topics import POSE, RGBD
 
 from inhand.__main__ import main
+from inhand.echo import _shown
 from inhand.looking import positive_count, positive_number, unreadable
+from inhand.rate import Meter
 
 KEY = POSE.key(Site(), "mug")
 
@@ -61,3 +64,23 @@ def test_only_another_version_of_ours_is_to_be_updated() -> None:
     foreign = unreadable(Received(KEY, b"", "zenoh/bytes", 0))
     assert foreign is not None
     assert foreign.endswith("a program that is not Inhand's publishes there")
+
+
+@pytest.mark.parametrize(
+    ("message", "words"),
+    [
+        (msgpack.packb({b"a": 1}), "a name in it is no text"),
+        (msgpack.packb([msgpack.ExtType(5, b"x")]), "it holds a ExtType"),
+        (b"\x91" * 400 + b"\x01", "nested too deep"),
+    ],
+)
+def test_what_no_message_of_ours_holds_is_not_echoed(message: bytes, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        _shown(msgpack.unpackb(message))
+
+
+def test_what_is_nested_without_end_is_not_measured() -> None:
+    meter = Meter()
+    deep = b"\x81\xa1x" + b"\x91" * 100_000 + b"\x01"
+    meter.add(Received("home/@v1/kitchen/rgbd/front", deep, RGBD.encoding, 1))
+    assert meter.rates() == {}

@@ -2,6 +2,7 @@
 
 import signal
 import socket
+import urllib.error
 import urllib.request
 
 import psutil
@@ -37,11 +38,13 @@ def _read(port: int) -> dict[str, float]:
     with urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics", timeout=10) as answer:
         lines = answer.read().decode().splitlines()
     split = [line.rpartition(" ") for line in lines if not line.startswith("#")]
-    samples = {}
+    samples: dict[str, float] = {}
     for name, _, value in split:
         metric, _, labels = name.rstrip("}").partition("{")
         ordered = ",".join(sorted(labels.split(",")))
-        samples[f"{metric}{{{ordered}}}" if labels else metric] = float(value)
+        sample = f"{metric}{{{ordered}}}" if labels else metric
+        assert sample not in samples
+        samples[sample] = float(value)
     return samples
 
 
@@ -90,6 +93,11 @@ def test_only_this_machine_reaches_it_and_systemd_is_told(rig: RunningRig) -> No
         if one.status == psutil.CONN_LISTEN and one.laddr.port == port
     ]
     assert listening == ["127.0.0.1"]
+    # A page of a site elsewhere, whose name points to this machine.
+    for host in ("elsewhere.example", f"elsewhere.example:{port}", ""):
+        asked = urllib.request.Request(f"http://127.0.0.1:{port}/metrics", headers={"Host": host})
+        with pytest.raises(urllib.error.HTTPError, match="421"):
+            urllib.request.urlopen(asked, timeout=10)
     eventually("it is up", lambda: manager.beats() > 4)
     assert metrics.stop() == 0
     assert (manager.heard()[0], manager.heard()[-1]) == ("READY=1", "STOPPING=1")
@@ -102,6 +110,9 @@ def test_a_viewer_of_a_hub_reads_the_same_and_says_when_the_hub_is_away(rig: Run
     metrics.said(f"http://127.0.0.1:{port}/metrics")
     up = 'inhand_instance_up{daemon="hub",service="hub"}'
     eventually("the hub is up", lambda: _read(port).get(up) == 1)
+    # The hub shows itself in the other rig as well, which is no second sample of the same labels.
+    key = '{daemon="hub",name="home/@v1/garage/health/hub",service="hub",stream=""}'
+    eventually("its traffic", lambda: f"inhand_messages_published_total{key}" in _read(port))
     assert _read(port)["inhand_connected"] == 1
     assert site.hub.stop() == 0
     eventually("nothing can be heard", lambda: _read(port)["inhand_connected"] == 0)

@@ -18,6 +18,7 @@ SECRETS = {
     "source": "rtsp-password",
     "unknown": "pasted-into-the-wrong-line",
     "address": "hunter2",
+    "member": "words of a hub's member",
     "key": "MC4CAQAwBQYDK2VwBCIEIA",
 }
 SETTINGS = f"""
@@ -87,6 +88,9 @@ def test_no_secret_is_in_it_wherever_it_stood(
     rig: RunningRig, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     rig.configure(SETTINGS)
+    member = '[zenoh]\npassword = "member.password"\n'
+    rig.config.write_text(rig.config.read_text().replace("[zenoh]\n", member))
+    (rig.folder / "member.password").write_text(SECRETS["member"] + "\n")
     (rig.folder / "wall.password").write_text(SECRETS["file"] + "\n")
     monkeypatch.setenv("INHAND_STUDIO__SHELF__PASSWORD", SECRETS["environment"])
     monkeypatch.syspath_prepend(install_plugins(rig.folder / "plugins"))

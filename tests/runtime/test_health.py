@@ -1,19 +1,25 @@
 """What an instance tells about itself."""
 
 import logging
+import os
+import subprocess
+import sys
 import time
+from pathlib import Path
 
+import msgpack
 import pytest
 from inhand_runtime.health import (
     LOOP_LATE_S,
-    MALFORMED_LASTS_S,
     MOST_KEYS,
     MOST_TROUBLES,
+    PASSING_LASTS_S,
     WINDOW_S,
     HealthBoard,
 )
 from inhand_schemas.errors import MessageError
 from inhand_schemas.topics import HEALTH
+from manager_stand_in import Manager
 
 
 def test_traffic_is_counted_by_key() -> None:
@@ -146,7 +152,7 @@ def test_malformed_messages_are_a_trouble_while_they_come(caplog: pytest.LogCapt
     report = board.report()
     assert report.state == "degraded"
     assert report.last_error == "a: dropped a message: no valid Skeletons"
-    clock.now += MALFORMED_LASTS_S + 1.0
+    clock.now += PASSING_LASTS_S + 1.0
     board.came_round()
     assert board.report().state == "running"
 
@@ -192,3 +198,43 @@ def test_what_the_inbox_had_no_room_for_is_dropped_and_not_lost_as_well() -> Non
     board.received("a", 7)
     topic = board.report().topics["a"]
     assert (topic.dropped, topic.lost) == (2, 2)
+
+
+def test_what_a_message_holds_does_nothing_to_a_log(caplog: pytest.LogCaptureFixture) -> None:
+    board = HealthBoard("tracker", "first")
+    said = msgpack.packb({"state": "\n\x1b[2J12:00:00 hub ERROR forged"})
+    with pytest.raises(MessageError) as caught:
+        HEALTH.decode(said)
+    board.malformed("health/front", caught.value)
+    board.malformed("health/front", MessageError("\n\x1b[2Jforged"))
+    (trouble,) = board.report().troubles
+    for text in (trouble, *caplog.messages):
+        assert text.isprintable()
+
+
+WITHOUT_FILES = """
+import resource, sys
+from inhand_runtime.health import HealthBoard
+from inhand_runtime.service_manager import ServiceManager
+board, manager = HealthBoard("hub", "hub"), ServiceManager()
+before = board.report().resident_bytes
+resource.setrlimit(resource.RLIMIT_NOFILE, (0, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
+manager.advanced()
+health = board.report()
+assert health.resident_bytes == before
+print(health.troubles[0])
+"""
+
+
+def test_one_that_can_open_no_more_files_says_so_and_that_it_lives(tmp_path: Path) -> None:
+    manager = Manager(str(tmp_path / "notify"))
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_FILES],
+        env=os.environ | manager.environment(),
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "cannot read how much memory it takes: Too many open files\n"
+    assert manager.heard() == ["READY=1", "WATCHDOG=1"]
+    manager.close()

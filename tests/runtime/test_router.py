@@ -32,7 +32,7 @@ def router_settings(folder: SiteFolder, address: str, *names: str) -> RouterSett
     site, hub = folder.load(), folder.hub
     known = [site.find(name) for name in names]
     files = (hub / "certificate.pem", hub / "key.pem", hub / "authority.pem")
-    return RouterSettings((address,), *files, access_control(site.realm, known))
+    return RouterSettings((address,), *files, access_control(site.realm, known), ())
 
 
 def client_settings(folder: SiteFolder, address: str, name: str) -> ZenohSettings:

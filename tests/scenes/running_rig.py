@@ -96,6 +96,10 @@ class RunningRig:
         started.said("ready")
         return started
 
+    def command(self, *arguments: str | Path) -> Process:
+        """Start any program."""
+        return self._start([str(one) for one in arguments], {})
+
     def python(self, *arguments: str | Path, **env: str) -> Process:
         """Start a Python program."""
         return self._start([sys.executable, *map(str, arguments)], env)

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from inhand_schemas import topics
 from inhand_schemas.errors import MessageError, UnknownVersionError
+from inhand_schemas.keys import Site
 from inhand_schemas.messages import (
     ColourImage,
     DepthImage,
@@ -20,7 +21,7 @@ from inhand_schemas.messages import (
     RgbdFrame,
     Skeletons,
 )
-from inhand_schemas.topics import RGBD, SKELETONS, TOPICS, AnyTopic
+from inhand_schemas.topics import RGBD, SKELETONS, TOPICS, AnyTopic, Topic
 from message_strategies import MESSAGES
 
 messages = st.sampled_from(sorted(MESSAGES)).flatmap(
@@ -183,3 +184,17 @@ def test_an_example_fills_every_field() -> None:
         plain = msgspec.to_builtins(message, builtin_types=(bytes,))
         assert not [name for name, value in plain.items() if value in (None, {}, (), [])]
     assert POSE in (EXAMPLE[ObjectPose].camera_from_object,)
+
+
+@pytest.mark.parametrize(
+    ("topic", "name"), [(topics.POSE, "mug"), (topics.LABEL, "mug"), (topics.HEALTH, "mug")]
+)
+def test_a_message_in_another_s_name_than_its_key_s_is_refused(
+    topic: Topic[Any], name: str
+) -> None:
+    message = next(one for one in EXAMPLES if isinstance(one, topic.message_type))
+    named = msgspec.structs.replace(message, **{str(topic.named): name})
+    site = Site("home", "kitchen")
+    assert topic.received(topic.key(site, name), topic.encode(named), topic.encoding) == named
+    with pytest.raises(MessageError, match="in the name of 'mug'"):
+        topic.received(topic.key(site, "other"), topic.encode(named), topic.encoding)

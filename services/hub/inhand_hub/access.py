@@ -13,14 +13,17 @@ from inhand_schemas.fields import Name, Text
 from inhand_schemas.keys import Site, beside
 from inhand_schemas.procedures import PROCEDURES, Procedure
 from inhand_schemas.topics import (
+    EVENT,
     HEALTH,
     INFO,
     POSE,
     PREVIEW,
+    RELIABLE,
     RGBD,
     SKELETONS,
     TOPICS,
     AnyTopic,
+    Delivery,
 )
 from msgspec import Meta, Struct
 
@@ -60,13 +63,13 @@ EVERYTHING_ELSE = tuple(topic for topic in TOPICS.values() if topic is not HEALT
 ROLES: dict[RoleName, Role] = {
     "camera": Role("capture", (INFO, RGBD, SKELETONS, PREVIEW), answers=_of("capture")),
     "tracker": Role("tracker", (POSE,), (INFO, RGBD, SKELETONS), answers=_of("tracker")),
-    "recorder": Role("recorder", reads=EVERYTHING_ELSE),
+    "recorder": Role("recorder", (EVENT,), EVERYTHING_ELSE, answers=_of("recorder")),
     "studio": Role("studio", reads=EVERYTHING_ELSE, asks=PROCEDURES),
     "viewer": Role(None, reads=(PREVIEW, POSE, SKELETONS, INFO)),
 }
 
 
-class Member(Struct, frozen=True, kw_only=True):
+class Member(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Who may take part: its name in its rig, its role, and its certificate's common name.
 
     A camera publishes under its own name, a tracker the poses of its ``objects``. One that joins
@@ -91,7 +94,7 @@ class Member(Struct, frozen=True, kw_only=True):
         return self.objects if self.role == "tracker" else (self.name,)
 
 
-class LinkedHub(Struct, frozen=True, kw_only=True):
+class LinkedHub(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A further hub of the site, which connects to the first: its name, its certificate's common
     name, under which hosts it is reached, and when that certificate ends, in seconds since the
     epoch.
@@ -142,6 +145,20 @@ def link_rules(realm: str, rigs: Iterable[str], *, far: bool) -> tuple[Rule, ...
         keys += [procedure.pattern(site) for procedure in PROCEDURES]
         keys += [site.live_pattern(), site.all_claims_pattern()]
     return tuple(Rule(flow, get_args(Operation), tuple(keys)) for flow in get_args(Flow))
+
+
+def deliveries(realm: str, rigs: Iterable[str]) -> list[tuple[Delivery, tuple[str, ...]]]:
+    """Return how what passes a hub is delivered, by keys: as Inhand's own processes send it."""
+    sites = [Site(realm, rig) for rig in rigs]
+    found = []
+    for topic in TOPICS.values():
+        keys = [topic.pattern(site) for site in sites]
+        if topic.delivery.kept:
+            keys += [beside(key) for key in keys]
+        found.append((topic.delivery, tuple(keys)))
+    questions = [procedure.pattern(site) for procedure in PROCEDURES for site in sites]
+    questions += [site.access_pattern() for site in sites]
+    return [*found, (RELIABLE, tuple(questions))]
 
 
 def access_control(

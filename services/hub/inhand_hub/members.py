@@ -1,5 +1,6 @@
 """Who belongs to a site: the list that ``inhand hub add`` writes and the hub reads."""
 
+import os
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -22,11 +23,12 @@ AUTHORITY_FILE, CERTIFICATE_FILE, KEY_FILE = "authority.pem", "certificate.pem",
 """What the hub, and each member, has beside: whom it trusts, and what it shows."""
 
 
-class SiteMembers(Struct, frozen=True, kw_only=True):
+class SiteMembers(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A site: its realm, its rigs, under which hosts its hub is reached, and its members.
 
     ``ends_at`` is when each certificate ends, by common name, in seconds since the epoch; ``hubs``
-    are those beside the first.
+    are those beside the first. A later release's list may have fields that take rights away, so
+    that one with fields unknown here is refused.
     """
 
     realm: Name
@@ -119,13 +121,21 @@ def load_members(path: Path) -> SiteMembers:
     """Read the list; raises SettingsError for one that is none, or contradicts itself."""
     try:
         site = msgspec.json.decode(path.read_bytes(), type=SiteMembers)
+    except PermissionError as error:
+        raise SettingsError(
+            f"cannot read {path}: {error.strerror}: the folder has to belong to the user who runs "
+            f"the hub: chown -R {os.geteuid()} {path.parent}"
+        ) from None
     except OSError as error:
         raise SettingsError(
             f"cannot read {path}: {error.strerror}: make a site by `inhand hub init`, or copy its "
             "hub folder"
         ) from None
     except (msgspec.MsgspecError, UnicodeDecodeError) as error:
-        raise SettingsError(f"{path} is no list of members: {error}; copy it again") from None
+        raise SettingsError(
+            f"{path} is no list of members that this release reads: {error}; copy it again, or "
+            "update this host"
+        ) from None
     if problem := _contradiction(site):
         raise SettingsError(f"{path}: {problem}; copy it again")
     return site
@@ -136,6 +146,8 @@ def _contradiction(site: SiteMembers) -> str | None:
     if twice := _repeated([*common_names, *(one.common_name for one in site.hubs)]):
         return f"{twice!r} stands there twice"
     if twice := _repeated(one.place for one in site.members):
+        return f"{twice!r} stands there twice"
+    if twice := _repeated(site.rigs) or _repeated(one.name for one in site.hubs):
         return f"{twice!r} stands there twice"
     certified = {one.common_name for one in site.members if not one.by_password}
     if set(site.ends_at) != certified:

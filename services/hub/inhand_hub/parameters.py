@@ -19,6 +19,14 @@ class HubParameters:
     """Days before the end of a certificate from which on the hub asks for its renewal."""
     poll_s: float = 0.5
     """Seconds between two looks at the list of members."""
+    links_of_one: int = 32
+    """Links of one certificate beyond which the hub says so: a member is a process, and the few
+    verbs that somebody runs beside it with the same settings."""
+    waiting: int = 128
+    """Files and connections that are open, and no links, beyond which the hub says so: some twenty
+    are its own, and a member's becomes a link within milliseconds."""
+    look_s: float = 2.0
+    """Seconds between two looks at who is connected."""
     warned_every_s: float = 3600.0
     """Seconds between two looks at the days that certificates have left."""
 

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError, SettingsError
-from inhand_runtime.hub_access import require_usable
+from inhand_runtime.hub_access import require_usable, warn_of_readers
+from inhand_runtime.open_files import allow_many
 from inhand_runtime.questions import answer
 from inhand_runtime.router import RouterSettings, open_router
 from inhand_runtime.session import Session
@@ -19,7 +20,8 @@ from inhand_runtime.signals import set_on_signals
 from inhand_runtime.wording import counted
 from inhand_schemas.keys import Site
 
-from inhand_hub.access import Member, access_control
+from inhand_hub.access import Member, access_control, deliveries
+from inhand_hub.links import LinksWatch
 from inhand_hub.members import (
     AUTHORITY_FILE,
     CERTIFICATE_FILE,
@@ -70,6 +72,7 @@ def _require_users(path: Path, members: Sequence[Member]) -> None:
         users = {line.partition(":")[0] for line in path.read_text(encoding="utf-8").splitlines()}
     except OSError as error:
         raise SettingsError(f"cannot read {path}: {error.strerror}: copy it again") from None
+    warn_of_readers("users", path)
     if missing := {one.common_name for one in members} - users:
         raise SettingsError(f"{path} has no password of {min(missing)}: copy it again")
     if not users:
@@ -79,6 +82,7 @@ def _require_users(path: Path, members: Sequence[Member]) -> None:
 def run(settings: Settings[HubSettings]) -> None:
     """Run the router until SIGTERM or SIGINT; raises SettingsError or InhandError."""
     stop = threading.Event()
+    allow_many()
     with set_on_signals(stop):
         state, site = _state(settings), check(settings)
         while not stop.is_set():
@@ -108,10 +112,12 @@ def _run_until_changed(
         )
         daemon.health.state = "running"
         watch = _Watch(daemon, settings, state, site)
+        members, linked = site.members_of(settings.instance), site.links_of(settings.instance)
+        links = LinksWatch(daemon, {*(one.common_name for one in members), *linked})
         while not (daemon.stop.wait(DEFAULT_HUB.poll_s) or stop.is_set()):
             daemon.health.came_round()
             watch.look_at_ends()
-            watch.look_at_strangers()
+            links.look()
             if (changed := watch.changed()) is not None:
                 log.info("members or certificates changed: the hub starts anew, members return")
                 return changed
@@ -119,7 +125,7 @@ def _run_until_changed(
 
 
 class _Watch:
-    """Looks whether files of the hub have changed, whose certificate ends, and who is no member."""
+    """Looks whether files of the hub have changed, and whose certificate ends."""
 
     def __init__(
         self,
@@ -136,7 +142,6 @@ class _Watch:
         self._site = site
         self._now = now
         self._next_look_at_ends = now()
-        self._strangers: set[str] = set()
 
     def changed(self) -> _Changed | None:
         """Return the files that are to be taken over; those that contradict each other are a
@@ -166,22 +171,6 @@ class _Watch:
                 f"end {name}", f"the certificate of {name} {ends}: `inhand hub renew {name}`"
             )
 
-    def look_at_strangers(self) -> None:
-        """Name those that the rules do not know: Zenoh lets in whom the authority ever let in, and
-        nothing of them goes through."""
-        name, site = self._settings.instance, self._site
-        known = {*(one.common_name for one in site.members_of(name)), *site.links_of(name)}
-        strangers = {who: at for who, at in self._daemon.certified().items() if who not in known}
-        for gone in self._strangers - set(strangers):
-            self._daemon.health.well(f"stranger {gone}")
-        for who, host in strangers.items():
-            self._daemon.health.trouble(
-                f"stranger {who}",
-                f"{who}, which is no member, was revoked perhaps, is connected from {host}, and "
-                "nothing of it goes through: end what shows this certificate there",
-            )
-        self._strangers = set(strangers)
-
     def _own_end(self) -> list[tuple[str, float]]:
         try:
             days = require_usable(_credentials(self._settings), serves=True)
@@ -206,6 +195,7 @@ def _router(settings: Settings[HubSettings], site: SiteMembers) -> Iterator[Sess
         given.key,
         given.authority,
         rules,
+        deliveries(site.realm, site.rigs),
         connect=service.connect,
         users=service.folder / USERS_FILE if hub is not None and hub.passwords else None,
     )

@@ -369,4 +369,4 @@ def _failure(error: OSError, path: Path) -> InhandError:
         return SettingsError(
             f"{error.filename or path} is not there: name the folder that `inhand hub init` made"
         )
-    return InhandError(f"cannot write {error.filename or path}: {error.strerror}")
+    return InhandError(f"cannot write {error.filename or path}: {error.strerror or error}")

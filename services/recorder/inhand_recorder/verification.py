@@ -12,7 +12,7 @@ from inhand_runtime.wording import counted
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.topics import INFO, RGBD, topic_of
-from mcap.records import DataEnd, Message, Metadata, Statistics
+from mcap.records import Attachment, DataEnd, Message, Metadata, Statistics
 
 from inhand_recorder.clock import CLOCK_RECORD, parse_clock_steps, time_text
 from inhand_recorder.faults import (
@@ -23,7 +23,7 @@ from inhand_recorder.faults import (
     FaultLedger,
 )
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, Losses, parse_losses
-from inhand_recorder.records import Bytes
+from inhand_recorder.records import Bytes, attachment_is_sound
 from inhand_recorder.scanning import (
     Stretch,
     channels,
@@ -108,6 +108,8 @@ def _problems(path: Path, data: Bytes, messages: "_Messages", apart: set[int]) -
 
 def _structural_problems(data: Bytes, stretch: Stretch) -> Iterator[str]:
     for record in stretch.records:
+        if isinstance(record, Attachment) and not attachment_is_sound(data, stretch.offset):
+            yield f"the attachment {record.name} is damaged, its checksum contradicts it"
         if not isinstance(record, DataEnd) or record.data_section_crc == 0:
             continue
         if zlib.crc32(memoryview(data)[: stretch.offset]) != record.data_section_crc:

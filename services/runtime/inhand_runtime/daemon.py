@@ -33,6 +33,7 @@ from inhand_runtime.session import (
     Subscription,
     certified,
     connected,
+    count_links,
     end_subscription,
     hear_namesakes,
     open_session,
@@ -121,17 +122,24 @@ class Daemon:
         *,
         samples: int | None = None,
         size: int = UNBOUNDED,
+        wanted: Callable[[str], bool] | None = None,
     ) -> Arrivals:
         """Let a topic (one name of it, or all) arrive in the inbox, until it is unsubscribed.
 
-        ``samples`` and ``size`` (bytes) bound what may wait; without ``samples`` the topic's
-        delivery does. The oldest beyond the bound is dropped and counted.
+        What comes on a key that is not ``wanted`` takes no room. ``samples`` and ``size`` (bytes)
+        bound what may wait; without ``samples`` the topic's delivery does. The oldest beyond the
+        bound is dropped and counted.
         """
         if samples is None:
             samples = NEWEST_SAMPLES if topic.delivery.readers == "newest" else EVERY_SAMPLES
         lane = self.inbox.lane(samples=samples, size=size, on_drop=self.health.overflowed)
         pattern = topic.pattern(self.site) if name is None else topic.key(self.site, name)
-        handle = subscribe(self._session, pattern, topic.delivery, lane.put)
+
+        def put(sample: Received) -> None:
+            if wanted is None or wanted(sample.key):
+                lane.put(sample)
+
+        handle = subscribe(self._session, pattern, topic.delivery, put)
         arrivals = Arrivals(pattern, handle, lane)
         self._arrivals.append(arrivals)
         return arrivals
@@ -198,9 +206,13 @@ class Daemon:
         """Whether no other process is connected now."""
         return not connected(self._session)
 
-    def certified(self) -> dict[str, str]:
-        """The common names of the certificates that others show now, with their hosts."""
+    def certified(self) -> dict[str, list[str]]:
+        """The common names of the certificates that others show now, with the host of each link."""
         return certified(self._session)
+
+    def count_links(self) -> int:
+        """How many links to others are up."""
+        return count_links(self._session)
 
     def receive(self, timeout_s: float) -> Received | None:
         """The next sample of the inbox, or None; a main loop that calls it is seen to live."""
@@ -210,7 +222,7 @@ class Daemon:
     def decode(self, topic: Topic[T], sample: Received) -> T | None:
         """The sample's message; None when it is malformed, which is counted and logged."""
         try:
-            message = topic.decode(sample.payload, sample.encoding)
+            message = topic.received(sample.key, sample.payload, sample.encoding)
         except (MessageError, KeyFormatError) as error:
             self.health.malformed(sample.key, error)
             return None

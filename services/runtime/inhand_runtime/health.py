@@ -10,7 +10,9 @@ from fnmatch import fnmatchcase
 
 import psutil
 from inhand_schemas.fields import ServiceState
-from inhand_schemas.messages import Health, Latency, TopicHealth
+from inhand_schemas.messages import Health, Latency, RecordingState, TopicHealth
+
+from inhand_runtime.wording import printable
 
 log = logging.getLogger(__name__)
 
@@ -22,8 +24,9 @@ LONGEST_LATENCY_MS = 60_000.0
 MOST_KEYS = 1024
 OTHER_KEYS = "(other keys)"
 MOST_TROUBLES = 64
-MALFORMED_LASTS_S = 5.0
-"""Seconds for which a malformed message is a trouble of now."""
+LONGEST_TEXT = 4096
+PASSING_LASTS_S = 5.0
+"""Seconds for which a malformed message, or memory that could not be read, is a trouble of now."""
 FARTHEST_GAP = 1 << 20
 """Number of missing messages from which on a gap is another publisher's numbering."""
 LOOP_LATE_S = 3.0
@@ -51,18 +54,21 @@ class HealthBoard:
         self.state: ServiceState = "starting"
         self.effort: float | None = None
         self.shutter_closed: bool | None = None
+        self.recording: RecordingState | None = None
         self.service = service
         self._instance = instance
         self._now = now
         self._lock = threading.Lock()
         self._started = now()
         self._process = psutil.Process()
+        self._resident_bytes = 0
         self._published: Counter[str] = Counter()
         self._received: Counter[str] = Counter()
         self._dropped: Counter[str] = Counter()
         self._refused: Counter[str] = Counter()
         self._malformed: Counter[str] = Counter()
         self._lost: Counter[str] = Counter()
+        self._unwritten: Counter[str] = Counter()
         self._overflowed: Counter[str] = Counter()
         self._latest_ms: dict[str, float] = {}
         self._sequences: dict[str, int] = {}
@@ -117,6 +123,21 @@ class HealthBoard:
         """Count a message that the instance does not take, however much room there is."""
         self._count(self._refused, key)
 
+    def unwritten(self, key: str, count: int) -> None:
+        """Count those among the dropped that a disk could not take."""
+        with self._lock:
+            self._unwritten[key] += count
+
+    def unwritten_counts(self) -> dict[str, int]:
+        """How many messages of each key a disk could not take so far."""
+        with self._lock:
+            return dict(self._unwritten)
+
+    def lost_counts(self) -> dict[str, int]:
+        """How many messages of each key never came so far."""
+        with self._lock:
+            return dict(self._lost)
+
     def drops(self) -> dict[str, int]:
         """How many messages of each key the inbox had no room for so far."""
         with self._lock:
@@ -127,12 +148,12 @@ class HealthBoard:
         such messages come."""
         counted = self._count(self._malformed, key)
         kind = (counted, type(error).__name__)
-        text = f"{key}: dropped a message: {error}"[:4096]
+        text = printable(f"{key}: dropped a message: {error}"[:LONGEST_TEXT])[:LONGEST_TEXT]
         with self._lock:
             first = kind not in self._kinds_logged
             self._kinds_logged.add(kind)
             self._last_error = text
-            self._set_trouble(f"malformed {counted}", text, self._now() + MALFORMED_LASTS_S)
+            self._set_trouble(f"malformed {counted}", text, self._now() + PASSING_LASTS_S)
         if first:
             log.warning("%s (further ones are only counted)", text)
 
@@ -159,7 +180,7 @@ class HealthBoard:
     def error(self, text: str) -> None:
         """Remember the last thing that went wrong, and log it."""
         with self._lock:
-            self._last_error = text[:4096]
+            self._last_error = text[:LONGEST_TEXT]
         log.error("%s", text)
 
     def trouble(self, name: str, text: str, *, lasts_s: float = float("inf")) -> None:
@@ -167,7 +188,7 @@ class HealthBoard:
 
         While anything is wrong a running instance is degraded. A text is logged when it is new.
         """
-        text = text[:4096]
+        text = text[:LONGEST_TEXT]
         with self._lock:
             before = self._troubles.get(name)
             self._set_trouble(name, text, self._now() + lasts_s)
@@ -211,12 +232,14 @@ class HealthBoard:
                     rate_hz=(totals[key] - self._last_totals[key]) / elapsed,
                     late_ms=self._latest_ms.get(key),
                     refused=self._refused[key],
+                    unwritten=self._unwritten[key],
                 )
                 for key in sorted(self._keys)
             }
             self._latest_ms = {}
             self._last_totals, self._last_report = totals, now
             self._sequence += 1
+            resident_bytes = self._read_memory(now)
             troubles = self._current_troubles(now)
             return Health(
                 sequence=self._sequence - 1,
@@ -225,15 +248,25 @@ class HealthBoard:
                 instance=self._instance,
                 state="degraded" if troubles and self.state == "running" else self.state,
                 uptime_s=now - self._started,
-                resident_bytes=self._process.memory_info().rss,
+                resident_bytes=resident_bytes,
                 topics=topics,
                 latency_ms=self._current_latency(now),
                 effort=self.effort,
                 shutter_closed=self.shutter_closed,
+                recording=self.recording,
                 last_error=self._last_error,
                 troubles=troubles,
                 loop_age_s=max(now - self._came_round, 0.0),
             )
+
+    def _read_memory(self, now: float) -> int:
+        """Return this process's memory, or what it was last where too many files are open."""
+        try:
+            self._resident_bytes = self._process.memory_info().rss
+        except OSError as error:
+            text = f"cannot read how much memory it takes: {error.strerror}"
+            self._set_trouble("memory", text, now + PASSING_LASTS_S)
+        return self._resident_bytes
 
     def _current_troubles(self, now: float) -> tuple[str, ...]:
         for name in [name for name, trouble in self._troubles.items() if trouble.ends_at <= now]:

@@ -68,7 +68,7 @@ def require_usable(given: Credentials, *, serves: bool = False) -> float:
         raise SettingsError(
             f"certificate {given.certificate} cannot be used: {error.reason}"
         ) from None
-    _warn_of_readers("key", given.key)
+    warn_of_readers("key", given.key)
     if days < WARNED_DAYS:
         log.warning(
             "certificate %s ends in %s: %s", given.certificate, counted(int(days), "day"), RENEW
@@ -88,7 +88,7 @@ def require_client(settings: ZenohSettings) -> None:
 def read_password(login: Login) -> str:
     """Read a client's password; raises SettingsError for a file that holds none."""
     _require_readable("password", login.password)
-    _warn_of_readers("password", login.password)
+    warn_of_readers("password", login.password)
     words = login.password.read_text(encoding="utf-8", errors="replace").split()
     if len(words) != 1:
         raise SettingsError(
@@ -204,7 +204,7 @@ def _require_readable(name: str, path: Path) -> None:
         raise SettingsError(f"cannot read {name} {path}: {error.strerror}") from None
 
 
-def _warn_of_readers(name: str, path: Path) -> None:
+def warn_of_readers(name: str, path: Path) -> None:
     """Log that others may read a file; of what systemd gives, the group's bits say nothing."""
     if path.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH) and not is_credential(path):
         log.warning("other users of this machine may read %s %s: chmod 600", name, path)

@@ -7,6 +7,7 @@ import zenoh
 
 from inhand_runtime.errors import InhandError
 from inhand_runtime.session import Session
+from inhand_runtime.wording import printable
 
 log = logging.getLogger(__name__)
 
@@ -59,4 +60,4 @@ def ask(
         if reply.ok is not None:
             yield str(reply.ok.key_expr), reply.ok.payload.to_bytes()
         elif reply.err is not None and (text := reply.err.payload.to_string()) != TIMED_OUT:
-            raise InhandError(f"{key}: {text}")
+            raise InhandError(printable(f"{key}: {text}"))

@@ -10,6 +10,7 @@ from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import Health
 
 from inhand_runtime.daemon import HEALTH_PERIOD_S
+from inhand_runtime.wording import printable
 
 Instance = tuple[str, str]
 """A service's name and an instance's."""
@@ -54,10 +55,11 @@ class Roll:
                 self._living.pop((service, instance), None)
 
     def hear(self, health: Health) -> None:
-        """Take note of a health message."""
+        """Take note of a health message; of one that does not live it is forgotten."""
         instance = (health.service, health.instance)
         with self._lock:
-            self._heard[instance] = Heard(health, self._now())
+            if instance in self._living:
+                self._heard[instance] = Heard(health, self._now())
 
     def living(self) -> dict[Instance, Heard | None]:
         """The live instances by name, with None for one that said nothing yet."""
@@ -84,7 +86,8 @@ class Roll:
             if self._is_silent(instance, heard):
                 lines.append(self._silence(who, heard))
             if heard is not None:
-                lines += [f"{who}: {text}" for text in heard.health.troubles[:MOST_PROBLEMS_OF_ONE]]
+                texts = map(printable, heard.health.troubles[:MOST_PROBLEMS_OF_ONE])
+                lines += [f"{who}: {text}" for text in texts]
         return lines + _published_twice(living)
 
     def _is_silent(self, instance: Instance, heard: Heard | None) -> bool:
@@ -119,5 +122,5 @@ def short_key(key: str) -> str:
     try:
         parsed = parse_key(key)
     except KeyFormatError:
-        return key
+        return printable(key)
     return f"{parsed.stream}/{parsed.name}"

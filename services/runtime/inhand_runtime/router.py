@@ -1,19 +1,23 @@
 """A Zenoh router in this process: clients with certificates may do there what rules say."""
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import zenoh
+from inhand_schemas.topics import Delivery
 
 from inhand_runtime.errors import InhandError
 from inhand_runtime.session import (
+    CONGESTION,
     FOR_EVER_MS,
     HANDSHAKE_TIMEOUT_MS,
+    PRIORITIES,
     RETRY,
     Session,
+    log_what_is_asked_for,
     zenoh_config,
 )
 
@@ -27,6 +31,8 @@ class RouterSettings:
     rules, and to which other routers it connects.
 
     Clients show certificates, or where there is a file of ``users`` a name and password of it.
+    What comes on the keys of ``deliveries`` goes on as these say, whatever its sender wants: one
+    who lets nothing be dropped would stop all others where one reader stands still.
     """
 
     listen: tuple[str, ...]
@@ -34,6 +40,7 @@ class RouterSettings:
     key: Path
     authority: Path
     access_control: Mapping[str, Any]
+    deliveries: Sequence[tuple[Delivery, Sequence[str]]]
     connect: tuple[str, ...] = ()
     users: Path | None = None
 
@@ -44,7 +51,7 @@ def open_router(settings: RouterSettings) -> Iterator[Session]:
 
     The session itself is bound by no rule.
     """
-    zenoh.init_log_from_env_or("off")
+    log_what_is_asked_for()
     tls = {
         "root_ca_certificate": str(settings.authority),
         "listen_certificate": str(settings.certificate),
@@ -73,6 +80,10 @@ def open_router(settings: RouterSettings) -> Iterator[Session]:
             "transport/auth/usrpwd": by_name,
             "transport/link/rx/max_message_size": LARGEST_MESSAGE_BYTES,
             "access_control": dict(settings.access_control),
+            "qos/network": [
+                _overwritten(number, delivery, keys)
+                for number, (delivery, keys) in enumerate(settings.deliveries)
+            ],
         }
     )
     try:
@@ -84,3 +95,22 @@ def open_router(settings: RouterSettings) -> Iterator[Session]:
         ) from None
     with session:
         yield session
+
+
+def _overwritten(number: int, delivery: Delivery, keys: Sequence[str]) -> dict[str, Any]:
+    return {
+        "id": f"delivery {number}",
+        "messages": ["put", "delete", "query"],
+        "key_exprs": list(keys),
+        "flows": ["ingress"],
+        "overwrite": {
+            "priority": _setting(PRIORITIES[delivery.priority]),
+            "congestion_control": _setting(CONGESTION[delivery.congestion]),
+            "express": False,
+        },
+    }
+
+
+def _setting(value: zenoh.Priority | zenoh.CongestionControl) -> str:
+    """Return a value of Zenoh as its settings write it."""
+    return str(value).rpartition(".")[2].lower()

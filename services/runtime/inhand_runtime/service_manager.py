@@ -8,6 +8,7 @@ import contextlib
 import os
 import socket
 import time
+import weakref
 from collections.abc import Callable, Mapping
 
 SOCKET, WATCHDOG_US, WATCHDOG_PID = "NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID"
@@ -35,6 +36,11 @@ class ServiceManager:
         self._next_beat = float("inf") if self._every_s == 0.0 else 0.0
         self._is_up = not self._address
         self._status = ""
+        # One for all time: a process that has too many files open still has to show that it lives.
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) if self._address else None
+        if self._socket is not None:
+            self._socket.setblocking(False)
+            weakref.finalize(self, self._socket.close)
 
     def advanced(self) -> None:
         """Note that the work came round: the first time the service is up, then it is alive."""
@@ -57,14 +63,13 @@ class ServiceManager:
         self._send("STOPPING=1")
 
     def _send(self, text: str) -> None:
-        if not self._address:
+        if self._socket is None:
             return
         # A name that begins with @ is one that no file stands for: the kernel's has a zero.
         name = self._address.encode()
         name = b"\0" + name[1:] if name[:1] == b"@" else name
-        with contextlib.suppress(OSError), socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as sent:
-            sent.setblocking(False)
-            sent.sendto(text.encode(), name)
+        with contextlib.suppress(OSError):
+            self._socket.sendto(text.encode(), name)
 
 
 def without_manager(environment: Mapping[str, str]) -> dict[str, str]:

@@ -63,13 +63,14 @@ SENDING_THREADS = 8
 them stands still for seconds, and with the single one that Zenoh has by itself so does all else
 (seen with Zenoh 1.10.2)."""
 _RUNTIME_VARIABLE = "ZENOH_RUNTIME"
+_LOG_VARIABLE, _NO_SETTINGS = "RUST_LOG", ",zenoh::api::session=info"
 
-_PRIORITIES = {
+PRIORITIES = {
     "urgent": zenoh.Priority.REAL_TIME,
     "normal": zenoh.Priority.DATA,
     "bulk": zenoh.Priority.DATA_LOW,
 }
-_CONGESTION = {
+CONGESTION = {
     "drop": zenoh.CongestionControl.DROP,
     "wait_for_first": zenoh.CongestionControl.BLOCK_FIRST,
 }
@@ -78,13 +79,22 @@ _CONGESTION = {
 @contextlib.contextmanager
 def open_session(settings: ZenohSettings) -> Iterator[Session]:
     """A session that is closed at the end; raises SettingsError or InhandError within seconds."""
-    zenoh.init_log_from_env_or("off")
+    log_what_is_asked_for()
     if settings.mode == "client":
         with _open_client(settings) as session:
             yield session
         return
     with _open_peer(settings) as session, _reconnected(session, settings):
         yield session
+
+
+def log_what_is_asked_for() -> None:
+    """Let Zenoh log what the environment asks for, if anything, but no settings: passwords stand
+    there."""
+    asked = os.environ.get(_LOG_VARIABLE, "")
+    if asked and not asked.endswith(_NO_SETTINGS):
+        os.environ[_LOG_VARIABLE] = asked + _NO_SETTINGS
+    zenoh.init_log_from_env_or("off")
 
 
 def _open_client(settings: ZenohSettings) -> Session:
@@ -223,8 +233,8 @@ class Publisher(Generic[T]):
         delivery = topic.delivery
         quality: dict[str, Any] = {
             "encoding": topic.encoding,
-            "priority": _PRIORITIES[delivery.priority],
-            "congestion_control": _CONGESTION[delivery.congestion],
+            "priority": PRIORITIES[delivery.priority],
+            "congestion_control": CONGESTION[delivery.congestion],
         }
         self._publisher: zenoh.Publisher | zenoh.ext.AdvancedPublisher
         if not delivery.kept:
@@ -317,10 +327,19 @@ def connected(session: Session) -> frozenset[str]:
     return _links(session).peers
 
 
-def certified(session: Session) -> dict[str, str]:
-    """The common names of the certificates that connected processes show, with their hosts."""
-    links = [one for one in session.info.links() if one.auth_identifier]
-    return {str(one.auth_identifier): str(one.dst).rpartition(":")[0] for one in links}
+def certified(session: Session) -> dict[str, list[str]]:
+    """The common names of the certificates that connected processes show, with the host of each
+    link."""
+    hosts: dict[str, list[str]] = {}
+    for link in session.info.links():
+        if link.auth_identifier:
+            hosts.setdefault(str(link.auth_identifier), []).append(str(link.dst).rpartition(":")[0])
+    return hosts
+
+
+def count_links(session: Session) -> int:
+    """The number of links to other processes that are up."""
+    return len(session.info.links())
 
 
 def tokens(session: Session, pattern: str) -> set[str]:

@@ -1,4 +1,4 @@
-"""Numbers of things in sentences that a person reads."""
+"""Numbers of things, and others' words, in sentences that a person reads."""
 
 
 def counted(number: int, thing: str, things: str | None = None) -> str:
@@ -7,3 +7,10 @@ def counted(number: int, thing: str, things: str | None = None) -> str:
     ``things`` is the plural where it is not ``thing`` with an s.
     """
     return f"{number:,} {thing if number == 1 else things or thing + 's'}"
+
+
+def printable(text: str) -> str:
+    """Return what others wrote as one line that does nothing to a terminal or a log: characters
+    that are none to be seen, as line ends and those that begin a terminal's commands, are written
+    as ``\\x1b``."""
+    return "".join(one if one.isprintable() else ascii(one)[1:-1] for one in text)

@@ -4,6 +4,7 @@ import logging
 import time
 from collections.abc import Callable, Sequence
 from functools import cache, partial
+from typing import Any
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
@@ -126,8 +127,8 @@ class TrackerService:
 
     def _subscribe(self, camera: str) -> None:
         """Let messages arrive: the newest, or all as far as there is memory."""
-        waiting: dict[str, int] = {"samples": MOST_WAITING}
-        frames: dict[str, int] = {}
+        waiting: dict[str, Any] = {"samples": MOST_WAITING}
+        frames: dict[str, Any] = {}
         if self._every:
             waiting = frames = {"samples": UNBOUNDED, "size": QUEUE_BYTES}
         self._daemon.subscribe(INFO, camera)
