@@ -10,13 +10,18 @@ from inhand_runtime.recording import RecordedMessage, RecordingError, RecordingW
 from inhand_runtime.recording.copying import copy_message
 from inhand_runtime.recording.layout import LATEST_NS
 
+from inhand_recorder.clips import CLIP_RECORD
 from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps, parse_clock_steps
+from inhand_recorder.journal import PAUSES_RECORD
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses, parse_losses
+from inhand_recorder.provenance import OBJECTS_RECORD, PUBLISHERS_RECORD
 from inhand_recorder.recording_reader import Recording
 
 CONVERTING_SUFFIX = ".converting"
 CONVERSION_RECORD = "conversion"
 """The name of the metadata record in which a converted file says what it was made of."""
+_JOINED = (PAUSES_RECORD, PUBLISHERS_RECORD, OBJECTS_RECORD, CLIP_RECORD)
+"""Names of records that are lists, of times or of names."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +107,7 @@ class _Outputs:
         self, recording: Recording, output: Path, selection: Selection, split_seconds: float
     ) -> None:
         self.files: list[ConvertedFile] = []
-        self._sources = recording.metadata()
+        self._sources, self._attachments = recording.metadata(), recording.attachments()
         self._output, self._selection = output, selection
         self._split_ns = round(1e9 * split_seconds)
         self._whole = not split_seconds and selection == Selection()
@@ -172,6 +177,10 @@ class _Outputs:
     def _finish_file(self) -> None:
         if self._writer is None:
             return
+        for one in self._attachments:
+            self._writer.add_attachment(
+                one.name, one.media_type, one.data, received_ns=one.log_time
+            )
         for name, values in self._records().items():
             self._writer.add_metadata(name, values)
         path = self._writer.close()
@@ -189,10 +198,12 @@ class _Outputs:
         }
         if steps:
             records[CLOCK_RECORD] = format_clock_steps(steps)
-        dropped = _dropped(self._sources) if self._whole else {}
+        dropped, unwritten = _dropped(self._sources) if self._whole else ({}, {})
         counted = self._counter.losses()
         records[LOSSES_RECORD] = format_losses(
-            self._counter.losses({key: n for key, n in dropped.items() if key in counted})
+            self._counter.losses(
+                {key: n for key, n in dropped.items() if key in counted}, unwritten
+            )
         )
         records[CONVERSION_RECORD] = self._about()
         return records
@@ -263,12 +274,19 @@ def _numbered(output: Path, number: int) -> Path:
 
 
 def _carried(sources: Mapping[Path, Mapping[str, dict[str, str]]]) -> dict[str, dict[str, str]]:
-    """Return the sources' records but those that are made anew; where they differ under one name,
-    the later ones are named after their file as well."""
+    """Return the sources' records but those that are made anew.
+
+    Lists of pauses, publishers, objects and clips are joined; where other records differ under one
+    name, the later ones are named after their file as well.
+    """
     records: dict[str, dict[str, str]] = {}
     for path, of_file in sources.items():
         for name, values in of_file.items():
             if name in (CLOCK_RECORD, LOSSES_RECORD):
+                continue
+            if name in _JOINED:
+                known = records.setdefault(name, {})
+                known.update({key: one for key, one in values.items() if one or key not in known})
                 continue
             if name == CONVERSION_RECORD or records.get(name, values) != values:
                 name = f"{name} of {path.name}"
@@ -276,10 +294,14 @@ def _carried(sources: Mapping[Path, Mapping[str, dict[str, str]]]) -> dict[str, 
     return records
 
 
-def _dropped(sources: Mapping[Path, Mapping[str, dict[str, str]]]) -> Counter[str]:
-    dropped: Counter[str] = Counter()
+def _dropped(
+    sources: Mapping[Path, Mapping[str, dict[str, str]]],
+) -> tuple[Counter[str], Counter[str]]:
+    """Return the drops by key, and those among them that the disk did not take."""
+    dropped, unwritten = Counter[str](), Counter[str]()
     for records in sources.values():
         with suppress(ValueError):
             for key, losses in parse_losses(records.get(LOSSES_RECORD, {})).items():
                 dropped[key] += losses.dropped
-    return dropped
+                unwritten[key] += losses.unwritten
+    return dropped, unwritten
