@@ -52,6 +52,7 @@ class Journal:
         self._unwritten_before: Counter[str] = Counter()
         self._waiting: deque[Entry] = deque()
         self._kept: dict[str, Entry] = {}
+        self._latest: dict[str, int] = {}
         self._file: RecordingFile | None = None
         self._paused_since_ns: int | None = None
         self._pauses: dict[int, int | None] = {}
@@ -97,6 +98,7 @@ class Journal:
         if self._paused_since_ns is not None:
             self._pauses = {self._paused_since_ns: at_ns}
             self._paused_since_ns = None
+            self._latest = {}
             self._dropped_before = Counter(self._dropped())
             self._unwritten_before = Counter(self._handling.unwritten())
 
@@ -105,6 +107,13 @@ class Journal:
         if self._file is not None:
             with self._giving_up_on_failure(self._file):
                 self._file.note_clock_step(at_ns, step_ns)
+
+    def hand_over(self) -> None:
+        """Give everything to the system, so that the end of this process takes nothing with it."""
+        self._write_waiting()
+        if self._file is not None:
+            with self._giving_up_on_failure(self._file):
+                self._file.hand_over()
 
     def sync(self) -> None:
         """Bring everything to the disk."""
@@ -157,7 +166,7 @@ class Journal:
             ) from error
         try:
             path = free_path(self._folder, self._rig, now_ns)
-            file = RecordingFile(path, self._clock(), self._handling.make_room)
+            file = RecordingFile(path, self._clock(), self._handling.make_room, self._latest)
         except RecordingError as error:
             raise self._left_no_file(error) from error.__cause__
         with self._giving_up_on_failure(file):
@@ -179,6 +188,7 @@ class Journal:
         self._dropped_before, self._unwritten_before = dropped, unwritten
         self._pauses = {}
         self._file = None
+        self._latest = {**self._latest, **file.latest}
         return path
 
     @contextlib.contextmanager
@@ -187,6 +197,7 @@ class Journal:
             yield
         except RecordingError as error:
             self._file = None
+            self._latest = {**self._latest, **file.latest}
             self._waiting.extendleft(reversed(file.give_up()))
             if file.worth_keeping:
                 raise

@@ -9,7 +9,9 @@ from inhand_runtime.recording import SEQUENCE_MASK
 LOSSES_RECORD = "losses"
 """The name of the metadata record that a recording keeps its losses in."""
 
-_FORMAT = re.compile(r"received=(\d+) lost=(\d+) restarts=(\d+) dropped=(\d+)(?: unwritten=(\d+))?")
+_FORMAT = re.compile(
+    r"received=(\d+) lost=(\d+) restarts=(\d+) dropped=(\d+)(?: unwritten=(\d+))?(?: before=(\d+))?"
+)
 
 
 @dataclass(frozen=True)
@@ -18,7 +20,8 @@ class Losses:
 
     ``lost`` counts the numbers that are missing; ``dropped`` those among them that reached this
     process and found its queue full, and ``unwritten`` those among the dropped that came while the
-    disk took nothing; ``restarts`` how often a publisher began anew.
+    disk took nothing; ``restarts`` how often a publisher began anew. ``before`` are numbers that
+    are missing between the recorder's former file and the first one here.
     """
 
     received: int = 0
@@ -26,6 +29,7 @@ class Losses:
     restarts: int = 0
     dropped: int = 0
     unwritten: int = 0
+    before: int = 0
 
 
 class LossCounter:
@@ -36,7 +40,9 @@ class LossCounter:
     in the 32 bits that a recording keeps, so that a count from the file agrees.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, former: Mapping[str, int] | None = None) -> None:
+        """``former`` are the latest numbers in the recorder's former file, by key."""
+        self._former = former or {}
         self._latest: dict[str, int] = {}
         self._losses: dict[str, Losses] = {}
 
@@ -50,12 +56,18 @@ class LossCounter:
         self._latest[key] = sequence
         received = losses.received + 1
         if latest is None:
-            self._losses[key] = replace(losses, received=received)
+            missing = sequence - self._former.get(key, sequence) - 1
+            self._losses[key] = replace(losses, received=received, before=max(missing, 0))
         elif sequence < latest:
             self._losses[key] = replace(losses, received=received, restarts=losses.restarts + 1)
         else:
             lost = losses.lost + sequence - latest - 1
             self._losses[key] = replace(losses, received=received, lost=lost)
+
+    @property
+    def latest(self) -> Mapping[str, int]:
+        """The latest number by key."""
+        return self._latest
 
     def losses(
         self,
@@ -82,6 +94,7 @@ def format_losses(losses: Mapping[str, Losses]) -> dict[str, str]:
         key: f"received={one.received} lost={one.lost} "
         f"restarts={one.restarts} dropped={one.dropped}"
         + (f" unwritten={one.unwritten}" if one.unwritten else "")
+        + (f" before={one.before}" if one.before else "")
         for key, one in losses.items()
     }
 

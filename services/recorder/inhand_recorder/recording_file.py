@@ -68,13 +68,18 @@ class RecordingFile:
     """
 
     def __init__(
-        self, path: Path, opened_s: float, make_room: Callable[[], bool] = no_room
+        self,
+        path: Path,
+        opened_s: float,
+        make_room: Callable[[], bool] = no_room,
+        former: Mapping[str, int] | None = None,
     ) -> None:
+        """``former`` are the latest numbers in the file before, by key."""
         self.path = path
         self._part = path.with_name(path.name + PART_SUFFIX)
         self._opened_s = opened_s
         self._clock_steps: dict[int, int] = {}
-        self._losses = LossCounter()
+        self._losses = LossCounter(former)
         self._in_memory: list[Entry] = []
         self._noted: dict[str, dict[str, str]] = {}
         self.worth_keeping = False
@@ -89,6 +94,11 @@ class RecordingFile:
     def bytes_written(self) -> int:
         """The size of the file so far, without what stands only in memory."""
         return self._writer.bytes_written
+
+    @property
+    def latest(self) -> Mapping[str, int]:
+        """The latest number by key."""
+        return self._losses.latest
 
     def full(self, limits: Limits, now_s: float) -> bool:
         """Whether it has reached a limit; ``now_s`` is of the clock that ``opened_s`` is of."""
@@ -133,6 +143,12 @@ class RecordingFile:
             # The chunk that went to the file may or may not hold the newest entry.
             del self._in_memory[:-1]
             self.worth_keeping = True
+
+    def hand_over(self) -> None:
+        """Give everything to the system, so that the end of this process takes nothing with it."""
+        self._writer.hand_over()
+        self.worth_keeping = True
+        self._in_memory.clear()
 
     def sync(self) -> None:
         """Bring everything to the disk, and make sure that the file is still there."""

@@ -28,8 +28,11 @@ from inhand_recorder.recording_file import Entry
 from inhand_recorder.retention import Retention
 from inhand_recorder.stamps import entry_apart, entry_of
 
+HAND_OVER_PERIOD_S = 0.1
+"""A crash of this process loses this much, and what came meanwhile: a quarter of a second at the
+most."""
 SYNC_PERIOD_S = 0.75
-"""A crash loses this much and what a sync takes itself: a second at the most."""
+"""A power cut loses this much and what a sync takes itself: a second at the most."""
 TIDY_PERIOD_S = 5.0
 IDLE_S = 0.1
 FIRST_RETRY_S, LAST_RETRY_S = 1.0, 5.0
@@ -119,6 +122,7 @@ class RecordingLoop:
         self._require_room()
         self._journal.sync()
         self._go_on()
+        next_hand_over = time.monotonic() + HAND_OVER_PERIOD_S
         next_sync = time.monotonic() + SYNC_PERIOD_S
         while not self._daemon.stop.is_set():
             self._parts.desk.serve(self._do)
@@ -127,6 +131,9 @@ class RecordingLoop:
                 self._write(sample)
             if self._clips is not None:
                 self._clips.clips.step(time.monotonic(), all_came=sample is None)
+            if time.monotonic() >= next_hand_over:
+                self._journal.hand_over()
+                next_hand_over = time.monotonic() + HAND_OVER_PERIOD_S
             if time.monotonic() >= next_sync:
                 self._look_after()
                 next_sync = time.monotonic() + SYNC_PERIOD_S

@@ -125,6 +125,11 @@ class RecordingWriter:
         with self._reporting():
             self._writer.add_attachment(0, received_ns, name, media_type, data)
 
+    def hand_over(self) -> None:
+        """Write everything so far, so that the end of this process leaves it, if no power cut."""
+        with self._reporting():
+            self._end_chunk()
+
     def sync(self) -> None:
         """Bring everything so far to the disk, so that even a power cut leaves it."""
         with self._reporting():
