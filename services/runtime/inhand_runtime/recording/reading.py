@@ -108,7 +108,7 @@ def in_order_of_reception(timed: Iterable[tuple[int, Item]]) -> Iterator[Item]:
     for number, (time_ns, item) in enumerate(timed):
         if time_ns < newest_ns - REORDERED_NS:
             yield from (heapq.heappop(waiting)[2] for _ in range(len(waiting)))
-            newest_ns = 0
+            newest_ns = time_ns
         newest_ns = max(newest_ns, time_ns)
         heapq.heappush(waiting, (time_ns, number, item))
         while waiting[0][0] < newest_ns - REORDERED_NS:
