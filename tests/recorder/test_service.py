@@ -50,7 +50,7 @@ def test_sigterm_finishes_the_file_within_two_seconds(rig: RunningRig) -> None:
     assert verify_recording(path) == []
 
 
-def test_kill_9_loses_a_second_at_the_most_and_recover_saves_the_rest(rig: RunningRig) -> None:
+def test_kill_9_loses_half_a_second_at_the_most_and_recover_saves_the_rest(rig: RunningRig) -> None:
     recorder = start_recorder(rig)
     rig.publisher("--frame-bytes", "1000")
     eventually("60 frames on the disk", lambda: frames_in(rig) >= 60)
@@ -63,7 +63,7 @@ def test_kill_9_loses_a_second_at_the_most_and_recover_saves_the_rest(rig: Runni
     assert verify_recording(saved) == []
     frames = [m for m in read_recording(saved) if m.key == RGBD_KEY]
     assert [frame.sequence for frame in frames] == list(range(len(frames)))
-    assert killed_ns - frames[-1].received_ns < 1e9
+    assert killed_ns - frames[-1].received_ns < 0.5e9  # a quarter where the machine is not busy
 
 
 def test_a_recorder_that_starts_late_still_gets_the_calibration(rig: RunningRig) -> None:
