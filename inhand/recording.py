@@ -18,6 +18,7 @@ from rich.table import Table
 
 from inhand.looking import output
 from inhand.results import listing, write_json
+from inhand.retrack import add_action as add_retrack_action
 
 RECOVERED_SUFFIX = ".recovered.mcap"
 REPAIRED_SUFFIX = ".repaired.mcap"
@@ -48,6 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             action.add_argument(
                 "-o", "--output", type=Path, metavar="OUT", help="the file to write (of one FILE)"
             )
+    add_retrack_action(actions)
 
 
 def _add_skeleton_arguments(action: argparse.ArgumentParser) -> None:

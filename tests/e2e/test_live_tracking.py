@@ -19,6 +19,7 @@ from inhand_schemas.topics import POSE, RGBD, SKELETONS
 from inhand_tracker.methods.registry import DEFAULT_METHOD, METHODS, new_tracker
 from inhand_tracker.model.model import Model
 from inhand_tracker.model.model_file import load_model, save_model
+from msgspec.structs import replace
 from real_data import DATA, needs_real_data
 from running_rig import RunningRig, eventually
 
@@ -74,6 +75,22 @@ def recorded_poses(recording: Path) -> list[ObjectPose]:
     return [message for message in messages if isinstance(message, ObjectPose)]
 
 
+def assert_retracked_as_live(rig: RunningRig, recorded: Path, live: Sequence[ObjectPose]) -> None:
+    """Track what was recorded live again, without a rig, by the settings of its tracker."""
+    again = rig.folder / "again"
+    arguments = ["--config", str(rig.config), "-o", str(again), "--jobs", "1"]
+    assert main(["recording", "retrack", str(recorded), *arguments]) == 0
+    both = recorded_poses(again / recorded.name)
+    new = [pose for pose in both if pose.object.endswith("_follower")]
+    assert [pose for pose in both if pose not in new] == live
+    named = [replace(pose, object=f"{pose.object}_follower") for pose in live]
+    assert sorted(new, key=by_frame) == sorted(named, key=by_frame)
+
+
+def by_frame(pose: ObjectPose) -> tuple[int, str]:
+    return pose.sequence, pose.object
+
+
 def assert_live_equals_offline(
     rig: RunningRig, dataset: Dataset, tested: DatasetEntry, objects: Sequence[str]
 ) -> None:
@@ -85,7 +102,9 @@ def assert_live_equals_offline(
         save_model(models[name], rig.folder / f"{name}.model")
     paths = [rig.folder / f"{name}.model" for name in objects]
     left_handed = tested.handedness == "left"
-    live = recorded_poses(tracked_live(rig, dataset.path(tested), *paths, left_handed=left_handed))
+    recorded = tracked_live(rig, dataset.path(tested), *paths, left_handed=left_handed)
+    live = recorded_poses(recorded)
+    assert_retracked_as_live(rig, recorded, live)
     frames = load_frames(dataset.path(tested), tested.object)
     for name, model in models.items():
         tracker = new_tracker(model, DEFAULT_METHOD, left_handed=left_handed, seed=SEED)
