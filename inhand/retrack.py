@@ -72,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
     to_do = [task for task in tasks if not is_done(task)]
     outputs = {task.path: task.output for task in to_do}
     with _growing(outputs, lines=arguments.progress_lines):
-        done = in_processes(retrack, to_do, arguments.jobs or usable_cores())
+        done = in_processes(retrack, to_do, arguments.jobs or usable_cores(), apart=True)
     results = {one.path: one for one in done}
     shown = [
         results.get(task.path, Retracked(task.path, task.output, skipped=True)) for task in tasks

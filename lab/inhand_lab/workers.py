@@ -41,13 +41,16 @@ def in_processes(
     tasks: Sequence[Task],
     processes: int,
     on_done: Callable[[Result], None] = lambda _: None,
+    *,
+    apart: bool = False,
 ) -> list[Result]:
     """Return the results of all tasks, in their order; ``on_done`` gets each as it comes.
 
-    A single task, or a single process, runs in this one. The first error ends all; raises
-    InhandError when a worker is killed.
+    A single task, or a single process, runs in this one, unless all shall run ``apart``: in
+    workers, whose single thread gives the same last bits however many there are. The first error
+    ends all; raises InhandError when a worker is killed.
     """
-    if processes == 1 or len(tasks) == 1:
+    if not apart and (processes == 1 or len(tasks) == 1):
         results = []
         for task in tasks:
             results.append(function(task))
@@ -56,7 +59,7 @@ def in_processes(
     # Libraries size their pools of threads when they are loaded: a worker inherits the limits.
     with _environment(ONE_THREAD):
         pool = ProcessPoolExecutor(
-            min(processes, len(tasks)), get_context("spawn"), initializer=_start_worker
+            max(1, min(processes, len(tasks))), get_context("spawn"), initializer=_start_worker
         )
         with pool:
             futures = [pool.submit(function, task) for task in tasks]
