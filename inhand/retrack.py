@@ -13,6 +13,7 @@ from inhand_runtime.recording.part_file import PART_SUFFIX
 from inhand_runtime.settings import load_settings
 from inhand_runtime.wording import counted
 
+from inhand.cluster import add_cluster_option, work_path
 from inhand.looking import camera_name, positive_count
 from inhand.progress import add_progress_option, progress_bar
 from inhand.results import write_json
@@ -55,6 +56,7 @@ def add_action(actions: "argparse._SubParsersAction[argparse.ArgumentParser]") -
     action.add_argument(
         "--jobs", type=positive_count, metavar="N", help="so many at once (default: cores)"
     )
+    add_cluster_option(action)
     action.add_argument("--json", type=Path, metavar="FILE", help="write the result there")
     add_progress_option(action)
     action.set_defaults(run_action=run)
@@ -63,7 +65,7 @@ def add_action(actions: "argparse._SubParsersAction[argparse.ArgumentParser]") -
 def run(arguments: argparse.Namespace) -> int:
     """Track all that is not tracked yet; raises SettingsError, RecordingError or ModelError."""
     # What tracks is large, and no other action needs it.
-    from inhand_lab.workers import in_processes, usable_cores
+    from inhand_lab.workers import in_processes, working
 
     from inhand.retracked import Retracked, is_done, retrack, values
 
@@ -71,8 +73,11 @@ def run(arguments: argparse.Namespace) -> int:
     arguments.folder.mkdir(parents=True, exist_ok=True)
     to_do = [task for task in tasks if not is_done(task)]
     outputs = {task.path: task.output for task in to_do}
-    with _growing(outputs, lines=arguments.progress_lines):
-        done = in_processes(retrack, to_do, arguments.jobs or usable_cores(), apart=True)
+    with (
+        working(arguments.cluster) as cores,
+        _growing(outputs, lines=arguments.progress_lines),
+    ):
+        done = in_processes(retrack, to_do, arguments.jobs or cores, apart=True)
     results = {one.path: one for one in done}
     shown = [
         results.get(task.path, Retracked(task.path, task.output, skipped=True)) for task in tasks
@@ -94,9 +99,14 @@ def _tasks(arguments: argparse.Namespace) -> "list[Retracking]":
 
     from inhand.retracked import Retracking, mark_of
 
-    chosen = {} if arguments.config else {"models": [str(one) for one in arguments.model]}
+    chosen = (
+        {}
+        if arguments.config
+        else {"models": [str(work_path(arguments, one)) for one in arguments.model]}
+    )
+    config = arguments.config and work_path(arguments, arguments.config)
     name = arguments.tracker or (None if arguments.config else DEFAULT_TRACKER)
-    settings = load_settings(arguments.config, "tracker", TrackerSettings, name, chosen)
+    settings = load_settings(config, "tracker", TrackerSettings, name, chosen)
     require_files(settings)
     try:
         load_watcher(settings.instance, settings.service)
@@ -104,7 +114,10 @@ def _tasks(arguments: argparse.Namespace) -> "list[Retracking]":
         raise SettingsError(str(error)) from None
     camera = arguments.camera or (settings.service.camera if arguments.config else None)
     mark = mark_of(settings.instance, settings.service)
-    outputs = _outputs(arguments.files, arguments.folder)
+    outputs = _outputs(
+        [work_path(arguments, path) for path in arguments.files],
+        work_path(arguments, arguments.folder),
+    )
     return [
         Retracking(path, output, settings.instance, settings.service, camera, mark)
         for path, output in outputs.items()

@@ -12,6 +12,8 @@ from typing import TypeVar
 import cv2
 from inhand_runtime.errors import InhandError
 
+from inhand_lab.cluster import current_cluster, on_cluster, run_on_cluster
+
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
@@ -36,6 +38,17 @@ def on_one_core() -> Iterator[None]:
         os.sched_setaffinity(0, usable)
 
 
+@contextmanager
+def working(cluster: str | None) -> Iterator[int]:
+    """Let work go to the Dask cluster at an address while a block runs, or stay here; the number
+    of tasks that are worked on at a time."""
+    if cluster is None:
+        yield usable_cores()
+        return
+    with on_cluster(cluster) as workers:
+        yield workers
+
+
 def in_processes(
     function: Callable[[Task], Result],
     tasks: Sequence[Task],
@@ -48,8 +61,11 @@ def in_processes(
 
     A single task, or a single process, runs in this one, unless all shall run ``apart``: in
     workers, whose single thread gives the same last bits however many there are. The first error
-    ends all; raises InhandError when a worker is killed.
+    ends all; raises InhandError when a worker is killed. Inside of ``working`` all run on its
+    cluster, where the tasks of a killed worker are done by another one.
     """
+    if (cluster := current_cluster()) is not None:
+        return run_on_cluster(cluster, function, tasks, on_done)
     if not apart and (processes == 1 or len(tasks) == 1):
         results = []
         for task in tasks:
