@@ -24,7 +24,7 @@ CAMERA = "camera/"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's arguments."""
     parser.add_argument(
-        "recordings", type=Path, nargs="+", metavar="RECORDING", help="several are played as one"
+        "files", type=Path, nargs="+", metavar="RECORDING", help="several are played as one"
     )
     parser.add_argument(
         "--rate", type=_rate, default=1.0, metavar="R", help="2 = twice as fast, 0 = no pauses"
@@ -65,7 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Publish until the end, SIGTERM or Ctrl-C; raises InhandError."""
     rig_file = load_rig_file(arguments.config)
-    camera = _camera(arguments.recordings, arguments.camera)
+    camera = _camera(arguments.files, arguments.camera)
     cameras = {old: new for old, new in arguments.remap if old.startswith(CAMERA)}
     instance = cameras.pop(CAMERA + camera, camera)
     if cameras:
@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
         instance=instance,
         service=CaptureSettings(source="replay", options=_options(arguments, camera)),
     )
-    with playing_on_terminal(arguments.config, instance, named(arguments.recordings)):
+    with playing_on_terminal(arguments.config, instance, named(arguments.files)):
         run_capture(settings)
     return 0
 
@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _options(arguments: argparse.Namespace, camera: str) -> dict[str, Any]:
     """The options of the source, without those that were not given."""
     wishes = {
-        "file": tuple(arguments.recordings),
+        "file": tuple(arguments.files),
         "rate": arguments.rate,
         "loop": arguments.loop,
         "camera": camera,

@@ -34,7 +34,9 @@ def add_action(actions: "argparse._SubParsersAction[argparse.ArgumentParser]") -
     action = actions.add_parser("retrack", help=text, description=text)
     action.add_argument("files", nargs="+", type=Path, metavar="RECORDING")
     by = action.add_mutually_exclusive_group(required=True)
-    by.add_argument("--model", nargs="+", type=Path, metavar="MODEL", help="the objects' models")
+    by.add_argument(
+        "--model", dest="models", nargs="+", type=Path, metavar="MODEL", help="the objects' models"
+    )
     by.add_argument(
         "--config", type=Path, metavar="FILE", help="with the settings of a tracker in this file"
     )
@@ -102,7 +104,7 @@ def _tasks(arguments: argparse.Namespace) -> "list[Retracking]":
     chosen = (
         {}
         if arguments.config
-        else {"models": [str(work_path(arguments, one)) for one in arguments.model]}
+        else {"models": [str(work_path(arguments, one)) for one in arguments.models]}
     )
     config = arguments.config and work_path(arguments, arguments.config)
     name = arguments.tracker or (None if arguments.config else DEFAULT_TRACKER)
