@@ -161,6 +161,15 @@ def positive_count(text: str) -> int:
     return _above(0, text, int, "a whole number, 1 or more")
 
 
+def camera_name(text: str) -> str:
+    """Read a camera's name; raises ArgumentTypeError, which argparse shows."""
+    try:
+        require_name("camera", text)
+    except KeyFormatError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return text
+
+
 def _above(least: N, text: str, kind: Callable[[str], N], wanted: str) -> N:
     try:
         number = kind(text)
