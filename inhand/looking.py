@@ -17,7 +17,7 @@ from inhand_runtime.signals import set_on_signals
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import VERSION, Site, require_name
 from inhand_schemas.messages import Health
-from inhand_schemas.procedures import Procedure
+from inhand_schemas.procedure import Procedure
 from inhand_schemas.topics import BULK, HEALTH, TOPICS, AnyTopic, topic_of
 from msgspec import Struct
 from rich.console import Console

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import msgspec
-from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
+from inhand_recorder.attachments import copy_attachments
 from inhand_runtime.recording import (
     RecordedMessage,
     RecordingError,
@@ -24,6 +24,7 @@ from inhand_runtime.recording import (
 )
 from inhand_runtime.recording.copying import (
     copy_message,
+    copy_metadata,
     write_beside,
     written_or_gone,
 )
@@ -115,7 +116,6 @@ def retrack(task: Retracking) -> Retracked:
                 copy_message(writer, message)
                 for pose in tracked.poses_of(message):
                     key = POSE.key(parse_key(message.key).site, pose.object)
-                    tracked.counter.count(key, pose.sequence)
                     write_beside(writer, key, message, POSE.encode(pose))
             _note(writer, task, tracked)
     return tracked.result
@@ -129,7 +129,6 @@ class _Tracked:
         self._people = _people(task)
         self.names = _pose_names(task, index, self._people.names)
         self.result = Retracked(task.path, task.output)
-        self.counter = LossCounter()
         self._needs = needs_of(task.settings)
         self._info = _first_info(index.messages(INFO.stream, self.camera), task, self.camera)
         self._frames = index.messages(RGBD.stream, self.camera)
@@ -256,11 +255,8 @@ def _note(writer: RecordingWriter, task: Retracking, tracked: _Tracked) -> None:
         "frames": str(result.frames),
         "problems": json.dumps(result.problems, sort_keys=True),
     }
-    kept = read_metadata(task.path)
-    if LOSSES_RECORD in kept:  # what it says of losses stays true of all that the new one holds
-        kept[LOSSES_RECORD] = {**kept[LOSSES_RECORD], **format_losses(tracked.counter.losses())}
-    for name, record in {**kept, RECORD: about}.items():
-        writer.add_metadata(name, record)
+    copy_metadata(writer, task.path, RECORD, about)
+    copy_attachments(writer, task.path)
 
 
 def values(result: Retracked) -> dict[str, object]:

@@ -8,7 +8,7 @@ from typing import Literal
 from msgspec import Struct
 
 from inhand_schemas.fields import Name, Nanoseconds, Text
-from inhand_schemas.procedures import Procedure
+from inhand_schemas.procedure import Procedure
 
 PlaybackAction = Literal["status", "pause", "resume", "step", "seek", "skip", "rate"]
 

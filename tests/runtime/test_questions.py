@@ -11,10 +11,10 @@ from inhand_runtime.session import Session, connected, open_session
 from inhand_runtime.settings import ZenohSettings
 from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import Site
+from inhand_schemas.procedure import Procedure
 from inhand_schemas.procedures import (
     PROCEDURES,
     SHUTTER,
-    Procedure,
     ShutterReply,
     ShutterRequest,
 )

@@ -11,7 +11,8 @@ from typing import Annotated, Any, Literal, get_args
 
 from inhand_schemas.fields import Name, Text
 from inhand_schemas.keys import Site, beside
-from inhand_schemas.procedures import PROCEDURES, Procedure
+from inhand_schemas.procedure import Procedure
+from inhand_schemas.procedures import PROCEDURES
 from inhand_schemas.topics import (
     EVENT,
     HEALTH,

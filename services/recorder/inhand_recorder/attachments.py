@@ -6,6 +6,7 @@ from pathlib import Path
 from inhand_runtime.recording.layout import RecordingError
 from inhand_runtime.recording.opening import opening
 from inhand_runtime.recording.reading import explaining_damage
+from inhand_runtime.recording.writing import RecordingWriter
 from mcap.reader import SeekingReader
 from mcap.records import Attachment
 
@@ -30,6 +31,12 @@ def read_attachments(path: Path) -> list[Attachment]:
         offsets = [one.offset for one in summary.attachment_indexes]
         found = [record_at(data, offset) for offset in offsets if attachment_is_sound(data, offset)]
     return [one for one in found if isinstance(one, Attachment)]
+
+
+def copy_attachments(writer: RecordingWriter, path: Path) -> None:
+    """Attach what is attached to a whole recording to a copy of it; raises RecordingError."""
+    for one in read_attachments(path):
+        writer.add_attachment(one.name, one.media_type, one.data, received_ns=one.log_time)
 
 
 def meshes_in(attachments: list[Attachment]) -> dict[str, bytes]:

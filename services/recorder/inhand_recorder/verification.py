@@ -187,13 +187,15 @@ class _Messages:
 
 
 def _loss_problems(written: Mapping[str, str], counted: Mapping[str, Losses]) -> Iterator[str]:
+    """Compare what a recorder wrote with the file; of keys that a copy has beyond the recorder's,
+    as skeletons, labels and poses made later, it says nothing."""
     try:
         claimed = parse_losses(written)
     except ValueError as error:
         yield str(error)
         return
-    for key in sorted(claimed.keys() | counted.keys()):
-        there, here = claimed.get(key, Losses()), counted.get(key, Losses())
+    for key, there in sorted(claimed.items()):
+        here = counted.get(key, Losses())
         for what in ("received", "lost", "restarts"):
             said, found = getattr(there, what), getattr(here, what)
             if said != found:

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import Health, Message
-from inhand_schemas.procedures import Procedure
+from inhand_schemas.procedure import Procedure
 from inhand_schemas.topics import HEALTH, AnyTopic, Topic
 from msgspec import Struct
 
