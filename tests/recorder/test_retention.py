@@ -36,10 +36,18 @@ class Kept:
 
     def __init__(self, folder: Path, quotas: Quotas, free: int | None = None) -> None:
         self.deleted: list[str] = []
-        self.retention = Retention(folder, quotas, lambda path, *_: self.deleted.append(path.name))
+        self.seconds = 0.0
+        self.retention = Retention(
+            folder,
+            quotas,
+            lambda path, *_: self.deleted.append(path.name),
+            clock=lambda: self.seconds,
+        )
 
-    def tidy(self) -> list[str]:
-        self.retention.tidy(NOW_NS)
+    def tidy(self, hours: float = 0.0, ahead_s: float = 0.0) -> list[str]:
+        """What is deleted once these hours have passed, with the wall clock set ahead."""
+        self.seconds += 3600.0 * hours
+        self.retention.tidy(NOW_NS + int((self.seconds + ahead_s) * 1e9))
         return self.deleted
 
 
@@ -59,9 +67,21 @@ def test_what_is_older_than_so_many_days_goes(tmp_path: Path) -> None:
     touched = recording(tmp_path, 2)
     os.utime(touched)
     kept = Kept(tmp_path, Quotas(keep_days=30.0))
-    assert kept.tidy() == [paths[0].name, paths[1].name]
+    assert kept.tidy() == []
+    assert kept.tidy(hours=1.0) == [paths[0].name, paths[1].name]
     assert paths[2].exists()
     assert touched.exists()
+
+
+def test_a_clock_that_is_set_far_ahead_costs_nothing_for_an_hour(tmp_path: Path) -> None:
+    path = recording(tmp_path, 20)
+    kept, year_s = Kept(tmp_path, Quotas(keep_days=30.0)), 365 * 86_400.0
+    kept.tidy()
+    assert kept.tidy(hours=2.0, ahead_s=year_s) == []
+    assert kept.tidy(hours=0.9, ahead_s=year_s) == []
+    assert kept.tidy(hours=0.1) == []  # it is set back
+    assert kept.tidy(hours=2.0) == []
+    assert path.exists()
 
 
 def test_only_whole_files_of_a_recorder_in_the_folder_itself_are_deleted(tmp_path: Path) -> None:

@@ -23,6 +23,11 @@ from inhand_recorder.records import length_at, record_at
 DAY_NS = 86_400 * 1_000_000_000
 HEAD_BYTES = 1 << 18
 """Bytes at the begin of a file in which a recorder says that it is its."""
+STEADY_S = 3600.0
+"""Seconds that the wall clock must have run without being set before age makes anything go: one
+that starts wrong, or is set far ahead by mistake, would cost everything."""
+SET_S = 60.0
+"""Seconds by which the wall clock leaves the other one when it was set, and not only corrected."""
 ROOM_TO_RESUME = 1.1
 """Factor on the floor of free space from which on recording goes on: else it would stop again at
 once."""
@@ -50,9 +55,17 @@ class Retention:
     """
 
     def __init__(
-        self, folder: Path, quotas: Quotas, on_delete: Callable[[Path, int, str], None]
+        self,
+        folder: Path,
+        quotas: Quotas,
+        on_delete: Callable[[Path, int, str], None],
+        clock: Callable[[], float] = time.monotonic,
     ) -> None:
+        """``clock`` gives seconds, and nobody sets it."""
         self._folder = folder
+        self._clock = clock
+        self._wall_offset_s = 0.0
+        self._steady_from_s = clock()
         self._quotas = quotas
         self._on_delete = on_delete
         self.problem: str | None = None
@@ -99,10 +112,19 @@ class Retention:
     def tidy(self, now_ns: int) -> None:
         """Delete what has to go, and note as the ``problem`` what could not."""
         self.problem, failure = None, None
+        self._look_at_clock(now_ns)
         for recording in self._look():
             if (why := self._why(recording, now_ns)) is not None:
                 failure = self._delete(recording, why) or failure
         self.problem = failure or self._unheld()
+
+    def _look_at_clock(self, now_ns: int) -> None:
+        """Note since when nobody has set the wall clock."""
+        now_s = self._clock()
+        offset_s = now_ns / 1e9 - now_s
+        if abs(offset_s - self._wall_offset_s) > SET_S:
+            self._steady_from_s = now_s
+        self._wall_offset_s = offset_s
 
     def _unheld(self) -> str | None:
         """Why a quota is not held, though nothing is left to delete."""
@@ -136,7 +158,8 @@ class Retention:
         """Why a recording has to go when all older ones had their turn; None where it may stay."""
         quotas = self._quotas
         age_ns = now_ns - max(recording.began_ns, recording.written_ns)
-        if quotas.keep_days and age_ns > quotas.keep_days * DAY_NS:
+        is_steady = self._clock() - self._steady_from_s >= STEADY_S
+        if quotas.keep_days and is_steady and age_ns > quotas.keep_days * DAY_NS:
             return f"it is older than {quotas.keep_days:g} days"
         if quotas.keep_bytes and self.folder_bytes > quotas.keep_bytes:
             return f"recordings take more than {_size(quotas.keep_bytes)}"
