@@ -31,6 +31,7 @@ VERBS = {
     "shutter": "close or open the cameras' shutters",
     "control": "change a camera's exposure, focus or light while it runs",
     "replay": "publish a recording again",
+    "playback": "pause, resume, step through and seek in a replay that runs",
     "simulate": "make a labelled dataset of simulated people",
     "import": "make a dataset of real data: utd-mhad, motion, ycb-video, bop",
     "object": "make a new object of a dataset, of a mesh, measures or depth: new",

@@ -27,7 +27,7 @@ from inhand_lab.demonstration.preparation import free_port
 from inhand_recorder.inspection import inspect_recording
 from inhand_recorder.journal import Journal
 from inhand_recorder.recording_file import Limits
-from inhand_recorder.service import SYNC_PERIOD_S
+from inhand_recorder.recording_loop import HAND_OVER_PERIOD_S, SYNC_PERIOD_S
 from inhand_recorder.stamps import entry_of
 from inhand_runtime.errors import InhandError
 from inhand_runtime.inbox import Received
@@ -147,8 +147,12 @@ def _write_ours(folder: Path, samples: Sequence[Received]) -> None:
     """As the recorder's daemon: each message is checked, and brought to the disk in time."""
     journal = Journal(folder, SITE.rig, Limits(), dict)
     next_sync = time.monotonic() + SYNC_PERIOD_S
+    next_hand_over = time.monotonic() + HAND_OVER_PERIOD_S
     for sample in samples:
         journal.write(entry_of(sample))
+        if time.monotonic() >= next_hand_over:
+            journal.hand_over()
+            next_hand_over = time.monotonic() + HAND_OVER_PERIOD_S
         if time.monotonic() >= next_sync:
             journal.sync()
             next_sync = time.monotonic() + SYNC_PERIOD_S

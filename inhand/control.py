@@ -8,11 +8,9 @@ import argparse
 from inhand_runtime.errors import InhandError
 from inhand_runtime.exit_codes import DONE
 from inhand_runtime.wording import printable
-from inhand_schemas.errors import KeyFormatError
-from inhand_schemas.keys import require_name
 from inhand_schemas.procedures import CONTROL, ControlReply, ControlRequest
 
-from inhand.looking import UNREACHED, add_looking_arguments, open_look
+from inhand.looking import UNREACHED, add_looking_arguments, camera_name, open_look
 
 SECONDS = 3.0
 AUTOMATIC = "auto"
@@ -20,7 +18,7 @@ AUTOMATIC = "auto"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's arguments."""
-    parser.add_argument("camera", type=_name, help="the camera's name")
+    parser.add_argument("camera", type=camera_name, help="the camera's name")
     parser.add_argument(
         "settings",
         nargs="+",
@@ -46,14 +44,6 @@ def run(arguments: argparse.Namespace) -> int:
         raise InhandError(f"{arguments.camera}: {printable(problem)}")
     print(f"{arguments.camera}: done, until it ends")
     return DONE
-
-
-def _name(text: str) -> str:
-    try:
-        require_name("camera", text)
-    except KeyFormatError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-    return text
 
 
 def _setting(text: str) -> tuple[str, int | float | None]:

@@ -12,12 +12,13 @@ from inhand_lab.evaluation.protocol import Protocol, Terms, Trial, evaluate
 from inhand_lab.evaluation.summary import summarise, terms_name, with_terms, worth
 from inhand_lab.report.report_folder import prepare_report_folder, write_report
 from inhand_lab.report.tables import shown_grids
-from inhand_lab.workers import usable_cores
+from inhand_lab.workers import usable_cores, working
 from inhand_runtime.errors import SettingsError
 from inhand_tracker.methods.darby2014.variants import TABLE_1
 from inhand_tracker.methods.registry import ALL_TERMS, FUSION, METHODS, MethodName
 from rich.console import Console
 
+from inhand.cluster import add_cluster_option, work_path
 from inhand.looking import positive_count
 from inhand.progress import add_progress_option, progress_bar
 from inhand.results import write_json
@@ -65,6 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seeds", type=int, default=1, metavar="N", help="repetitions (1)")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
     parser.add_argument("--report", type=Path, metavar="DIR", help="write tables and figures")
+    add_cluster_option(parser)
     add_progress_option(parser)
 
 
@@ -74,9 +76,11 @@ def run(arguments: argparse.Namespace) -> int:
     protocol = _protocol(arguments)
     if arguments.report is not None:
         prepare_report_folder(arguments.report)
-    cores = usable_cores()
     lines = arguments.progress_lines
-    with progress_bar("evaluating", protocol.trials(), lines=lines) as advance:
+    with (
+        working(arguments.cluster) as cores,
+        progress_bar("evaluating", protocol.trials(), lines=lines) as advance,
+    ):
         trials = evaluate(protocol, cores, advance)
     result = _result(protocol, trials, time.monotonic() - began)
     console = Console()
@@ -88,7 +92,7 @@ def run(arguments: argparse.Namespace) -> int:
         write_json(arguments.json, result)
     if arguments.report is not None:
         with progress_bar("drawing", len(protocol.trained.interactions())) as advance:
-            write_report(arguments.report, protocol, trials, result, cores, advance)
+            write_report(arguments.report, protocol, trials, result, usable_cores(), advance)
         console.print(f"the report is {arguments.report / 'report.md'}")
     return 0
 
@@ -105,8 +109,12 @@ def _protocol(arguments: argparse.Namespace) -> Protocol:
     methods = tuple(name for name in METHODS if name in methods)
     terms = "none" if arguments.no_images else arguments.terms
     chosen = tuple(dict.fromkeys(_terms(name, methods) for name in terms.split(",")))
-    trained = load_dataset(arguments.dataset)
-    tested = trained if arguments.test_on is None else load_dataset(arguments.test_on)
+    trained = load_dataset(work_path(arguments, arguments.dataset))
+    tested = (
+        trained
+        if arguments.test_on is None
+        else load_dataset(work_path(arguments, arguments.test_on))
+    )
     folds = (
         leave_out(trained, arguments.leave_out)
         if arguments.test_on is None

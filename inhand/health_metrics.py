@@ -44,6 +44,10 @@ COUNTERS: dict[str, tuple[str, Callable[[TopicHealth], float]]] = {
     "inhand_messages_published": ("Messages sent", lambda one: one.published),
     "inhand_messages_received": ("Messages that came", lambda one: one.received),
     "inhand_messages_dropped": ("Messages that came too late or fast", lambda one: one.dropped),
+    "inhand_messages_unwritten": (
+        "Those of the dropped that a recorder's disk could not take",
+        lambda one: one.unwritten,
+    ),
     "inhand_messages_refused": ("Messages on more keys than are taken", lambda one: one.refused),
     "inhand_messages_malformed": ("Messages that cannot be read", lambda one: one.malformed),
     "inhand_messages_lost": ("Messages that never came", lambda one: one.lost),

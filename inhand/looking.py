@@ -17,7 +17,7 @@ from inhand_runtime.signals import set_on_signals
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import VERSION, Site, require_name
 from inhand_schemas.messages import Health
-from inhand_schemas.procedures import Procedure
+from inhand_schemas.procedure import Procedure
 from inhand_schemas.topics import BULK, HEALTH, TOPICS, AnyTopic, topic_of
 from msgspec import Struct
 from rich.console import Console
@@ -159,6 +159,15 @@ def positive_number(text: str) -> float:
 def positive_count(text: str) -> int:
     """Read an argument of 1 or more; raises ArgumentTypeError, which argparse shows."""
     return _above(0, text, int, "a whole number, 1 or more")
+
+
+def camera_name(text: str) -> str:
+    """Read a camera's name; raises ArgumentTypeError, which argparse shows."""
+    try:
+        require_name("camera", text)
+    except KeyFormatError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return text
 
 
 def _above(least: N, text: str, kind: Callable[[str], N], wanted: str) -> N:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from inhand_capture.estimation.estimator import EstimationError, SkeletonEstimator
 from inhand_capture.estimation.found_person import PoseNetwork
+from inhand_recorder.attachments import copy_attachments
 from inhand_runtime.errors import InhandError
 from inhand_runtime.pixels import decode_colour, decode_depth
 from inhand_runtime.recording import RecordedMessage, RecordingError, read_recording
@@ -85,6 +86,7 @@ def add_skeletons(
                     write_beside(writer, key, message, SKELETONS.encode(skeletons))
         about = {"source": path.name, "estimated": " ".join(wanted)}
         copy_metadata(writer, path, "skeletons", about)
+        copy_attachments(writer, path)
         _require_skeletons(path, estimated)
     return estimated
 
@@ -117,6 +119,7 @@ def true_skeletons(path: Path, output: Path) -> int:
                 written += 1
             write_beside(writer, message.key, message, payload)
         copy_metadata(writer, path, "skeletons", {"source": path.name, "true": "labels"})
+        copy_attachments(writer, path)
     return written
 
 

@@ -23,6 +23,7 @@ from inhand.recording_export import add_action as add_export_action
 from inhand.recording_import import add_action as add_import_action
 from inhand.recording_redact import add_action as add_redact_action
 from inhand.results import listing, write_json
+from inhand.retrack import add_action as add_retrack_action
 
 RECOVERED_SUFFIX = ".recovered.mcap"
 REPAIRED_SUFFIX = ".repaired.mcap"
@@ -53,6 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             action.add_argument(
                 "-o", "--output", type=Path, metavar="OUT", help="the file to write (of one FILE)"
             )
+    add_retrack_action(actions)
 
     add_convert_action(actions)
     add_export_action(actions)

@@ -7,7 +7,7 @@ from inhand_runtime.settings import Section
 _PLACES = {
     "capture": ("inhand_capture.settings", "CaptureSettings"),
     "tracker": ("inhand_tracker.settings", "TrackerSettings"),
-    "recorder": ("inhand_recorder.service", "RecorderSettings"),
+    "recorder": ("inhand_recorder.settings", "RecorderSettings"),
     "studio": ("inhand_studio.settings", "StudioSettings"),
     "hub": ("inhand_hub.settings", "HubSettings"),
 }

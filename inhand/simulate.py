@@ -9,6 +9,7 @@ from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.driven.dataset import DrivenSettings, generate_driven, pairs_for
 from inhand_lab.people.person import PEOPLE, USUAL_PEOPLE
 from inhand_lab.sensing.cameras import CAMERAS, KINECT
+from inhand_lab.workers import working
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.parameters import CAMERA_PLACINGS, USUAL_VIEWS
 from inhand_lab.world.sheet import write_sheet
@@ -16,6 +17,7 @@ from inhand_runtime.errors import SettingsError
 from inhand_runtime.wording import counted
 from rich.console import Console
 
+from inhand.cluster import add_cluster_option, work_path
 from inhand.progress import progress_bar
 from inhand.realism import USUAL_DATA, show_realism
 
@@ -59,6 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="DATASET",
         help="objects in the hands of this dataset's people, who move and are tracked as recorded",
     )
+    add_cluster_option(parser)
     parser.add_argument(
         "--sheet",
         type=Path,
@@ -114,9 +117,12 @@ def _write_sheet(arguments: argparse.Namespace, interactions: Sequence[str]) -> 
 
 def _generate(arguments: argparse.Namespace) -> Dataset:
     interactions = arguments.interactions or tuple(INTERACTIONS)
-    with progress_bar("simulating", len(interactions) * arguments.participants) as advance:
+    with (
+        working(arguments.cluster),
+        progress_bar("simulating", len(interactions) * arguments.participants) as advance,
+    ):
         return generate(
-            arguments.out,
+            work_path(arguments, arguments.out),
             GenerationSettings(
                 interactions,
                 arguments.participants,

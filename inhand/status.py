@@ -12,7 +12,14 @@ from typing import Any
 
 import msgspec
 from inhand_runtime.exit_codes import DONE, FAILED
-from inhand_runtime.health_lines import closed_shutters, late_lines, left_unused, unused_counts
+from inhand_runtime.health_lines import (
+    deleted_recordings,
+    late_lines,
+    left_unused,
+    shown_state,
+    stilled_instances,
+    unused_counts,
+)
 from inhand_runtime.roll import Heard, Instance, Roll
 from inhand_runtime.settings import SERVICES, load_rig_file
 from inhand_runtime.wording import printable
@@ -46,7 +53,12 @@ def run(arguments: argparse.Namespace) -> int:
     if state.living:
         output().print(_table(state.living))
     living = state.living
-    for line in (*closed_shutters(living), *left_unused(living), *late_lines(living)):
+    for line in (
+        *stilled_instances(living),
+        *deleted_recordings(living),
+        *left_unused(living),
+        *late_lines(living),
+    ):
         print(line)
     for line in state.problems:
         print(f"WRONG: {line}")
@@ -120,7 +132,7 @@ def _table(living: dict[Instance, Heard | None]) -> Table:
         latency = health.latency_ms
         table.add_row(
             " ".join(instance),
-            "shut" if health.shutter_closed else health.state,
+            shown_state(health),
             f"{health.uptime_s:.0f}",
             f"{health.resident_bytes / 1e6:.0f}",
             "" if latency is None else f"{latency.p50:.1f} / {latency.p99:.1f}",

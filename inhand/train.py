@@ -19,6 +19,7 @@ from inhand_lab.training.model_training import (
 )
 from inhand_lab.training.presence_training import learn_presence
 from inhand_lab.training.recogniser_training import recogniser_stages, train_recogniser
+from inhand_lab.workers import working
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED
 from inhand_runtime.wording import counted
@@ -28,6 +29,7 @@ from inhand_tracker.recognition.recogniser_file import save_recogniser
 from rich.console import Console
 from rich.table import Table
 
+from inhand.cluster import add_cluster_option, work_path
 from inhand.progress import add_progress_option, progress_bars
 
 log = logging.getLogger(__name__)
@@ -65,12 +67,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="MODEL",
         help="with --recogniser: learn from the dataset's images how each object is seen",
     )
+    add_cluster_option(parser)
     add_progress_option(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Train and save; raises DatasetError or InhandError."""
-    dataset = load_dataset(arguments.dataset)
+    dataset = load_dataset(work_path(arguments, arguments.dataset))
     if arguments.models and not arguments.recogniser:
         raise SettingsError("--models is for --recogniser: a model is learned by itself")
     if arguments.start is not None and arguments.recogniser:
@@ -82,7 +85,10 @@ def run(arguments: argparse.Namespace) -> int:
     entries = choose(dataset, arguments.object, arguments.without)
     stages = {**model_stages(len(entries), start), "saving": 1}
     refused: dict[DatasetEntry, Exception] = {}
-    with progress_bars(stages, lines=arguments.progress_lines) as advance:
+    with (
+        working(arguments.cluster),
+        progress_bars(stages, lines=arguments.progress_lines) as advance,
+    ):
         if start is None:
             model = train(dataset, entries, advance, refused.__setitem__)
         else:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import trimesh
+from inhand_recorder.attachments import meshes_in
 from inhand_recorder.recorded import RecordedImages
 from inhand_runtime.errors import InhandError
 from inhand_runtime.recording import RecordingError
@@ -40,7 +41,7 @@ def export_bop(request: ExportRequest, output: Path) -> dict[str, int]:
     poses = sorted(request.poses_of_objects(), key=lambda one: one.object)
     if not poses:
         raise RecordingError("there are no poses and no labels: nothing says where an object is")
-    meshes = Meshes(request.objects)
+    meshes = Meshes(request.objects, meshes_in(request.recording.attachments()))
     with unfinished(output) as folder:
         _write_models(folder / "models", {one.object: meshes.mesh(one.object) for one in poses})
         scene = _Scene(folder / SCENE, camera, info, meshes, poses)

@@ -1,8 +1,10 @@
 """Objects as a camera sees them at their poses, drawn of their meshes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 
 import numpy as np
 from inhand_lab.geometry.canvas import Canvas, draw_triangles
@@ -29,14 +31,20 @@ class Mesh:
 
 
 class Meshes:
-    """The meshes of objects, from a folder with one for each, as a dataset's ``objects``."""
+    """The meshes of objects, from a folder with one for each, as a dataset's ``objects``, or else
+    those that are attached to the recordings, PLY by the objects' names."""
 
-    def __init__(self, folder: Path | None) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path | None, attached: Mapping[str, bytes]) -> None:
+        self._folder, self._attached = folder, attached
         self.mesh = lru_cache(maxsize=None)(self._read)
 
     def _read(self, name: str) -> Mesh:
         """Read an object's mesh; raises InhandError where there is none."""
+        if self._folder is None and name in self._attached:
+            with NamedTemporaryFile(suffix=".ply") as file:
+                file.write(self._attached[name])
+                file.flush()
+                return Mesh(*read_mesh(Path(file.name)))
         if self._folder is None:
             raise InhandError(
                 f"the shape of {name} is not known: --objects FOLDER with {name}/mesh.ply, as a "

@@ -10,6 +10,7 @@ from typing import Any
 import av
 import cv2
 import numpy as np
+from inhand_recorder.attachments import meshes_in
 from inhand_runtime.recording import RecordingError
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo
@@ -80,7 +81,7 @@ class _Outlines:
 
     def __init__(self, request: ExportRequest, camera: str, info: CameraInfo) -> None:
         self._camera, self._info = camera, info
-        self._meshes = Meshes(request.objects)
+        self._meshes = Meshes(request.objects, meshes_in(request.recording.attachments()))
         self._poses = [
             (FramePoses(request.recording[key]), colour)
             for topic, colour in (

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from inhand_capture.estimation.weights import DEFAULT_NETWORK
 from inhand_capture.faces.finder import FaceFinder
+from inhand_recorder.attachments import meshes_in
 from inhand_recorder.conversion import Conversion, Selection, convert_recording
 from inhand_recorder.recording_files import find_files
 from inhand_recorder.recording_reader import Recording
@@ -18,6 +19,7 @@ from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import RgbdFrame
 from inhand_schemas.topics import EVENT, HEALTH, INFO, LABEL, POSE, PREVIEW, RGBD, SKELETONS
+from mcap.records import Attachment
 
 from inhand.redaction.hiding import (
     CameraHiding,
@@ -118,6 +120,10 @@ class RedactedRecording(Recording):
                 of_file[f"{REDACTION_RECORD} of {path.name}"] = of_file[REDACTION_RECORD]
             of_file[REDACTION_RECORD] = self._record
         return records
+
+    def attachments(self) -> list[Attachment]:
+        """Read what is attached to the files and shows nobody: the meshes of objects."""
+        return [one for one in super().attachments() if meshes_in([one])]
 
     def _redacted(self, message: RecordedMessage) -> RecordedMessage | None:
         if message.topic in WITHOUT_PICTURES:

@@ -12,6 +12,8 @@ from typing import TypeVar
 import cv2
 from inhand_runtime.errors import InhandError
 
+from inhand_lab.cluster import current_cluster, on_cluster, run_on_cluster
+
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
@@ -36,18 +38,35 @@ def on_one_core() -> Iterator[None]:
         os.sched_setaffinity(0, usable)
 
 
+@contextmanager
+def working(cluster: str | None) -> Iterator[int]:
+    """Let work go to the Dask cluster at an address while a block runs, or stay here; the number
+    of tasks that are worked on at a time."""
+    if cluster is None:
+        yield usable_cores()
+        return
+    with on_cluster(cluster) as workers:
+        yield workers
+
+
 def in_processes(
     function: Callable[[Task], Result],
     tasks: Sequence[Task],
     processes: int,
     on_done: Callable[[Result], None] = lambda _: None,
+    *,
+    apart: bool = False,
 ) -> list[Result]:
     """Return the results of all tasks, in their order; ``on_done`` gets each as it comes.
 
-    A single task, or a single process, runs in this one. The first error ends all; raises
-    InhandError when a worker is killed.
+    A single task, or a single process, runs in this one, unless all shall run ``apart``: in
+    workers, whose single thread gives the same last bits however many there are. The first error
+    ends all; raises InhandError when a worker is killed. Inside of ``working`` all run on its
+    cluster, where the tasks of a killed worker are done by another one.
     """
-    if processes == 1 or len(tasks) == 1:
+    if (cluster := current_cluster()) is not None:
+        return run_on_cluster(cluster, function, tasks, on_done)
+    if not apart and (processes == 1 or len(tasks) == 1):
         results = []
         for task in tasks:
             results.append(function(task))
@@ -56,7 +75,7 @@ def in_processes(
     # Libraries size their pools of threads when they are loaded: a worker inherits the limits.
     with _environment(ONE_THREAD):
         pool = ProcessPoolExecutor(
-            min(processes, len(tasks)), get_context("spawn"), initializer=_start_worker
+            max(1, min(processes, len(tasks))), get_context("spawn"), initializer=_start_worker
         )
         with pool:
             futures = [pool.submit(function, task) for task in tasks]

@@ -252,6 +252,7 @@ class TopicHealth(Struct, frozen=True, kw_only=True):
     ``dropped`` reached the instance and was too late or too much to be used, ``refused`` is what it
     does not take at all, ``lost`` is what the numbers of those that came show as missing.
     ``late_ms`` is the longest time, in milliseconds, from capture to arrival since the last report.
+    ``unwritten`` is how many of those dropped a recorder's disk could not take.
     """
 
     published: Count = 0
@@ -262,6 +263,7 @@ class TopicHealth(Struct, frozen=True, kw_only=True):
     lost: Count = 0
     late_ms: NonNegative | None = None
     refused: Count = 0
+    unwritten: Count = 0
 
     def __post_init__(self) -> None:
         require_finite("rate", (self.rate_hz, self.late_ms or 0.0))
@@ -277,6 +279,30 @@ class Latency(Struct, frozen=True, kw_only=True):
         require_finite("latency", (self.p50, self.p99))
 
 
+class RecordingState(Struct, frozen=True, kw_only=True):
+    """What a recorder does: whether it is ``paused``, and the name and size of the file that grows,
+    if one does.
+
+    The last ``ring_seconds`` are held in ``ring_bytes`` of memory, and ``clip`` is the name of the
+    file that is made of them, while one is. All recordings of its folder take ``folder_bytes``,
+    ``free_bytes`` of the disk are free, and ``deleted`` is how many recordings its quotas have
+    deleted since it started.
+    """
+
+    paused: bool = False
+    file: Text | None = None
+    file_bytes: Count = 0
+    ring_seconds: NonNegative = 0.0
+    ring_bytes: Count = 0
+    clip: Text | None = None
+    folder_bytes: Count = 0
+    free_bytes: Count = 0
+    deleted: Count = 0
+
+    def __post_init__(self) -> None:
+        require_finite("time", (self.ring_seconds,))
+
+
 class Health(Message, frozen=True, kw_only=True):
     """How an instance does, once a second.
 
@@ -285,6 +311,7 @@ class Health(Message, frozen=True, kw_only=True):
     it has just published, or handled. ``effort`` is the share of its usual work that a tracker does
     in a frame, so that frames do not come faster than they are tracked. While ``shutter_closed``
     a camera captures nothing, because somebody wants it so; None where there is no shutter.
+    ``recording`` is what a recorder does.
     """
 
     service: Name
@@ -299,6 +326,7 @@ class Health(Message, frozen=True, kw_only=True):
     loop_age_s: NonNegative = 0.0
     effort: Fraction | None = None
     shutter_closed: bool | None = None
+    recording: RecordingState | None = None
 
     def __post_init__(self) -> None:
         require_finite("time", (self.uptime_s, self.loop_age_s))

@@ -3,24 +3,17 @@
 A request goes to all instances of the service; each that it concerns replies for itself.
 """
 
-from dataclasses import dataclass
-from typing import Annotated, Any, Generic, TypeVar
+from typing import Annotated, Any
 
-import msgspec
 from msgspec import Meta, Struct
 
-from inhand_schemas.errors import MessageError
 from inhand_schemas.fields import Count, Fraction, Name, Nanoseconds, Text
-from inhand_schemas.keys import Site, require_name
-from inhand_schemas.messages import Pose
+from inhand_schemas.messages import Pose, RecordingState
+from inhand_schemas.playback import PLAYBACK
+from inhand_schemas.procedure import Procedure
 
 MOST_HYPOTHESES = 1000
 """Number of hypotheses of an object that a reply holds at the most: the likeliest."""
-
-Q = TypeVar("Q", bound=Struct)
-R = TypeVar("R", bound=Struct)
-
-_encoder = msgspec.msgpack.Encoder()
 
 
 class ShutterRequest(Struct, frozen=True, kw_only=True):
@@ -101,57 +94,36 @@ class HypothesesReply(Struct, frozen=True, kw_only=True):
     objects: Annotated[tuple[ObjectHypotheses, ...], Meta(max_length=1024)]
 
 
-@dataclass(frozen=True)
-class Procedure(Generic[Q, R]):
-    """One verb of a service, ``{realm}/@v1/{rig}/@rpc/{service}/{verb}/{instance}``.
+class RecorderRequest(Struct, frozen=True, kw_only=True):
+    """Do what the verb says, of one recorder or of all.
 
-    ``named`` is the field of a reply that has the name of the instance.
+    Requests with one ``id`` are one: who asks again, because not all have answered, has nothing
+    done twice.
     """
 
-    service: str
-    verb: str
-    request_type: type[Q]
-    reply_type: type[R]
-    named: str
-
-    def key(self, site: Site, instance: str) -> str:
-        """The key that one instance of the service answers on; raises KeyFormatError."""
-        require_name("instance", instance)
-        return f"{self.shared_key(site)}/{instance}"
-
-    def pattern(self, site: Site) -> str:
-        """The keys of all instances, as a Zenoh key expression."""
-        return f"{self.shared_key(site)}/*"
-
-    def shared_key(self, site: Site) -> str:
-        """The one key that all instances answer on as well, for programs that know no other; who is
-        behind a reply on it nobody vouches for, and no hub lets it through."""
-        return site.procedure_key(self.service, self.verb)
-
-    def encode(self, message: Q | R) -> bytes:
-        """A request or reply as MessagePack."""
-        return _encoder.encode(message)
-
-    def request(self, data: bytes) -> Q:
-        """Decode a request; raises MessageError."""
-        return _decoded(data, self.request_type)
-
-    def reply(self, key: str, data: bytes) -> R:
-        """Decode a reply that came on a key; raises MessageError, also for another's name in it."""
-        reply = _decoded(data, self.reply_type)
-        if key.rpartition("/")[2] != (name := getattr(reply, self.named)):
-            raise MessageError(f"a reply on {key} is in the name of {name!r}")
-        return reply
+    id: Text
+    recorder: Name | None = None
 
 
-S = TypeVar("S", bound=Struct)
+class KindsOfLoss(Struct, frozen=True, kw_only=True):
+    """How many messages of a key are missing in recordings, since the recorder started: never came
+    (``transport``), came too fast (``queue``), or the ``disk`` could not take them."""
+
+    transport: Count = 0
+    queue: Count = 0
+    disk: Count = 0
 
 
-def _decoded(data: bytes, kind: type[S]) -> S:
-    try:
-        return msgspec.msgpack.decode(data, type=kind)
-    except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-        raise MessageError(f"no valid {kind.__name__}: {error}") from None
+class RecorderReply(Struct, frozen=True, kw_only=True):
+    """What a recorder does from now on; ``finished`` is the name of the file that a pause or a
+    split has made whole, and ``problem`` is why a request was not done. ``losses`` are by key, of
+    those that have any."""
+
+    recorder: Name
+    recording: RecordingState
+    losses: Annotated[dict[str, KindsOfLoss], Meta(max_length=4096)] = {}
+    finished: Text | None = None
+    problem: Text | None = None
 
 
 SHUTTER = Procedure("capture", "shutter", ShutterRequest, ShutterReply, "camera")
@@ -159,4 +131,18 @@ CONTROL = Procedure("capture", "control", ControlRequest, ControlReply, "camera"
 HYPOTHESES = Procedure("tracker", "hypotheses", HypothesesRequest, HypothesesReply, "tracker")
 RELOAD = Procedure("tracker", "reload", ReloadRequest, ReloadReply, "tracker")
 
-PROCEDURES: tuple[Procedure[Any, Any], ...] = (SHUTTER, CONTROL, HYPOTHESES, RELOAD)
+PAUSE = Procedure("recorder", "pause", RecorderRequest, RecorderReply, "recorder")
+RESUME = Procedure("recorder", "resume", RecorderRequest, RecorderReply, "recorder")
+SPLIT = Procedure("recorder", "split", RecorderRequest, RecorderReply, "recorder")
+SNAPSHOT = Procedure("recorder", "snapshot", RecorderRequest, RecorderReply, "recorder")
+STATUS = Procedure("recorder", "status", RecorderRequest, RecorderReply, "recorder")
+
+RECORDER_PROCEDURES = (PAUSE, RESUME, SPLIT, SNAPSHOT, STATUS)
+PROCEDURES: tuple[Procedure[Any, Any], ...] = (
+    SHUTTER,
+    CONTROL,
+    PLAYBACK,
+    HYPOTHESES,
+    RELOAD,
+    *RECORDER_PROCEDURES,
+)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from inhand_capture.settings import CaptureSettings
-from inhand_recorder.service import RecorderSettings
+from inhand_recorder.settings import RecorderSettings
 from inhand_tracker.settings import TrackerSettings
 from running_rig import ROOT, RunningRig
 from small_rig import write_rig

@@ -18,7 +18,7 @@ from inhand_runtime import session as runtime_session
 from inhand_runtime.questions import answer, ask
 from inhand_runtime.session import tokens, watch_tokens
 from inhand_schemas.keys import Site
-from inhand_schemas.procedures import PROCEDURES, RELOAD, SHUTTER
+from inhand_schemas.procedures import PAUSE, PROCEDURES, RELOAD, SHUTTER
 from inhand_schemas.topics import (
     HEALTH,
     INFO,
@@ -38,7 +38,7 @@ EVERYBODY = tuple(PEOPLE)
 PERMITTED = {
     "front": {"info/front", "rgbd/front", "skeletons/front", "preview/front", "health/front"},
     "mug": {"pose/mug", "health/mug"},
-    "disk": {"health/disk"},
+    "disk": {"event/disk", "health/disk"},
     "desk": {"health/desk"},
     "anna": set[str](),
 }
@@ -111,7 +111,7 @@ def test_nobody_publishes_on_another_s_key(
 
 
 def test_only_the_studio_asks_and_only_who_is_asked_answers(wires: dict[str, Wire]) -> None:
-    camera, tracker, studio = wires["front"], wires["mug"], wires["desk"]
+    camera, tracker, studio, recorder = (wires[one] for one in ("front", "mug", "desk", "disk"))
     asked: list[bytes] = []
 
     def reply(request: bytes) -> bytes:
@@ -121,14 +121,15 @@ def test_only_the_studio_asks_and_only_who_is_asked_answers(wires: dict[str, Wir
     kept = [
         answer(camera.session, SHUTTER.key(SITE, "front"), reply),
         answer(tracker.session, RELOAD.key(SITE, "mug"), reply),
+        answer(recorder.session, PAUSE.key(SITE, "disk"), reply),
+        answer(tracker.session, PAUSE.key(SITE, "disk"), lambda _: b"false"),
         answer(camera.session, RELOAD.key(SITE, "mug"), lambda _: b"false"),
         answer(camera.session, SHUTTER.key(SITE, "back"), lambda _: b"false"),
         answer(camera.session, SHUTTER.pattern(SITE), lambda _: b"false"),
-        answer(wires["disk"].session, SHUTTER.key(SITE, "front"), lambda _: b"false"),
-        answer(wires["disk"].session, f"{REALM}/@v1/**", lambda _: b"false"),
+        answer(recorder.session, SHUTTER.key(SITE, "front"), lambda _: b"false"),
+        answer(recorder.session, f"{REALM}/@v1/**", lambda _: b"false"),
     ]
-    for procedure in (SHUTTER, RELOAD):
-        name = "front" if procedure is SHUTTER else "mug"
+    for procedure, name in ((SHUTTER, "front"), (RELOAD, "mug"), (PAUSE, "disk")):
         key, pattern = procedure.key(SITE, name), procedure.pattern(SITE)
         eventually(key, lambda pattern=pattern: list(ask(studio.session, pattern, b"studio", 1.0)))
         assert set(ask(studio.session, pattern, b"studio", 1.0)) == {(key, b"true")}

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import inhand_recorder
 import pytest
+from inhand_recorder.attachments import read_attachments
 from inhand_recorder.clock import CLOCK_RECORD
 from inhand_recorder.conversion import Conversion, Selection, convert_recording
 from inhand_recorder.losses import LOSSES_RECORD
@@ -162,3 +163,27 @@ def test_nothing_stays_of_a_conversion_that_fails_and_no_file_is_changed(tmp_pat
         convert([path], tmp_path / "early.mcap", Selection(end_ns=5))
     assert sorted(one.name for one in tmp_path.iterdir()) == ["long.mcap", "part_002.mcap"]
     assert path.read_bytes() == before
+
+
+def test_pauses_publishers_and_meshes_are_carried_over_and_joined(tmp_path: Path) -> None:
+    values = (
+        {"pauses": {"7": ""}, "publishers": {POSE_KEY: "tracker mug"}},
+        {"pauses": {"7": "9"}, "objects": {"mug": "its model is mug.model"}},
+    )
+    for number, records in enumerate(values):
+        with RecordingWriter(tmp_path / f"{number}.mcap") as writer:
+            time_ns = START_NS + number * FRAME_NS
+            stamp = {"received_ns": time_ns, "captured_ns": time_ns, "sequence": number}
+            writer.write(POSE_KEY, frame_messages(number, 1)[2][2], **stamp)
+            mesh = ("objects/mug/mesh.ply", "application/ply", b"ply")
+            writer.add_attachment(*mesh, received_ns=time_ns)
+            for name, record in records.items():
+                writer.add_metadata(name, record)
+    convert([tmp_path / "0.mcap", tmp_path / "1.mcap"], tmp_path / "all.mcap")
+    assert verify_recording(tmp_path / "all.mcap") == []
+    records = read_metadata(tmp_path / "all.mcap")
+    assert records["pauses"] == {"7": "9"}
+    assert records["publishers"] == {POSE_KEY: "tracker mug"}
+    assert records["objects"] == {"mug": "its model is mug.model"}
+    (attached,) = read_attachments(tmp_path / "all.mcap")
+    assert (attached.name, attached.data) == ("objects/mug/mesh.ply", b"ply")

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 from inhand_recorder.gaps import GapReporter
-from inhand_recorder.journal import Journal
-from inhand_recorder.losses import LOSSES_RECORD, parse_losses
+from inhand_recorder.journal import PAUSES_RECORD, Journal
+from inhand_recorder.losses import LOSSES_RECORD, Losses, parse_losses
 from inhand_recorder.recording_file import Entry, Limits
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import RecordingError, read_metadata, read_recording
@@ -96,6 +96,43 @@ def test_each_file_tells_its_own_losses_and_drops(tmp_path: Path) -> None:
     ]
     assert sum(losses.lost for losses in told) == 2
     assert sum(losses.dropped for losses in told) == 2
+
+
+def test_a_pause_makes_the_file_whole_and_both_files_around_it_say_when_it_was(
+    tmp_path: Path,
+) -> None:
+    drops: dict[str, int] = {}
+    one = Journal(tmp_path, "rig", Limits(), lambda: drops)
+    one.write(frame(0))
+    whole = one.pause(START_NS + 10)
+    assert whole is not None
+    assert numbers(tmp_path) == [[0]]
+    one.write(info())
+    one.write(frame(1))
+    drops[RGBD_KEY] = 7
+    one.sync()
+    assert list(tmp_path.iterdir()) == [whole]
+    one.resume(START_NS + 20)
+    one.write(frame(2))
+    one.close()
+    assert numbers(tmp_path) == [[0], [2]]
+    assert numbers(tmp_path, INFO_KEY) == [[], [0]]
+    before, after = (read_metadata(path) for path in sorted(tmp_path.iterdir()))
+    assert before[PAUSES_RECORD] == {str(START_NS + 10): ""}
+    assert after[PAUSES_RECORD] == {str(START_NS + 10): str(START_NS + 20)}
+    assert parse_losses(after[LOSSES_RECORD])[RGBD_KEY] == Losses(received=1)
+
+
+def test_a_file_after_which_nobody_paused_says_nothing_of_pauses(tmp_path: Path) -> None:
+    one = journal(tmp_path)
+    one.pause(START_NS)
+    one.resume(START_NS + 5)
+    for number in range(2):
+        one.write(frame(number))
+        one.close()
+    first, second = (read_metadata(path) for path in sorted(tmp_path.iterdir()))
+    assert PAUSES_RECORD in first
+    assert PAUSES_RECORD not in second
 
 
 def test_what_a_failed_file_held_only_in_memory_goes_into_the_next(tmp_path: Path) -> None:

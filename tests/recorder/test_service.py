@@ -4,52 +4,24 @@ import resource
 import shutil
 import signal
 import time
-from pathlib import Path
 
 import pytest
 from inhand_recorder.inspection import inspect_recording
 from inhand_recorder.losses import LOSSES_RECORD, Losses, parse_losses
 from inhand_recorder.verification import examine_recording, verify_recording
-from inhand_runtime.recording import RecordingError, read_metadata, read_recording
+from inhand_runtime.recording import read_metadata, read_recording
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import RgbdFrame
 from inhand_schemas.topics import INFO, POSE, RGBD
 from recordings import flaws
-from running_rig import Process, RunningRig, eventually
+from running_recorder import RGBD_KEY, frames_in, numbers, recordings, start_recorder
+from running_rig import RunningRig, eventually
 from wire import Wire
 
 INFO_KEY = INFO.key(Site(), "front")
-RGBD_KEY = RGBD.key(Site(), "front")
 POSE_KEY = POSE.key(Site(), "mug")
 
 pytestmark = pytest.mark.long
-
-
-def start_recorder(rig: RunningRig, settings: str = "") -> Process:
-    """A recorder that is up, and writes to ``rig.folder / "disk"``."""
-    rig.configure(f'[recorder.disk]\nfolder = "{rig.folder / "disk"}"\n{settings}')
-    recorder = rig.inhand("recorder", "--config", rig.config)
-    recorder.said("is up")
-    return recorder
-
-
-def recordings(rig: RunningRig, pattern: str = "*.mcap") -> list[Path]:
-    """The files of ``start_recorder``."""
-    return sorted((rig.folder / "disk").glob(pattern))
-
-
-def frames_in(rig: RunningRig) -> int:
-    """How many frames stand on the disk by now, in files whole or not."""
-    try:
-        infos = [inspect_recording(path) for path in recordings(rig, "*.mcap*")]
-    except RecordingError:  # a file got its final name meanwhile: look again
-        return 0
-    return sum(key.messages for info in infos for key in info.keys if key.key == RGBD_KEY)
-
-
-def numbers(paths: list[Path], key: str = RGBD_KEY) -> list[int]:
-    """The numbers of a key's messages in whole recordings, file by file."""
-    return [m.sequence for path in paths for m in read_recording(path) if m.key == key]
 
 
 def test_every_large_frame_at_30_hz_is_recorded(rig: RunningRig) -> None:
@@ -78,7 +50,7 @@ def test_sigterm_finishes_the_file_within_two_seconds(rig: RunningRig) -> None:
     assert verify_recording(path) == []
 
 
-def test_kill_9_loses_a_second_at_the_most_and_recover_saves_the_rest(rig: RunningRig) -> None:
+def test_kill_9_loses_half_a_second_at_the_most_and_recover_saves_the_rest(rig: RunningRig) -> None:
     recorder = start_recorder(rig)
     rig.publisher("--frame-bytes", "1000")
     eventually("60 frames on the disk", lambda: frames_in(rig) >= 60)
@@ -91,7 +63,7 @@ def test_kill_9_loses_a_second_at_the_most_and_recover_saves_the_rest(rig: Runni
     assert verify_recording(saved) == []
     frames = [m for m in read_recording(saved) if m.key == RGBD_KEY]
     assert [frame.sequence for frame in frames] == list(range(len(frames)))
-    assert killed_ns - frames[-1].received_ns < 1e9
+    assert killed_ns - frames[-1].received_ns < 0.5e9  # a quarter where the machine is not busy
 
 
 def test_a_recorder_that_starts_late_still_gets_the_calibration(rig: RunningRig) -> None:
@@ -147,7 +119,7 @@ def test_what_cannot_be_read_is_counted_told_once_a_kind_and_kept_apart(
 
 def test_a_full_disk_is_told_and_costs_nothing_once_it_is_freed(rig: RunningRig) -> None:
     recorder = start_recorder(rig)
-    publisher = rig.publisher("--frame-bytes", "100000", "--frames", "300")
+    publisher = rig.publisher("--frame-bytes", "100000", "--frames", "200")
     eventually("30 frames on the disk", lambda: frames_in(rig) >= 30)
     resource.prlimit(recorder.pid, resource.RLIMIT_FSIZE, (1 << 16, resource.RLIM_INFINITY))
     recorder.said("saves what was written")
@@ -156,13 +128,13 @@ def test_a_full_disk_is_told_and_costs_nothing_once_it_is_freed(rig: RunningRig)
     assert "make room or use another disk; until then" in health["last_error"]
     unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
     resource.prlimit(recorder.pid, resource.RLIMIT_FSIZE, unlimited)
-    publisher.said("published 300")
+    publisher.said("published 200")
     eventually("running again", lambda: rig.health("disk")["state"] == "running")
     assert recorder.stop() == 0
     (part,) = recordings(rig, "*.part")  # the failed retries left none
     saved = rig.folder / "saved.mcap"
     assert rig.done("recording", "recover", part, "-o", saved).popen.returncode == 0
-    assert sorted({*numbers([saved]), *numbers(recordings(rig))}) == list(range(300))
+    assert sorted({*numbers([saved]), *numbers(recordings(rig))}) == list(range(200))
 
 
 def degraded(rig: RunningRig) -> dict[str, object] | None:

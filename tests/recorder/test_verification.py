@@ -89,6 +89,15 @@ def test_true_losses_are_no_problem(tmp_path: Path) -> None:
     assert flaws(writer.path) == []
 
 
+def test_keys_that_a_copy_has_beyond_the_recorder_s_are_no_problem(tmp_path: Path) -> None:
+    counter = LossCounter()
+    with RecordingWriter(tmp_path / "walk.mcap") as writer:
+        write_frame(writer, counter, 0, 100)
+        losses = {key: one for key, one in counter.losses().items() if key != POSE_KEY}
+        writer.add_metadata(LOSSES_RECORD, format_losses(losses))
+    assert flaws(writer.path) == []
+
+
 def test_losses_in_a_foreign_form_are_told(tmp_path: Path) -> None:
     with RecordingWriter(tmp_path / "walk.mcap") as writer:
         write(writer, pose(0), 0, 10)

@@ -10,6 +10,7 @@ from inhand_runtime.recording import (
     read_recording,
 )
 from inhand_runtime.recording.message_index import open_index
+from inhand_runtime.recording.reading import in_order_of_reception
 from inhand_schemas.topics import POSE, RGBD, SKELETONS
 from mcap.writer import CompressionType, Writer
 from recordings import FRAME_NS, RGBD_KEY, SITE, START_NS, frame_messages, write_recording
@@ -192,3 +193,8 @@ def test_two_hours_open_and_jump_by_reading_a_small_part(tmp_path: Path) -> None
         assert messages[171_717].sequence == 171_717
         assert bytes_read() - listed < 100_000
         assert messages.captured_at(START_NS + 171_717 * FRAME_NS) == 171_717
+
+
+def test_a_damaged_time_before_1970_ends_no_reader() -> None:
+    timed = [(5, "a"), (-(2**62), "b"), (6, "c")]
+    assert sorted(in_order_of_reception(timed)) == ["a", "b", "c"]

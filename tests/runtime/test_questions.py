@@ -11,10 +11,10 @@ from inhand_runtime.session import Session, connected, open_session
 from inhand_runtime.settings import ZenohSettings
 from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import Site
+from inhand_schemas.procedure import Procedure
 from inhand_schemas.procedures import (
     PROCEDURES,
     SHUTTER,
-    Procedure,
     ShutterReply,
     ShutterRequest,
 )
@@ -89,6 +89,7 @@ def test_requests_and_replies_are_plain_messagepack_maps() -> None:
 @pytest.mark.parametrize("procedure", PROCEDURES, ids=lambda one: one.verb)
 def test_nobody_replies_in_the_name_of_another(procedure: Procedure[Any, Any]) -> None:
     others = {"closed": True, "objects": (), "camera": "side", "sequence": 1, "time_ns": 1}
+    others["recording"] = {}
     reply = msgspec.convert({**others, procedure.named: "back"}, procedure.reply_type)
     assert procedure.reply(procedure.key(Site(), "back"), procedure.encode(reply)) == reply
     with pytest.raises(MessageError, match="in the name of 'back'"):

@@ -15,6 +15,7 @@ from inhand_schemas.messages import (
     Person,
     Pose,
     Preview,
+    RecordingState,
     RgbdFrame,
     Skeletons,
     TopicHealth,
@@ -41,6 +42,16 @@ RUNNING = Health(
 )
 """What an instance says of itself that has nothing to tell."""
 
+RECORDING = RecordingState(
+    file="rig_20261129T201800Z.mcap",
+    file_bytes=1 << 20,
+    ring_seconds=29.5,
+    ring_bytes=1 << 27,
+    clip="rig_20261129T201801Z.mcap",
+    folder_bytes=1 << 33,
+    free_bytes=1 << 34,
+    deleted=3,
+)
 EXAMPLES: tuple[Message, ...] = (
     CameraInfo(
         sequence=1,
@@ -114,6 +125,7 @@ EXAMPLES: tuple[Message, ...] = (
         loop_age_s=0.25,
         effort=0.75,
         shutter_closed=True,
+        recording=RECORDING,
     ),
 )
 LATE = replace(
@@ -121,8 +133,19 @@ LATE = replace(
     sequence=10,
     topics={"inhand/@v1/rig/rgbd/kitchen": TopicHealth(received=360, late_ms=7.5)},
     effort=0.75,
+    recording=None,
 )
 SHUT = replace(LATE, service="capture", effort=None, shutter_closed=True)
+PAUSED = replace(
+    LATE,
+    service="recorder",
+    effort=None,
+    recording=RecordingState(paused=True, file="rig_20261129T201800Z.mcap", file_bytes=1 << 20),
+)
+KEEPING = replace(
+    PAUSED,
+    recording=RECORDING,
+)
 REFUSED = replace(LATE, topics={"(other keys)": TopicHealth(refused=12)})
 
 PNG = RgbdFrame(
@@ -156,7 +179,9 @@ NAMED = Skeletons(sequence=12, time_ns=TIME_NS, people=(PERSON,), convention="az
 
 GOLDEN_MESSAGES: dict[str, Message] = {
     **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
+    "Health.v1.keeping": KEEPING,
     "Health.v1.late": LATE,
+    "Health.v1.paused": PAUSED,
     "Health.v1.refused": REFUSED,
     "Health.v1.shutter": SHUT,
     "ObjectPose.v1.truth": TRUTH,

@@ -94,7 +94,7 @@ def _count(folder: Path, counts: Counter[str]) -> None:
             if topic_of(key)[0] is HEALTH:
                 continue
             counts["received"] += losses.received
-            counts["lost"] += losses.lost
+            counts["lost"] += losses.lost + losses.before
             counts["dropped"] += losses.dropped
         path.unlink()
 

@@ -74,6 +74,8 @@ def main() -> int:
                 session.put(POSE.key(site, OBJECT).replace("@v1", "@v2"), b"\x80")
                 encoding = POSE.encoding.replace(".v1", ".v2")
                 session.put(POSE.key(site, "newer"), b"\x80", encoding=encoding)
+            if published % 30 == 0:
+                info.repeat()  # as daemons do each second
             published += 1
         print(f"published {published}", flush=True)
         stop.wait()

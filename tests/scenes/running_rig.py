@@ -77,7 +77,7 @@ class RunningRig:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.config = folder / "rig.toml"
-        self.meeting = f"tcp/127.0.0.1:{_free_port()}"
+        self.meeting = f"tcp/127.0.0.1:{free_port()}"
         self._processes: list[Process] = []
         self.configure("")
 
@@ -95,6 +95,10 @@ class RunningRig:
         started = self._start([sys.executable, script, "--meeting", self.meeting, *arguments], {})
         started.said("ready")
         return started
+
+    def command(self, *arguments: str | Path) -> Process:
+        """Start any program."""
+        return self._start([str(one) for one in arguments], {})
 
     def python(self, *arguments: str | Path, **env: str) -> Process:
         """Start a Python program."""
@@ -137,7 +141,7 @@ class RunningRig:
         return process
 
 
-def _free_port() -> int:
+def free_port() -> int:
     with socket.socket() as server:
         server.bind(("127.0.0.1", 0))
         port: int = server.getsockname()[1]

@@ -29,7 +29,7 @@ from faulty_scene import (
     with_an_undecodable_pose,
     with_the_clock_set_back,
 )
-from inhand_recorder.service import MOST_KEYS
+from inhand_recorder.recording_loop import MOST_KEYS
 from inhand_schemas.messages import ColourImage, RgbdFrame
 from inhand_schemas.topics import INFO, RGBD, SKELETONS
 from msgspec.structs import replace

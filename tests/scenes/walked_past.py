@@ -104,6 +104,8 @@ def write_walk(
             )
 
         writer.add_metadata("session", {"participant": "p01"})
+        for name in ("objects/mug/mesh.ply", "poster.jpg"):
+            writer.add_attachment(name, "", name.encode(), received_ns=START_NS)
         if info:
             write(INFO, "front", CAMERA)
         for number, people in enumerate(zip(places, others or [None] * len(places), strict=True)):

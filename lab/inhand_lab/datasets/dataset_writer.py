@@ -50,18 +50,11 @@ class DatasetWriter:
 
     def add_recording(self, entry: DatasetEntry, messages: Iterable[Message]) -> None:
         """Write one recording from its messages, which come in the order of their times."""
-        site = Site()
-        with RecordingWriter(self.folder / entry.file) as writer:
-            for message in messages:
-                topic = _TOPICS[type(message)]
-                name = message.object if isinstance(message, ObjectPose) else CAMERA
-                writer.write(
-                    site.key(topic.stream, name),
-                    msgspec.msgpack.encode(message),
-                    received_ns=message.time_ns,
-                    captured_ns=message.time_ns,
-                    sequence=message.sequence,
-                )
+        write_messages(self.folder / entry.file, messages)
+        self.add_entry(entry)
+
+    def add_entry(self, entry: DatasetEntry) -> None:
+        """Add a recording whose file is written."""
         self._entries.append(entry)
 
     def finish(self, generator: Mapping[str, str | int | float | bool]) -> Dataset:
@@ -76,6 +69,23 @@ class DatasetWriter:
         with _reporting(self.folder):
             path.write_text(_toml(contents), encoding="utf-8")
         return Dataset(self.folder, contents.recordings)
+
+
+def write_messages(path: Path, messages: Iterable[Message]) -> None:
+    """Write a recording of messages, which come in the order of their times; raises
+    RecordingError."""
+    site = Site()
+    with RecordingWriter(path) as writer:
+        for message in messages:
+            topic = _TOPICS[type(message)]
+            name = message.object if isinstance(message, ObjectPose) else CAMERA
+            writer.write(
+                site.key(topic.stream, name),
+                msgspec.msgpack.encode(message),
+                received_ns=message.time_ns,
+                captured_ns=message.time_ns,
+                sequence=message.sequence,
+            )
 
 
 @contextmanager

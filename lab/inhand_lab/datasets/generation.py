@@ -4,13 +4,17 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from inhand_runtime.recording.part_file import PART_SUFFIX
 from inhand_schemas.conventions import SIMULATED
 from inhand_schemas.messages import Message, Skeletons
+from inhand_tracker.shape.shape import ObjectShape
 
-from inhand_lab.datasets.dataset import CAMERA, START_NS, Dataset, DatasetEntry
-from inhand_lab.datasets.dataset_writer import DatasetWriter
+from inhand_lab.cluster import current_cluster
+from inhand_lab.datasets.dataset import CAMERA, START_NS, Dataset, DatasetEntry, DatasetError
+from inhand_lab.datasets.dataset_writer import DatasetWriter, write_messages
 from inhand_lab.people.person import USUAL_PEOPLE, People
 from inhand_lab.sensing.cameras import KINECT, Camera
+from inhand_lab.workers import in_processes
 from inhand_lab.world.messages import (
     camera_info,
     label_message,
@@ -62,29 +66,21 @@ def generate(
 
     ``on_progress`` is called once a recording. Raises DatasetError or RecordingError.
     """
-    camera = replace(settings.camera, frame_rate=GENERATED_RATE)
-    takes = (
-        Take(
-            f"{interaction}_p{participant:02}",
-            f"p{participant:02}",
-            simulate_cast(
-                Casting(
-                    interaction,
-                    participant,
-                    settings.seed,
-                    views=settings.views,
-                    people=settings.people,
-                ),
-                settings.frames,
-                camera,
-            ),
-        )
+    writer = DatasetWriter(folder)
+    plans = [
+        _Plan(writer.folder, settings, interaction, participant)
         for interaction in settings.interactions
         for participant in range(settings.participants)
-    )
-    return write_takes(
-        folder,
-        takes,
+    ]
+    if current_cluster() is not None:
+        _require_new(plans)
+        plans = [replace(plan, anew=True) for plan in plans]
+    # In this process, as people of one kind share what is costly of them, but on a cluster.
+    for entry, shape in in_processes(_enact, plans, 1, lambda _: on_progress()):
+        writer.add_shape(shape)
+        writer.add_entry(entry)
+    return _finished(
+        writer,
         {
             "seed": settings.seed,
             "participants": settings.participants,
@@ -94,9 +90,56 @@ def generate(
             "views": settings.views,
             "people": settings.people,
         },
-        images=settings.images,
-        on_progress=on_progress,
     )
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """One recording of a dataset that is to be simulated."""
+
+    folder: Path
+    settings: GenerationSettings
+    interaction: str
+    participant: int
+    anew: bool = False
+    """Whether what another worker has left of it, before it was killed, is written anew."""
+
+    @property
+    def name(self) -> str:
+        """The recording's name."""
+        return f"{self.interaction}_p{self.participant:02}"
+
+    def files(self) -> tuple[Path, Path]:
+        """The recording's file, and what it grows as."""
+        path = self.folder / f"recordings/{self.name}.mcap"
+        return path, path.with_name(path.name + PART_SUFFIX)
+
+
+def _require_new(plans: Iterable[_Plan]) -> None:
+    """Raise DatasetError where there is a recording already that is to be written."""
+    for path in (path for plan in plans for path in plan.files()):
+        if path.exists():
+            raise DatasetError(f"{path} is there already: choose another folder, or move it away")
+
+
+def _enact(plan: _Plan) -> tuple[DatasetEntry, ObjectShape]:
+    """Simulate one recording and write it, with what is in the hands."""
+    settings = plan.settings
+    casting = Casting(
+        plan.interaction,
+        plan.participant,
+        settings.seed,
+        views=settings.views,
+        people=settings.people,
+    )
+    camera = replace(settings.camera, frame_rate=GENERATED_RATE)
+    simulation = simulate_cast(casting, settings.frames, camera)
+    take = Take(plan.name, f"p{plan.participant:02}", simulation)
+    if plan.anew:
+        for path in plan.files():
+            path.unlink(missing_ok=True)
+    entry = _write_take(plan.folder, take, images=settings.images)
+    return entry, shape_of(simulation.object_model)
 
 
 def write_takes(
@@ -113,18 +156,27 @@ def write_takes(
     """
     writer = DatasetWriter(folder)
     for take in takes:
-        simulation = take.simulation
-        writer.add_shape(shape_of(simulation.object_model))
-        entry = DatasetEntry(
-            file=f"recordings/{take.name}.mcap",
-            interaction=simulation.interaction,
-            object=simulation.object_model.name,
-            participant=take.participant,
-            handedness=simulation.person.handedness,
-            frame_rate=simulation.frame_rate,
-        )
-        writer.add_recording(entry, _messages(take, images=images))
+        writer.add_shape(shape_of(take.simulation.object_model))
+        writer.add_entry(_write_take(folder, take, images=images))
         on_progress()
+    return _finished(writer, settings)
+
+
+def _write_take(folder: Path, take: Take, *, images: bool) -> DatasetEntry:
+    simulation = take.simulation
+    entry = DatasetEntry(
+        file=f"recordings/{take.name}.mcap",
+        interaction=simulation.interaction,
+        object=simulation.object_model.name,
+        participant=take.participant,
+        handedness=simulation.person.handedness,
+        frame_rate=simulation.frame_rate,
+    )
+    write_messages(folder / entry.file, _messages(take, images=images))
+    return entry
+
+
+def _finished(writer: DatasetWriter, settings: Mapping[str, str | int | float | bool]) -> Dataset:
     return writer.finish({"name": "inhand simulate", "version": GENERATOR_VERSION, **settings})
 
 

@@ -1,7 +1,7 @@
 """Trains the model of one object and its interaction from a dataset."""
 
 from collections.abc import Callable, Collection, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 
 from inhand_runtime.recording import RecordingError
 from inhand_schemas.errors import MessageError
@@ -24,6 +24,7 @@ from inhand_lab.training.appearance_samples import appearance_samples
 from inhand_lab.training.recording_checks import check_hands, check_sequence
 from inhand_lab.training.rotation_checks import check_rotations
 from inhand_lab.training.shape_checks import check_shape
+from inhand_lab.workers import in_processes
 
 FEWEST_LEARNED = 2
 """Number of recordings, or of stretches of one, that learning compares at the least."""
@@ -168,15 +169,16 @@ def read_recordings(
     """
     usable, sequences = [], []
     refused: list[tuple[DatasetEntry, DatasetError | RecordingError]] = []
-    for entry in entries:
-        try:
-            sequences.append(checked_sequence(dataset, entry))
+    # In this process, since reading is short, but on a cluster.
+    read = in_processes(partial(_read, dataset), entries, 1, lambda _: on_step(READING))
+    for entry, sequence in zip(entries, read, strict=True):
+        if isinstance(sequence, LabelledSequence):
+            sequences.append(sequence)
             usable.append(entry)
-        except (DatasetError, RecordingError) as error:
-            refused.append((entry, error))
-            if on_refused is None:
-                raise
-        on_step(READING)
+        elif on_refused is None:
+            raise sequence
+        else:
+            refused.append((entry, sequence))
     if refused and len(usable) < fewest:
         raise refused[0][1]
     for entry, reason in refused:
@@ -184,6 +186,16 @@ def read_recordings(
             on_refused(entry, reason)
     check_hands(usable, sequences)
     return usable, sequences
+
+
+def _read(
+    dataset: Dataset, entry: DatasetEntry
+) -> LabelledSequence | DatasetError | RecordingError:
+    """Read a recording, or return why it cannot be learned from."""
+    try:
+        return checked_sequence(dataset, entry)
+    except (DatasetError, RecordingError) as error:
+        return error
 
 
 def checked_shape(dataset: Dataset, name: str) -> ObjectShape:

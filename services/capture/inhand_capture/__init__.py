@@ -5,6 +5,7 @@
 ``watching.py`` says in the health how it is. ``view`` turns and masks what any source gives,
 ``estimation`` finds skeletons in pictures, ``faces`` what to hide of them, and ``shutter.py`` stops
 everything.
-``sources/oak`` is the driver of a camera, ``sources/replay.py`` plays a recording, whose messages
-``moments.py`` puts together again.
+``sources/oak`` is the driver of a camera. ``sources/replay.py`` plays recordings:
+``replay_files.py`` finds what is in them, ``moments.py`` puts their messages together again, and
+``replay_playback.py`` pauses and seeks.
 """

@@ -12,6 +12,7 @@ from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError
 from inhand_runtime.settings import Settings
 from inhand_runtime.source import Captured, Source, SourceError, source_factory
+from inhand_schemas.playback import PLAYBACK, PlaybackReply, PlaybackRequest
 from inhand_schemas.procedures import (
     CONTROL,
     SHUTTER,
@@ -67,6 +68,7 @@ def run(settings: Settings[CaptureSettings]) -> None:
         watched = WatchedSource(chosen.source, daemon.health)
         _offer_shutter(daemon, shutter)
         _offer_controls(daemon, watched, changed)
+        _offer_playback(daemon, watched)
         try:
             with _skeleton_stage(daemon, network, chosen, shutter) as stage:
                 _publish(daemon, chosen, open_source, stage, shutter, watched)
@@ -112,6 +114,17 @@ def _offer_controls(daemon: Daemon, watched: WatchedSource, changed: dict[str, A
         return ControlReply(camera=daemon.instance)
 
     daemon.answer(CONTROL, change)
+
+
+def _offer_playback(daemon: Daemon, watched: WatchedSource) -> None:
+    """Let a recording that is played be paused, stepped through and sought by whoever asks."""
+
+    def change(request: PlaybackRequest) -> PlaybackReply | None:
+        if request.camera not in (None, daemon.instance):
+            return None
+        return watched.playback(request, daemon.instance)
+
+    daemon.answer(PLAYBACK, change)
 
 
 def _network(chosen: CaptureSettings) -> "PoseNetwork | None":

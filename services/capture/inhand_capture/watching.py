@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from inhand_runtime.health import HealthBoard
-from inhand_runtime.source import Source, SourceError, control_source
+from inhand_runtime.source import Source, SourceError, control_playback, control_source
+from inhand_schemas.playback import PlaybackReply, PlaybackRequest
 
 log = logging.getLogger(__name__)
 
@@ -63,6 +64,12 @@ class WatchedSource:
         if (source := self._source) is None:
             raise SourceError("it is not open now: try again when it is back")
         control_source(source, options)
+
+    def playback(self, request: PlaybackRequest, camera: str) -> PlaybackReply:
+        """Change how the source plays what is recorded, from any thread."""
+        if (source := self._source) is None:
+            return PlaybackReply(camera=camera, problem="it is not open now: try again later")
+        return control_playback(source, request, camera)
 
     def look(self) -> None:
         """Ask the source once a second what is wrong with it, if it is one that knows."""

@@ -11,8 +11,10 @@ from typing import Annotated, Any, Literal, get_args
 
 from inhand_schemas.fields import Name, Text
 from inhand_schemas.keys import Site, beside
-from inhand_schemas.procedures import PROCEDURES, Procedure
+from inhand_schemas.procedure import Procedure
+from inhand_schemas.procedures import PROCEDURES
 from inhand_schemas.topics import (
+    EVENT,
     HEALTH,
     INFO,
     POSE,
@@ -62,7 +64,7 @@ EVERYTHING_ELSE = tuple(topic for topic in TOPICS.values() if topic is not HEALT
 ROLES: dict[RoleName, Role] = {
     "camera": Role("capture", (INFO, RGBD, SKELETONS, PREVIEW), answers=_of("capture")),
     "tracker": Role("tracker", (POSE,), (INFO, RGBD, SKELETONS), answers=_of("tracker")),
-    "recorder": Role("recorder", reads=EVERYTHING_ELSE),
+    "recorder": Role("recorder", (EVENT,), EVERYTHING_ELSE, answers=_of("recorder")),
     "studio": Role("studio", reads=EVERYTHING_ELSE, asks=PROCEDURES),
     "viewer": Role(None, reads=(PREVIEW, POSE, SKELETONS, INFO)),
 }

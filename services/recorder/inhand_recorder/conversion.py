@@ -1,8 +1,6 @@
 """Recordings made of recordings: merged, cut, filtered and split."""
 
-from collections import Counter
 from collections.abc import Callable, Collection, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,13 +8,11 @@ from inhand_runtime.recording import RecordedMessage, RecordingError, RecordingW
 from inhand_runtime.recording.copying import copy_message
 from inhand_runtime.recording.layout import LATEST_NS
 
-from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps, parse_clock_steps
-from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses, parse_losses
+from inhand_recorder.conversion_records import CONVERSION_RECORD, losses_by_source, records_of
+from inhand_recorder.losses import LossCounter
 from inhand_recorder.recording_reader import Recording
 
 CONVERTING_SUFFIX = ".converting"
-CONVERSION_RECORD = "conversion"
-"""The name of the metadata record in which a converted file says what it was made of."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +98,7 @@ class _Outputs:
         self, recording: Recording, output: Path, selection: Selection, split_seconds: float
     ) -> None:
         self.files: list[ConvertedFile] = []
-        self._sources = recording.metadata()
+        self._sources, self._attachments = recording.metadata(), recording.attachments()
         self._output, self._selection = output, selection
         self._split_ns = round(1e9 * split_seconds)
         self._whole = not split_seconds and selection == Selection()
@@ -172,30 +168,20 @@ class _Outputs:
     def _finish_file(self) -> None:
         if self._writer is None:
             return
-        for name, values in self._records().items():
+        for one in self._attachments:
+            self._writer.add_attachment(
+                one.name, one.media_type, one.data, received_ns=one.log_time
+            )
+        span = None if self._whole else (self._start_ns, self._end_ns)
+        records = records_of(self._sources, self._counter, span) | {
+            CONVERSION_RECORD: self._about()
+        }
+        for name, values in records.items():
             self._writer.add_metadata(name, values)
         path = self._writer.close()
         self._written.append(path)
         self.files[-1] = ConvertedFile(path, self._messages)
         self._writer = None
-
-    def _records(self) -> dict[str, dict[str, str]]:
-        records = _carried(self._sources)
-        steps = {
-            at_ns: step_ns
-            for one in self._sources.values()
-            for at_ns, step_ns in parse_clock_steps(one.get(CLOCK_RECORD, {})).items()
-            if self._whole or self._start_ns <= at_ns <= self._end_ns
-        }
-        if steps:
-            records[CLOCK_RECORD] = format_clock_steps(steps)
-        dropped = _dropped(self._sources) if self._whole else {}
-        counted = self._counter.losses()
-        records[LOSSES_RECORD] = format_losses(
-            self._counter.losses({key: n for key, n in dropped.items() if key in counted})
-        )
-        records[CONVERSION_RECORD] = self._about()
-        return records
 
     def _about(self) -> dict[str, str]:
         """Return what the file was made of, with the losses that its sources say of themselves."""
@@ -208,10 +194,7 @@ class _Outputs:
             values["start_ns"] = str(chosen.start_ns)
         if chosen.end_ns != LATEST_NS:
             values["end_ns"] = str(chosen.end_ns)
-        for path, records in self._sources.items():
-            losses = records.get(LOSSES_RECORD, {})
-            values[f"losses of {path.name}"] = "\n".join(f"{k} {v}" for k, v in losses.items())
-        return values
+        return values | losses_by_source(self._sources)
 
 
 def _kept_before(
@@ -260,26 +243,3 @@ def _refuse_existing(output: Path, split_seconds: float) -> None:
 
 def _numbered(output: Path, number: int) -> Path:
     return output.with_name(f"{output.stem}_{number:03}{output.suffix}")
-
-
-def _carried(sources: Mapping[Path, Mapping[str, dict[str, str]]]) -> dict[str, dict[str, str]]:
-    """Return the sources' records but those that are made anew; where they differ under one name,
-    the later ones are named after their file as well."""
-    records: dict[str, dict[str, str]] = {}
-    for path, of_file in sources.items():
-        for name, values in of_file.items():
-            if name in (CLOCK_RECORD, LOSSES_RECORD):
-                continue
-            if name == CONVERSION_RECORD or records.get(name, values) != values:
-                name = f"{name} of {path.name}"
-            records[name] = values
-    return records
-
-
-def _dropped(sources: Mapping[Path, Mapping[str, dict[str, str]]]) -> Counter[str]:
-    dropped: Counter[str] = Counter()
-    for records in sources.values():
-        with suppress(ValueError):
-            for key, losses in parse_losses(records.get(LOSSES_RECORD, {})).items():
-                dropped[key] += losses.dropped
-    return dropped

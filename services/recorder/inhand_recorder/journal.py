@@ -7,14 +7,16 @@ import contextlib
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
-from datetime import UTC, datetime
 from pathlib import Path
 
 from inhand_runtime.recording import RecordingError
+from inhand_schemas.messages import RecordingState
 
-from inhand_recorder.recording_file import Entry, Limits, RecordingFile
+from inhand_recorder.file_names import free_path
+from inhand_recorder.recording_file import PLAIN_FILES, Entry, FileHandling, Limits, RecordingFile
 
-SUFFIX = ".mcap"
+PAUSES_RECORD = "pauses"
+"""The name of the metadata record that says when a recorder was paused before or after a file."""
 
 
 class Journal:
@@ -23,7 +25,10 @@ class Journal:
     ``write``, ``sync`` and ``close`` raise RecordingError; the next call then begins another
     file, and ``waiting`` entries go into it. ``dropped`` says how many messages of each key were
     lost so far in a queue before the journal. How long a file lasts is measured by the ``clock``,
-    in seconds, which nobody sets.
+    in seconds, which nobody sets. ``files`` says what is the same for all files.
+
+    A pause makes the file whole. It and the next one note the pause, so that nobody takes what is
+    missing between them for lost.
     """
 
     def __init__(
@@ -33,16 +38,38 @@ class Journal:
         limits: Limits,
         dropped: Callable[[], Mapping[str, int]],
         clock: Callable[[], float] = time.monotonic,
+        files: FileHandling = PLAIN_FILES,
     ) -> None:
         self._folder = folder
         self._rig = rig
         self._limits = limits
         self._dropped = dropped
         self._clock = clock
-        self._dropped_before: Mapping[str, int] = {}
+        self._handling = files
+        self.file_limit = 0
+        """Bytes after which a file is finished, beside the limits; 0 is never."""
+        self._dropped_before: Counter[str] = Counter()
+        self._unwritten_before: Counter[str] = Counter()
         self._waiting: deque[Entry] = deque()
         self._kept: dict[str, Entry] = {}
+        self._latest: dict[str, int] = {}
         self._file: RecordingFile | None = None
+        self._paused_since_ns: int | None = None
+        self._pauses: dict[int, int | None] = {}
+
+    @property
+    def paused(self) -> bool:
+        """Whether what comes is not written, because somebody wants it so."""
+        return self._paused_since_ns is not None
+
+    @property
+    def state(self) -> RecordingState:
+        """Whether it is paused, and which file grows."""
+        if self._file is None:
+            return RecordingState(paused=self.paused)
+        return RecordingState(
+            paused=self.paused, file=self._file.path.name, file_bytes=self._file.bytes_written
+        )
 
     @property
     def waiting(self) -> Counter[str]:
@@ -50,9 +77,30 @@ class Journal:
         return Counter(entry.key for entry in self._waiting)
 
     def write(self, entry: Entry) -> None:
-        """Add an entry, in a new file when this one has reached a limit."""
+        """Add an entry, in a new file when this one has reached a limit; while paused, only
+        remember what later files begin with."""
+        if self.paused:
+            self._remember(entry)
+            return
         self._waiting.append(entry)
         self._write_waiting()
+
+    def pause(self, at_ns: int) -> Path | None:
+        """Write nothing from now on; returns the file that is whole now, if one grew."""
+        if self.paused:
+            return None
+        self._paused_since_ns = at_ns
+        self._pauses[at_ns] = None
+        return self.close()
+
+    def resume(self, at_ns: int) -> None:
+        """Write what comes from now on."""
+        if self._paused_since_ns is not None:
+            self._pauses = {self._paused_since_ns: at_ns}
+            self._paused_since_ns = None
+            self._latest = {}
+            self._dropped_before = Counter(self._dropped())
+            self._unwritten_before = Counter(self._handling.unwritten())
 
     def note_clock_step(self, at_ns: int, step_ns: int) -> None:
         """Write into the file that the wall clock was set, and by how much, in nanoseconds."""
@@ -60,18 +108,31 @@ class Journal:
             with self._giving_up_on_failure(self._file):
                 self._file.note_clock_step(at_ns, step_ns)
 
+    def hand_over(self) -> None:
+        """Give everything to the system, so that the end of this process takes nothing with it."""
+        self._write_waiting()
+        if self._file is not None:
+            with self._giving_up_on_failure(self._file):
+                self._file.hand_over()
+
     def sync(self) -> None:
         """Bring everything to the disk."""
+        if self.paused:
+            self.close()
+            return
         self._write_waiting()
         if self._file is not None:
             with self._giving_up_on_failure(self._file):
                 self._file.sync()
 
-    def close(self) -> None:
-        """Finish the file, if there is one; a later ``write`` begins another."""
-        self.sync()
-        if self._file is not None:
-            self._finish(self._file)
+    def close(self) -> Path | None:
+        """Finish the file, if there is one, and return it; a later ``write`` begins another."""
+        self._write_waiting()
+        if (file := self._file) is None:
+            return None
+        with self._giving_up_on_failure(file):
+            file.sync()
+        return self._finish(file)
 
     def _write_waiting(self) -> None:
         while self._waiting:
@@ -79,15 +140,22 @@ class Journal:
             entry = self._waiting.popleft()
             with self._giving_up_on_failure(file):
                 file.put(entry)
-            if entry.kept:
-                self._kept[entry.key] = entry
+            self._remember(entry)
+
+    def _remember(self, entry: Entry) -> None:
+        if entry.kept:
+            self._kept[entry.key] = entry
 
     def _file_at(self, now_ns: int) -> RecordingFile:
-        if self._file is not None and self._file.full(self._limits, self._clock()):
+        if self._file is not None and self._is_full(self._file):
             self._finish(self._file)
         if self._file is None:
             self._file = self._begin(now_ns)
         return self._file
+
+    def _is_full(self, file: RecordingFile) -> bool:
+        beyond = 0 < self.file_limit <= file.bytes_written
+        return beyond or file.full(self._limits, self._clock())
 
     def _begin(self, now_ns: int) -> RecordingFile:
         try:
@@ -97,21 +165,31 @@ class Journal:
                 f"cannot create {self._folder}: {error.strerror}: bring its disk or folder back"
             ) from error
         try:
-            file = RecordingFile(self._free_path(now_ns), self._clock())
+            path = free_path(self._folder, self._rig, now_ns)
+            file = RecordingFile(path, self._clock(), self._handling.make_room, self._latest)
         except RecordingError as error:
             raise self._left_no_file(error) from error.__cause__
         with self._giving_up_on_failure(file):
+            file.introduce(self._handling, now_ns)
+            if self._pauses:
+                file.note(PAUSES_RECORD, format_pauses(self._pauses))
             for entry in self._kept.values():
                 if entry not in self._waiting:
                     file.repeat(entry, now_ns)
         return file
 
-    def _finish(self, file: RecordingFile) -> None:
-        dropped = Counter(self._dropped())
+    def _finish(self, file: RecordingFile) -> Path:
+        dropped, unwritten = Counter(self._dropped()), Counter(self._handling.unwritten())
         with self._giving_up_on_failure(file):
-            file.finish(dropped - Counter(self._dropped_before))
-        self._dropped_before = dropped
+            file.note_all(self._handling.records())
+            if self.paused:
+                file.note(PAUSES_RECORD, format_pauses(self._pauses))
+            path = file.finish(dropped - self._dropped_before, unwritten - self._unwritten_before)
+        self._dropped_before, self._unwritten_before = dropped, unwritten
+        self._pauses = {}
         self._file = None
+        self._latest = {**self._latest, **file.latest}
+        return path
 
     @contextlib.contextmanager
     def _giving_up_on_failure(self, file: RecordingFile) -> Iterator[None]:
@@ -119,6 +197,7 @@ class Journal:
             yield
         except RecordingError as error:
             self._file = None
+            self._latest = {**self._latest, **file.latest}
             self._waiting.extendleft(reversed(file.give_up()))
             if file.worth_keeping:
                 raise
@@ -132,10 +211,8 @@ class Journal:
             "disk; until then what arrives waits in memory"
         )
 
-    def _free_path(self, now_ns: int) -> Path:
-        began = datetime.fromtimestamp(now_ns / 1e9, UTC).strftime("%Y%m%dT%H%M%SZ")
-        name, number = f"{self._rig}_{began}", 1
-        while any(self._folder.glob(f"{name}{SUFFIX}*")):
-            number += 1
-            name = f"{self._rig}_{began}_{number}"
-        return self._folder / f"{name}{SUFFIX}"
+
+def format_pauses(pauses: Mapping[int, int | None]) -> dict[str, str]:
+    """The values of the metadata record, from the pauses' begins and ends, in nanoseconds since the
+    epoch; the end of one that lasts is not known."""
+    return {str(began): "" if ended is None else str(ended) for began, ended in pauses.items()}

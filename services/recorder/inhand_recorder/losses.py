@@ -9,7 +9,9 @@ from inhand_runtime.recording import SEQUENCE_MASK
 LOSSES_RECORD = "losses"
 """The name of the metadata record that a recording keeps its losses in."""
 
-_FORMAT = re.compile(r"received=(\d+) lost=(\d+) restarts=(\d+) dropped=(\d+)")
+_FORMAT = re.compile(
+    r"received=(\d+) lost=(\d+) restarts=(\d+) dropped=(\d+)(?: unwritten=(\d+))?(?: before=(\d+))?"
+)
 
 
 @dataclass(frozen=True)
@@ -17,13 +19,17 @@ class Losses:
     """What came of one key and what did not.
 
     ``lost`` counts the numbers that are missing; ``dropped`` those among them that reached this
-    process and found its queue full; ``restarts`` how often a publisher began anew.
+    process and found its queue full, and ``unwritten`` those among the dropped that came while the
+    disk took nothing; ``restarts`` how often a publisher began anew. ``before`` are numbers that
+    are missing between the recorder's former file and the first one here.
     """
 
     received: int = 0
     lost: int = 0
     restarts: int = 0
     dropped: int = 0
+    unwritten: int = 0
+    before: int = 0
 
 
 class LossCounter:
@@ -34,7 +40,9 @@ class LossCounter:
     in the 32 bits that a recording keeps, so that a count from the file agrees.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, former: Mapping[str, int] | None = None) -> None:
+        """``former`` are the latest numbers in the recorder's former file, by key."""
+        self._former = former or {}
         self._latest: dict[str, int] = {}
         self._losses: dict[str, Losses] = {}
 
@@ -48,19 +56,34 @@ class LossCounter:
         self._latest[key] = sequence
         received = losses.received + 1
         if latest is None:
-            self._losses[key] = replace(losses, received=received)
+            missing = sequence - self._former.get(key, sequence) - 1
+            self._losses[key] = replace(losses, received=received, before=max(missing, 0))
         elif sequence < latest:
             self._losses[key] = replace(losses, received=received, restarts=losses.restarts + 1)
         else:
             lost = losses.lost + sequence - latest - 1
             self._losses[key] = replace(losses, received=received, lost=lost)
 
-    def losses(self, dropped: Mapping[str, int] | None = None) -> dict[str, Losses]:
-        """The count so far by key, with the drops that the queue counted by key."""
-        dropped = dropped or {}
+    @property
+    def latest(self) -> Mapping[str, int]:
+        """The latest number by key."""
+        return self._latest
+
+    def losses(
+        self,
+        dropped: Mapping[str, int] | None = None,
+        unwritten: Mapping[str, int] | None = None,
+    ) -> dict[str, Losses]:
+        """The count so far by key, with the drops that the queue counted by key, and those among
+        them for which the disk was to blame."""
+        dropped, unwritten = dropped or {}, unwritten or {}
         keys = sorted(self._losses.keys() | dropped.keys())
         return {
-            key: replace(self._losses.get(key, Losses()), dropped=dropped.get(key, 0))
+            key: replace(
+                self._losses.get(key, Losses()),
+                dropped=dropped.get(key, 0),
+                unwritten=unwritten.get(key, 0),
+            )
             for key in keys
         }
 
@@ -70,6 +93,8 @@ def format_losses(losses: Mapping[str, Losses]) -> dict[str, str]:
     return {
         key: f"received={one.received} lost={one.lost} "
         f"restarts={one.restarts} dropped={one.dropped}"
+        + (f" unwritten={one.unwritten}" if one.unwritten else "")
+        + (f" before={one.before}" if one.before else "")
         for key, one in losses.items()
     }
 
@@ -83,5 +108,4 @@ def _parse(key: str, value: str) -> Losses:
     match = _FORMAT.fullmatch(value)
     if match is None:
         raise ValueError(f"the losses of {key} are written as {value!r}")
-    received, lost, restarts, dropped = map(int, match.groups())
-    return Losses(received, lost, restarts, dropped)
+    return Losses(*(int(number or 0) for number in match.groups()))

@@ -1,15 +1,19 @@
 """One file under way: what it holds, what of it stands only in memory, and when it is full."""
 
 import contextlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from inhand_runtime.recording import RecordingError, RecordingWriter
-from inhand_runtime.recording.part_file import PART_SUFFIX
+from inhand_runtime.recording.part_file import PART_SUFFIX, no_room
 
 from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
+
+MESH_PLACE = "objects/{}/mesh.ply"
+MESH_TYPE = "model/ply"
+"""The name and the type of the attachment that holds an object's mesh."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,25 @@ class Limits:
     split_seconds: float = 0.0
 
 
+@dataclass(frozen=True)
+class FileHandling:
+    """What is the same for all files of a recorder.
+
+    Each begins with the named ``records``, and ends with those that are others by then; ``meshes``
+    are attached by the names of their objects. ``make_room`` makes room on a full disk, where it
+    can, and ``unwritten`` says how many messages of each key the disk was to blame for so far.
+    """
+
+    records: Callable[[], Mapping[str, Mapping[str, str]]] = dict
+    make_room: Callable[[], bool] = no_room
+    unwritten: Callable[[], Mapping[str, int]] = dict
+    meshes: Callable[[], Mapping[str, bytes]] = dict
+
+
+PLAIN_FILES = FileHandling()
+"""Files without records of their own, that fail on a full disk."""
+
+
 class RecordingFile:
     """Writes entries and counts losses.
 
@@ -44,23 +67,42 @@ class RecordingFile:
     It is ``worth_keeping`` as soon as the disk holds an entry that memory does not.
     """
 
-    def __init__(self, path: Path, opened_s: float) -> None:
+    def __init__(
+        self,
+        path: Path,
+        opened_s: float,
+        make_room: Callable[[], bool] = no_room,
+        former: Mapping[str, int] | None = None,
+    ) -> None:
+        """``former`` are the latest numbers in the file before, by key."""
+        self.path = path
         self._part = path.with_name(path.name + PART_SUFFIX)
         self._opened_s = opened_s
         self._clock_steps: dict[int, int] = {}
-        self._losses = LossCounter()
+        self._losses = LossCounter(former)
         self._in_memory: list[Entry] = []
+        self._noted: dict[str, dict[str, str]] = {}
         self.worth_keeping = False
         try:
-            self._writer = RecordingWriter(path)
+            self._writer = RecordingWriter(path, make_room=make_room)
         except RecordingError as error:
             if isinstance(error.__cause__, OSError):
                 self._remove_part()
             raise
 
+    @property
+    def bytes_written(self) -> int:
+        """The size of the file so far, without what stands only in memory."""
+        return self._writer.bytes_written
+
+    @property
+    def latest(self) -> Mapping[str, int]:
+        """The latest number by key."""
+        return self._losses.latest
+
     def full(self, limits: Limits, now_s: float) -> bool:
         """Whether it has reached a limit; ``now_s`` is of the clock that ``opened_s`` is of."""
-        by_size = 0 < limits.split_bytes <= self._writer.bytes_written
+        by_size = 0 < limits.split_bytes <= self.bytes_written
         by_time = 0 < limits.split_seconds <= now_s - self._opened_s
         return by_size or by_time
 
@@ -68,6 +110,25 @@ class RecordingFile:
         """Write that the wall clock was set at a time, and by how much."""
         self._clock_steps[at_ns] = step_ns
         self._writer.add_metadata(CLOCK_RECORD, format_clock_steps(self._clock_steps))
+
+    def note(self, name: str, values: Mapping[str, str]) -> None:
+        """Write a named record about the recording; a later one of that name replaces it."""
+        self._writer.add_metadata(name, values)
+
+    def note_all(self, records: Mapping[str, Mapping[str, str]]) -> None:
+        """Write those of the named records that do not stand in the file yet."""
+        for name, values in records.items():
+            if self._noted.get(name) != values:
+                self.note(name, values)
+                self._noted[name] = dict(values)
+
+    def introduce(self, handling: FileHandling, now_ns: int) -> None:
+        """Write what each file of a recorder begins with."""
+        self.note_all(handling.records())
+        for name, data in handling.meshes().items():
+            self._writer.add_attachment(
+                MESH_PLACE.format(name), MESH_TYPE, data, received_ns=now_ns
+            )
 
     def repeat(self, entry: Entry, received_ns: int) -> None:
         """Add an entry of before this file, as if it were received with the file's first one."""
@@ -83,6 +144,12 @@ class RecordingFile:
             del self._in_memory[:-1]
             self.worth_keeping = True
 
+    def hand_over(self) -> None:
+        """Give everything to the system, so that the end of this process takes nothing with it."""
+        self._writer.hand_over()
+        self.worth_keeping = True
+        self._in_memory.clear()
+
     def sync(self) -> None:
         """Bring everything to the disk, and make sure that the file is still there."""
         self._writer.sync()
@@ -96,9 +163,13 @@ class RecordingFile:
             ) from error
         self._in_memory.clear()
 
-    def finish(self, dropped: Mapping[str, int]) -> Path:
-        """Write the losses (with the drops of a queue by key) and give the file its name."""
-        self._writer.add_metadata(LOSSES_RECORD, format_losses(self._losses.losses(dropped)))
+    def finish(
+        self, dropped: Mapping[str, int], unwritten: Mapping[str, int] | None = None
+    ) -> Path:
+        """Write the losses (with the drops of a queue by key, and those for which the disk was to
+        blame) and give the file its name."""
+        losses = self._losses.losses(dropped, unwritten)
+        self._writer.add_metadata(LOSSES_RECORD, format_losses(losses))
         return self._writer.close()
 
     def give_up(self) -> list[Entry]:

@@ -18,7 +18,9 @@ from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import CameraInfo
 from inhand_schemas.topics import INFO, RGBD, AnyTopic
+from mcap.records import Attachment
 
+from inhand_recorder.attachments import read_attachments
 from inhand_recorder.recorded import Recorded, decoded
 from inhand_recorder.recording_files import RecordingFiles
 from inhand_recorder.recording_series import Places, Series
@@ -126,6 +128,14 @@ class Recording:
         return {
             one.path: read_metadata(one.path) if one.whole else {} for one in self._files.summaries
         }
+
+    def attachments(self) -> list[Attachment]:
+        """Read what is attached to the files that are whole, the same once."""
+        found: dict[tuple[str, bytes], Attachment] = {}
+        for one in self._files.summaries:
+            for attached in read_attachments(one.path) if one.whole else ():
+                found.setdefault((attached.name, attached.data), attached)
+        return list(found.values())
 
     def __len__(self) -> int:
         return sum(self.topics.values())

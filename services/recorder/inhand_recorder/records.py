@@ -2,6 +2,7 @@
 
 import mmap
 import struct
+import zlib
 from collections.abc import Callable
 from io import BytesIO
 from typing import TypeAlias
@@ -88,6 +89,14 @@ def message_head(data: Bytes, offset: int) -> Message | None:
     stream = ReadDataStream(BytesIO(data[start : start + MESSAGE_BYTES]))
     head: Message = Message.read(stream, MESSAGE_BYTES)
     return head
+
+
+def attachment_is_sound(data: Bytes, offset: int) -> bool:
+    """Whether the checksum of the attachment at ``offset`` fits it, if it has one; MCAP's library
+    does not look."""
+    end = offset + length_at(data, offset)
+    (checksum,) = struct.unpack_from("<I", data, end - 4)
+    return checksum in (0, zlib.crc32(data[offset + HEADER_BYTES : end - 4]))
 
 
 def length_at(data: Bytes, offset: int) -> int:

@@ -13,7 +13,7 @@ from inhand_runtime.recording import (
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
 from inhand_schemas.errors import KeyFormatError, MessageError, UnknownVersionError
 from inhand_schemas.topics import AnyTopic, topic_of
-from mcap.records import Channel, Message, Metadata
+from mcap.records import Attachment, Channel, Message, Metadata
 
 from inhand_recorder.faults import (
     APART,
@@ -25,7 +25,7 @@ from inhand_recorder.faults import (
     FaultLedger,
 )
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses, parse_losses
-from inhand_recorder.records import Bytes
+from inhand_recorder.records import Bytes, attachment_is_sound
 from inhand_recorder.scanning import Stretch, channels, opened, scan
 
 RECOVERING_SUFFIX = ".recovering"
@@ -52,7 +52,8 @@ class RecoveryReport:
 def recover_recording(path: Path, output: Path) -> RecoveryReport:
     """Write all messages that are left in ``path`` to the new file ``output``.
 
-    What a checksum contradicts is left out, and what does not decode. The named records stay,
+    What a checksum contradicts is left out, and what does not decode. Named records and attachments
+    stay,
     ``losses`` is counted anew, and ``recovery`` says where the file comes from. Raises
     RecordingError, also when nothing is left, and then leaves no file; neither the input nor an
     existing file is ever changed.
@@ -87,6 +88,9 @@ def _rescue(path: Path, data: Bytes, writer: RecordingWriter) -> "_Rescue":
     rescue = _Rescue(writer, channels(data), path)
     for stretch in scan(data):
         rescue.take(stretch)
+        for record in stretch.records:
+            if isinstance(record, Attachment) and attachment_is_sound(data, stretch.offset):
+                rescue.attach(record)
     if rescue.messages == 0:
         raise RecordingError(f"{path} holds no message of Inhand's that could be saved")
     rescue.finish(path)
@@ -105,6 +109,7 @@ class _Rescue:
         self.faults = FaultLedger({number: one.topic for number, one in by_number.items()})
         self._counter = LossCounter()
         self._dropped: dict[str, int] = {}
+        self._unwritten: dict[str, int] = {}
         self.found: set[str] = set()
         self.messages = 0
         self.skipped_bytes = 0
@@ -124,8 +129,13 @@ class _Rescue:
                 self.unchecked += 1
                 self.faults.note(record, UNCHECKED)
 
+    def attach(self, record: Attachment) -> None:
+        self._writer.add_attachment(
+            record.name, record.media_type, record.data, received_ns=record.log_time
+        )
+
     def finish(self, source: Path) -> None:
-        losses = self._counter.losses(self._dropped)
+        losses = self._counter.losses(self._dropped, self._unwritten)
         self._writer.add_metadata(LOSSES_RECORD, format_losses(losses))
         origin = {
             "source": source.name,
@@ -174,6 +184,7 @@ class _Rescue:
         with suppress(ValueError):
             written = parse_losses(record.metadata)
             self._dropped = {key: losses.dropped for key, losses in written.items()}
+            self._unwritten = {key: losses.unwritten for key, losses in written.items()}
 
 
 def _known(path: Path, by_number: dict[int, Channel]) -> dict[int, tuple[str, AnyTopic]]:

@@ -1,93 +1,24 @@
-"""The recorder's daemon: takes what arrives, and keeps the disk's troubles from what receives."""
+"""The recorder's daemon: what it is made of, and what it subscribes to."""
 
 import time
-from pathlib import Path
-from typing import Annotated
+from functools import lru_cache
 
-from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
-from inhand_runtime.errors import SettingsError
-from inhand_runtime.inbox import Received
-from inhand_runtime.recording import RecordingError
-from inhand_runtime.settings import FilePath, Section, Settings
-from inhand_runtime.settings_errors import suggestion
-from inhand_runtime.wording import counted
-from inhand_runtime.writable import try_folder
-from inhand_schemas.errors import KeyFormatError, MessageError
-from inhand_schemas.topics import PREVIEW, RGBD, TOPICS, topic_of
-from pydantic import AfterValidator, ByteSize, Field
+from inhand_runtime.settings import Settings
+from inhand_schemas.topics import EVENT, RGBD, TOPICS
 
-from inhand_recorder.clock import ClockWatch
-from inhand_recorder.gaps import GapReporter
+from inhand_recorder.announcing import Announcer
+from inhand_recorder.commands import CommandDesk
+from inhand_recorder.event_clips import event_clips
 from inhand_recorder.journal import Journal
-from inhand_recorder.recording_file import Limits
-from inhand_recorder.stamps import entry_apart, entry_of
+from inhand_recorder.provenance import Provenance
+from inhand_recorder.recording_file import FileHandling, Limits
+from inhand_recorder.recording_loop import MOST_KEYS, RecorderParts, RecordingLoop
+from inhand_recorder.retention import Retention
+from inhand_recorder.settings import RecorderSettings, check
 
-SYNC_PERIOD_S = 0.75
-"""A crash loses this much and what a sync takes itself: a second at the most."""
-IDLE_S = 0.1
-FIRST_RETRY_S, LAST_RETRY_S = 1.0, 30.0
 QUEUE_SAMPLES = 1 << 16
-MOST_KEYS = 10_000
-"""Number of keys that are recorded; a file holds 65,535 channels, and a site has some dozens."""
-REFUSED_KEYS_LAST_S = 5.0
 FRAMES_WEIGHT = 3 * (len(TOPICS) - 1)
-SMALLEST_SPLIT_BYTES = 1 << 20
-SMALLEST_SPLIT_S = 1.0
-SPLIT_S = 3600.0
-"""Seconds after which a new file begins, unless the settings say otherwise."""
-
-
-def _known_streams(streams: tuple[str, ...]) -> tuple[str, ...]:
-    for stream in streams:
-        if stream not in TOPICS:
-            raise ValueError(f"there is no stream {stream!r}" + suggestion(stream, TOPICS))
-    return streams
-
-
-def _zero_or_a_mebibyte(size: ByteSize) -> ByteSize:
-    if 0 < size < SMALLEST_SPLIT_BYTES:
-        raise ValueError("a file must hold 1 MiB at least; 0 means never")
-    return size
-
-
-def _zero_or_a_second(seconds: float) -> float:
-    if 0 < seconds < SMALLEST_SPLIT_S:
-        raise ValueError("a file must last 1 s at least; 0 means never")
-    return seconds
-
-
-class RecorderSettings(Section):
-    """``[recorder.NAME]``.
-
-    A new file begins after ``split_bytes`` or ``split_seconds``; 0 means never. Without a word it
-    is each hour, so that no file grows for ever, and what is copied or recovered is an hour at the
-    most. What the disk cannot take at once waits in memory, ``queue_bytes`` at the most; then the
-    oldest is dropped and counted. Without a word all ``streams`` are recorded but previews, which
-    are made only while somebody listens, and show less than the frames do.
-    """
-
-    folder: FilePath = Field(default=Path("recordings"), validate_default=True)
-    streams: Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_known_streams)] = (
-        tuple(stream for stream in TOPICS if stream != PREVIEW.stream)
-    )
-    split_bytes: Annotated[ByteSize, Field(ge=0), AfterValidator(_zero_or_a_mebibyte)] = ByteSize(0)
-    split_seconds: Annotated[
-        float, Field(ge=0, allow_inf_nan=False), AfterValidator(_zero_or_a_second)
-    ] = SPLIT_S
-    queue_bytes: Annotated[ByteSize, Field(ge=1 << 20)] = ByteSize(256 << 20)
-
-
-def check(settings: Settings[RecorderSettings]) -> None:
-    """Check all that can be known before a start; raises SettingsError."""
-    folder = settings.service.folder
-    try:
-        try_folder(folder)
-    except OSError as error:
-        raise SettingsError(
-            f"cannot write to the folder {folder}: {error.strerror}: change folder in the "
-            "recorder's settings"
-        ) from None
 
 
 def run(settings: Settings[RecorderSettings]) -> None:
@@ -99,15 +30,52 @@ def run(settings: Settings[RecorderSettings]) -> None:
     chosen = settings.service
     check(settings)
     with running_daemon("recorder", settings) as daemon:
-        journal = Journal(
-            chosen.folder,
-            settings.site.rig,
-            Limits(chosen.split_bytes, chosen.split_seconds),
-            daemon.health.drops,
-        )
-        for stream, size in queue_shares(chosen.streams, chosen.queue_bytes).items():
-            daemon.subscribe(TOPICS[stream], samples=QUEUE_SAMPLES, size=size)
-        _Recorder(daemon, journal).run()
+        parts = _parts(daemon, settings)
+        if chosen.start_paused:
+            parts.journal.pause(time.time_ns())
+        _subscribe(daemon, chosen)
+        parts.desk.open(daemon)
+        RecordingLoop(daemon, parts).run()
+
+
+def _parts(daemon: Daemon, settings: Settings[RecorderSettings]) -> RecorderParts:
+    chosen = settings.service
+    provenance = Provenance(settings)
+    announcer = Announcer(daemon.publisher(EVENT, daemon.instance).put)
+    retention = Retention(chosen.folder, chosen.quotas, announcer.deleted)
+    files = FileHandling(
+        records=provenance.records,
+        meshes=provenance.meshes,
+        make_room=retention.make_room,
+        unwritten=daemon.health.unwritten_counts,
+    )
+    journal = Journal(
+        chosen.folder,
+        settings.site.rig,
+        Limits(chosen.split_bytes, chosen.split_seconds),
+        daemon.health.drops,
+        files=files,
+    )
+    return RecorderParts(
+        journal,
+        CommandDesk(daemon.instance),
+        retention,
+        announcer,
+        provenance,
+        event_clips(daemon, settings, files),
+    )
+
+
+def _subscribe(daemon: Daemon, chosen: RecorderSettings) -> None:
+    """Let what is chosen arrive."""
+    subscriptions = chosen.chosen.subscriptions()
+    wanted = lru_cache(MOST_KEYS)(chosen.chosen.holds)
+    streams = tuple(topic.stream for topic in subscriptions)
+    sizes = queue_shares(streams, chosen.queue_bytes)
+    for topic, names in subscriptions.items():
+        size = sizes[topic.stream] // len(names)
+        for name in names:
+            daemon.subscribe(topic, name, samples=QUEUE_SAMPLES, size=size, wanted=wanted)
 
 
 def queue_shares(streams: tuple[str, ...], queue_bytes: int) -> dict[str, int]:
@@ -118,115 +86,3 @@ def queue_shares(streams: tuple[str, ...], queue_bytes: int) -> dict[str, int]:
     weights = {stream: FRAMES_WEIGHT if stream == RGBD.stream else 1 for stream in streams}
     total = sum(weights.values())
     return {stream: queue_bytes * weight // total for stream, weight in weights.items()}
-
-
-class _Recorder:
-    def __init__(self, daemon: Daemon, journal: Journal) -> None:
-        self._daemon = daemon
-        self._journal = journal
-        self._gaps = GapReporter(daemon.health.error)
-        self._keys: set[str] = set()
-        self._clock = ClockWatch()
-        self._infos = InfoWatch(daemon.health)
-
-    def run(self) -> None:
-        """Write until stopped; while the disk fails, what arrives waits in the inbox."""
-        health, delay = self._daemon.health, FIRST_RETRY_S
-        while not self._daemon.stop.is_set():
-            try:
-                self._write_until_stopped()
-            except RecordingError as error:
-                failed_before = health.state != "running"
-                delay = min(2 * delay, LAST_RETRY_S) if failed_before else FIRST_RETRY_S
-                health.state = "degraded"
-                health.trouble("disk", str(error))
-                self._wait(delay)
-        self._write_the_rest()
-
-    def _wait(self, seconds: float) -> None:
-        end = time.monotonic() + seconds
-        while (rest := end - time.monotonic()) > 0.0:
-            self._daemon.health.came_round()
-            if self._daemon.stop.wait(min(rest, SYNC_PERIOD_S)):
-                return
-
-    def _write_until_stopped(self) -> None:
-        self._journal.sync()
-        self._daemon.health.state = "running"
-        self._daemon.health.well("disk")
-        next_sync = time.monotonic() + SYNC_PERIOD_S
-        while not self._daemon.stop.is_set():
-            sample = self._daemon.receive(IDLE_S)
-            if sample is not None:
-                self._write(sample)
-            if time.monotonic() >= next_sync:
-                if (step := self._clock.step()) is not None:
-                    self._journal.note_clock_step(*step)
-                self._journal.sync()
-                self._gaps.report()
-                self._infos.check(time.monotonic())
-                next_sync = time.monotonic() + SYNC_PERIOD_S
-
-    def _write_the_rest(self) -> None:
-        self._daemon.inbox.close()
-        try:
-            try:
-                self._write_all()
-            except RecordingError as error:
-                self._daemon.health.error(f"{error}; trying a last time in another file")
-                self._write_all()
-                raise
-        finally:
-            self._count_what_is_left()
-
-    def _write_all(self) -> None:
-        while (sample := self._daemon.inbox.get(0)) is not None:
-            self._write(sample)
-        self._journal.close()
-        self._gaps.report()
-
-    def _write(self, sample: Received) -> None:
-        try:
-            topic, parsed = topic_of(sample.key)
-        except KeyFormatError as error:
-            self._daemon.health.malformed(sample.key, error)
-            return
-        if sample.key not in self._keys and len(self._keys) >= MOST_KEYS:
-            self._refuse_key(sample.key)
-            return
-        self._keys.add(sample.key)
-        try:
-            entry = entry_of(sample)
-        except (MessageError, KeyFormatError) as error:
-            self._daemon.health.malformed(sample.key, error)
-            self._journal.write(entry_apart(sample))
-            return
-        counted = entry.sequence if topic.gaps_are_losses else None
-        self._daemon.health.received(entry.key, counted)
-        if not entry.kept:
-            self._daemon.health.arrived(entry.key, entry.received_ns - entry.captured_ns)
-        if counted is not None:
-            self._gaps.count(entry.key, counted)
-        self._infos.note(topic.stream, parsed.name, time.monotonic())
-        self._journal.write(entry)
-
-    def _refuse_key(self, key: str) -> None:
-        self._daemon.health.refused(key)
-        self._daemon.health.trouble(
-            "keys",
-            f"more than {counted(MOST_KEYS, 'key')} are published: what comes on new ones is not "
-            "recorded; some program invents names",
-            lasts_s=REFUSED_KEYS_LAST_S,
-        )
-
-    def _count_what_is_left(self) -> None:
-        left = self._journal.waiting
-        while (sample := self._daemon.inbox.get(0)) is not None:
-            left[sample.key] += 1
-        for key, messages in left.items():
-            for _ in range(messages):
-                self._daemon.health.dropped(key)
-        if left:
-            self._daemon.health.error(
-                f"could not be written any more: {counted(left.total(), 'message')}"
-            )

@@ -12,7 +12,7 @@ from inhand_runtime.wording import counted
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.topics import INFO, RGBD, topic_of
-from mcap.records import DataEnd, Message, Metadata, Statistics
+from mcap.records import Attachment, DataEnd, Message, Metadata, Statistics
 
 from inhand_recorder.clock import CLOCK_RECORD, parse_clock_steps, time_text
 from inhand_recorder.faults import (
@@ -23,7 +23,7 @@ from inhand_recorder.faults import (
     FaultLedger,
 )
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, Losses, parse_losses
-from inhand_recorder.records import Bytes
+from inhand_recorder.records import Bytes, attachment_is_sound
 from inhand_recorder.redaction import redaction_lines
 from inhand_recorder.scanning import (
     Stretch,
@@ -111,6 +111,8 @@ def _problems(path: Path, data: Bytes, messages: "_Messages", apart: set[int]) -
 
 def _structural_problems(data: Bytes, stretch: Stretch) -> Iterator[str]:
     for record in stretch.records:
+        if isinstance(record, Attachment) and not attachment_is_sound(data, stretch.offset):
+            yield f"the attachment {record.name} is damaged, its checksum contradicts it"
         if not isinstance(record, DataEnd) or record.data_section_crc == 0:
             continue
         if zlib.crc32(memoryview(data)[: stretch.offset]) != record.data_section_crc:
@@ -190,13 +192,15 @@ class _Messages:
 
 
 def _loss_problems(written: Mapping[str, str], counted: Mapping[str, Losses]) -> Iterator[str]:
+    """Compare what a recorder wrote with the file; of keys that a copy has beyond the recorder's,
+    as skeletons, labels and poses made later, it says nothing."""
     try:
         claimed = parse_losses(written)
     except ValueError as error:
         yield str(error)
         return
-    for key in sorted(claimed.keys() | counted.keys()):
-        there, here = claimed.get(key, Losses()), counted.get(key, Losses())
+    for key, there in sorted(claimed.items()):
+        here = counted.get(key, Losses())
         for what in ("received", "lost", "restarts"):
             said, found = getattr(there, what), getattr(here, what)
             if said != found:

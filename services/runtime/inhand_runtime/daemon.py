@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import Health, Message
-from inhand_schemas.procedures import Procedure
+from inhand_schemas.procedure import Procedure
 from inhand_schemas.topics import HEALTH, AnyTopic, Topic
 from msgspec import Struct
 
@@ -122,17 +122,24 @@ class Daemon:
         *,
         samples: int | None = None,
         size: int = UNBOUNDED,
+        wanted: Callable[[str], bool] | None = None,
     ) -> Arrivals:
         """Let a topic (one name of it, or all) arrive in the inbox, until it is unsubscribed.
 
-        ``samples`` and ``size`` (bytes) bound what may wait; without ``samples`` the topic's
-        delivery does. The oldest beyond the bound is dropped and counted.
+        What comes on a key that is not ``wanted`` takes no room. ``samples`` and ``size`` (bytes)
+        bound what may wait; without ``samples`` the topic's delivery does. The oldest beyond the
+        bound is dropped and counted.
         """
         if samples is None:
             samples = NEWEST_SAMPLES if topic.delivery.readers == "newest" else EVERY_SAMPLES
         lane = self.inbox.lane(samples=samples, size=size, on_drop=self.health.overflowed)
         pattern = topic.pattern(self.site) if name is None else topic.key(self.site, name)
-        handle = subscribe(self._session, pattern, topic.delivery, lane.put)
+
+        def put(sample: Received) -> None:
+            if wanted is None or wanted(sample.key):
+                lane.put(sample)
+
+        handle = subscribe(self._session, pattern, topic.delivery, put)
         arrivals = Arrivals(pattern, handle, lane)
         self._arrivals.append(arrivals)
         return arrivals

@@ -25,18 +25,20 @@ def daemon_main(
     check: Callable[[Settings[S]], object] | None = None,
     instead: Mapping[str, tuple[str, Callable[[], int]]] | None = None,
     folders: Mapping[str, str] | None = None,
+    epilog: str | None = None,
 ) -> int:
     """Run one daemon until it ends; returns its exit code, after one line about what failed.
 
     ``arguments`` are the process's own unless given. ``check`` is what ``run`` does first as well:
     it raises SettingsError for all that can be known before a start. ``instead`` are options that
     do something else and end: by their name what the help says, and what returns the exit code.
-    ``folders`` are settings that the command line may have in place of the file's, with their help.
+    ``folders`` are settings that the command line may have in place of the file's, with their help,
+    and ``epilog`` is what the help says at its end.
     Wrong arguments end the process with 2. It ends when a supervisor that started it is gone.
     """
     end_with_supervisor()
     instead, folders = instead or {}, folders or {}
-    parser = _parser(service, {name: text for name, (text, _) in instead.items()}, folders)
+    parser = _parser(service, {name: text for name, (text, _) in instead.items()}, folders, epilog)
     chosen = parser.parse_args(arguments)
     try:
         for name, (_, act) in instead.items():
@@ -67,10 +69,12 @@ def daemon_main(
 
 
 def _parser(
-    service: str, instead: Mapping[str, str], folders: Mapping[str, str]
+    service: str, instead: Mapping[str, str], folders: Mapping[str, str], epilog: str | None
 ) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog=f"inhand {service}", description=f"Run one {service} daemon until SIGTERM or Ctrl-C."
+        prog=f"inhand {service}",
+        description=f"Run one {service} daemon until SIGTERM or Ctrl-C.",
+        epilog=epilog,
     )
     parser.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
     parser.add_argument("--name", help="which instance of the file, where it names several")

@@ -1,6 +1,7 @@
 """The optional dependencies of the distribution, and the line about one that is not installed."""
 
 EXTRAS = {
+    "cluster": ("dask", "distributed"),
     "export": ("av", "foxglove", "pyarrow", "rosbags"),
     "hub": ("cryptography",),
     "lab": ("faiss", "fast_simplification", "matplotlib", "scipy", "sklearn", "trimesh"),

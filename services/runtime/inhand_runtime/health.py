@@ -10,7 +10,7 @@ from fnmatch import fnmatchcase
 
 import psutil
 from inhand_schemas.fields import ServiceState
-from inhand_schemas.messages import Health, Latency, TopicHealth
+from inhand_schemas.messages import Health, Latency, RecordingState, TopicHealth
 
 from inhand_runtime.wording import printable
 
@@ -54,6 +54,7 @@ class HealthBoard:
         self.state: ServiceState = "starting"
         self.effort: float | None = None
         self.shutter_closed: bool | None = None
+        self.recording: RecordingState | None = None
         self.service = service
         self._instance = instance
         self._now = now
@@ -67,6 +68,7 @@ class HealthBoard:
         self._refused: Counter[str] = Counter()
         self._malformed: Counter[str] = Counter()
         self._lost: Counter[str] = Counter()
+        self._unwritten: Counter[str] = Counter()
         self._overflowed: Counter[str] = Counter()
         self._latest_ms: dict[str, float] = {}
         self._sequences: dict[str, int] = {}
@@ -120,6 +122,21 @@ class HealthBoard:
     def refused(self, key: str) -> None:
         """Count a message that the instance does not take, however much room there is."""
         self._count(self._refused, key)
+
+    def unwritten(self, key: str, count: int) -> None:
+        """Count those among the dropped that a disk could not take."""
+        with self._lock:
+            self._unwritten[key] += count
+
+    def unwritten_counts(self) -> dict[str, int]:
+        """How many messages of each key a disk could not take so far."""
+        with self._lock:
+            return dict(self._unwritten)
+
+    def lost_counts(self) -> dict[str, int]:
+        """How many messages of each key never came so far."""
+        with self._lock:
+            return dict(self._lost)
 
     def drops(self) -> dict[str, int]:
         """How many messages of each key the inbox had no room for so far."""
@@ -215,6 +232,7 @@ class HealthBoard:
                     rate_hz=(totals[key] - self._last_totals[key]) / elapsed,
                     late_ms=self._latest_ms.get(key),
                     refused=self._refused[key],
+                    unwritten=self._unwritten[key],
                 )
                 for key in sorted(self._keys)
             }
@@ -235,6 +253,7 @@ class HealthBoard:
                 latency_ms=self._current_latency(now),
                 effort=self.effort,
                 shutter_closed=self.shutter_closed,
+                recording=self.recording,
                 last_error=self._last_error,
                 troubles=troubles,
                 loop_age_s=max(now - self._came_round, 0.0),

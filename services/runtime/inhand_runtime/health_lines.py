@@ -22,14 +22,40 @@ def unused_counts(health: Health) -> dict[str, int]:
     }
 
 
-def closed_shutters(living: dict[Instance, Heard | None]) -> list[str]:
-    """One line for each camera whose shutter is closed."""
+def stilled_instances(living: dict[Instance, Heard | None]) -> list[str]:
+    """One line for each camera whose shutter is closed, and each recorder that is paused."""
+    lines = []
+    for (service, name), heard in living.items():
+        if heard is None:
+            continue
+        if heard.health.shutter_closed:
+            lines.append(
+                f"{service} {name}: the shutter is closed: no pictures and no skeletons until "
+                f"`inhand shutter open --camera {name}`"
+            )
+        if heard.health.recording and heard.health.recording.paused:
+            lines.append(
+                f"{service} {name}: paused: nothing is recorded until `inhand recorder resume "
+                f"--name {name}`"
+            )
+    return lines
+
+
+def deleted_recordings(living: dict[Instance, Heard | None]) -> list[str]:
+    """One line for each recorder whose quotas have deleted recordings since it started."""
     return [
-        f"{' '.join(instance)}: the shutter is closed: no pictures and no skeletons until "
-        f"`inhand shutter open --camera {instance[1]}`"
+        f"{' '.join(instance)}: its quotas have deleted "
+        f"{counted(heard.health.recording.deleted, 'recording')} since it started"
         for instance, heard in living.items()
-        if heard is not None and heard.health.shutter_closed
+        if heard is not None and heard.health.recording and heard.health.recording.deleted
     ]
+
+
+def shown_state(health: Health) -> str:
+    """The state of an instance in a word: what somebody wants of it goes before how it is."""
+    if health.shutter_closed:
+        return "shut"
+    return "paused" if health.recording and health.recording.paused else health.state
 
 
 def late_lines(living: dict[Instance, Heard | None]) -> list[str]:
@@ -82,7 +108,8 @@ def left_unused(living: dict[Instance, Heard | None]) -> list[str]:
 def _reasons(topics: Sequence[TopicHealth]) -> str:
     """Why messages of these keys were not used, and how many for each reason."""
     counts = (
-        (sum(topic.dropped for topic in topics), "came too late or too fast"),
+        (sum(topic.dropped - topic.unwritten for topic in topics), "came too late or too fast"),
+        (sum(topic.unwritten for topic in topics), "could not be written to the disk"),
         (sum(topic.refused for topic in topics), "came on more keys than are recorded"),
         (sum(topic.malformed for topic in topics), "could not be read"),
         (sum(topic.lost for topic in topics), "never came"),

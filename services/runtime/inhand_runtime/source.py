@@ -11,6 +11,8 @@ A source that knows how its device is may have ``troubles()``, which gives by na
 though moments come. Capture asks once a second, and shows it in its health. One whose device can
 be changed while it runs may have ``control(options)``, called from any thread with some of its
 options, None for what shall be automatic; it raises SourceError for what cannot be changed so.
+One that plays something recorded may have ``playback(request, camera)``, called from any thread,
+which pauses it, or goes elsewhere, and replies how it is played then.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -25,6 +27,7 @@ from inhand_schemas.messages import (
     ObjectPose,
     Person,
 )
+from inhand_schemas.playback import PlaybackReply, PlaybackRequest
 from numpy import uint8, uint16
 from numpy.typing import NDArray
 
@@ -104,6 +107,16 @@ def control_source(source: Source, options: Mapping[str, Any]) -> None:
     if control is None:
         raise SourceError("nothing of this source can be changed while it runs")
     control(options)
+
+
+def control_playback(source: Source, request: PlaybackRequest, camera: str) -> PlaybackReply:
+    """Change how a source plays what is recorded; the reply says why that cannot be done."""
+    control: Callable[[PlaybackRequest, str], PlaybackReply] | None = getattr(
+        source, "playback", None
+    )
+    if control is None:
+        return PlaybackReply(camera=camera, problem="its source plays no recording")
+    return control(request, camera)
 
 
 SourceFactory = Callable[[Mapping[str, Any]], Source]

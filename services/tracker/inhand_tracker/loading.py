@@ -20,7 +20,7 @@ from inhand_tracker.settings import TrackerSettings
 def check(settings: Settings[TrackerSettings]) -> Watcher:
     """Check all that can be known before a start, and load it; raises SettingsError."""
     _require_camera(settings)
-    _require_files(settings)
+    require_files(settings)
     try:
         return load_watcher(settings.instance, settings.service)
     except ModelError as error:
@@ -41,7 +41,7 @@ def _require_camera(settings: Settings[TrackerSettings]) -> None:
     )
 
 
-def _require_files(settings: Settings[TrackerSettings]) -> None:
+def require_files(settings: Settings[TrackerSettings]) -> None:
     """Raise SettingsError for a file that is not there."""
     chosen = settings.service
     models = (("models", file) for file in chosen.models)

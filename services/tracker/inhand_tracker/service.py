@@ -4,6 +4,7 @@ import logging
 import time
 from collections.abc import Callable, Sequence
 from functools import cache, partial
+from typing import Any
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon, running_daemon
@@ -16,19 +17,15 @@ from inhand_schemas.messages import CameraInfo, ObjectPose, RgbdFrame, Skeletons
 from inhand_schemas.procedures import HYPOTHESES, RELOAD, ReloadReply, ReloadRequest
 from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
 
-from inhand_tracker.geometry.camera import Intrinsics, intrinsics_of
-from inhand_tracker.geometry.image import Image
+from inhand_tracker.frames import camera_frame, frame_image, needs_of, pose_messages, source_of
 from inhand_tracker.hypotheses import HypothesesDesk
 from inhand_tracker.live.effort import Effort, after_step
 from inhand_tracker.live.moments import Moments
 from inhand_tracker.live.shortfalls import Shortfall
 from inhand_tracker.loading import check, load_watcher
-from inhand_tracker.methods.registry import METHODS
-from inhand_tracker.people.following import PeopleWatched, worth_publishing
-from inhand_tracker.people.watching import CameraFrame, WatchedObject, Watcher
+from inhand_tracker.people.following import PeopleWatched
+from inhand_tracker.people.watching import CameraFrame, Watcher
 from inhand_tracker.settings import TrackerSettings
-from inhand_tracker.wire.conversion import image_of
-from inhand_tracker.wire.poses import SourceFrame, image_box, object_pose_message
 
 log = logging.getLogger(__name__)
 
@@ -60,9 +57,7 @@ class TrackerService:
         self._daemon = daemon
         self._now = now
         self._camera = settings.camera
-        method = METHODS[settings.method]
-        terms = method.usual_terms if settings.likelihood is None else settings.likelihood
-        self._needs = method.needs(terms)
+        self._needs = needs_of(settings)
         self._most_people = settings.people
         self._fresh: PeopleWatched | None = None
         self.desk = HypothesesDesk(daemon.instance)
@@ -126,8 +121,8 @@ class TrackerService:
 
     def _subscribe(self, camera: str) -> None:
         """Let messages arrive: the newest, or all as far as there is memory."""
-        waiting: dict[str, int] = {"samples": MOST_WAITING}
-        frames: dict[str, int] = {}
+        waiting: dict[str, Any] = {"samples": MOST_WAITING}
+        frames: dict[str, Any] = {}
         if self._every:
             waiting = frames = {"samples": UNBOUNDED, "size": QUEUE_BYTES}
         self._daemon.subscribe(INFO, camera)
@@ -199,48 +194,20 @@ class TrackerService:
         if self._needs:
             self._pictures.note(frame.image is None)
         objects = self._people.see(skeletons.people, frame, self._note_failure)
-        source = self._source(skeletons)
-        for person, thing in worth_publishing(objects):
-            self._publish(person, thing, source, frame.camera)
+        source = source_of(skeletons, self._camera, self._info)
+        for message in pose_messages(objects, source, frame):
+            self._publishers[message.object].put(message)
         self.desk.answer(self._people, source)
         self._note_bodies()
         self._daemon.health.latency(skeletons.time_ns)
 
     def _decoded(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> CameraFrame:
-        camera = None if self._info is None else intrinsics_of(self._info)
-        image = self._image(pixels)
-        share, convention = self._effort.share, skeletons.convention
-        return CameraFrame(skeletons.time_ns, image, camera, share, convention)
-
-    def _image(self, frame: RgbdFrame | None) -> Image | None:
-        if frame is None or self._info is None:
-            return None
+        image = None
         try:
-            return image_of(frame, self._info, self._needs)
+            image = frame_image(pixels, self._info, self._needs)
         except MessageError as error:
             self._daemon.health.malformed(self._keys[RGBD], error)
-            return None
-
-    def _source(self, skeletons: Skeletons) -> SourceFrame:
-        rig_from_camera = None if self._info is None else self._info.rig_from_camera
-        return SourceFrame(skeletons.sequence, skeletons.time_ns, self._camera, rig_from_camera)
-
-    def _publish(
-        self,
-        person: int | None,
-        thing: WatchedObject,
-        source: SourceFrame,
-        camera: Intrinsics | None,
-    ) -> None:
-        message = object_pose_message(
-            thing.estimate,
-            source,
-            name=thing.name,
-            person=person,
-            box=None if camera is None else image_box(thing.outline, camera),
-            class_probabilities=thing.class_probabilities,
-        )
-        self._publishers[thing.name].put(message)
+        return camera_frame(skeletons, image, self._info, self._effort.share)
 
     def _note_bodies(self) -> None:
         """Say while skeletons are of another convention than the models, and cannot be mapped, or

@@ -8,7 +8,8 @@ from typing import Any
 
 import msgspec
 import pytest
-from inhand_capture.sources.replay import LONGEST_DELAY_S, ReplaySource
+from inhand_capture.sources.replay import ReplaySource
+from inhand_capture.sources.replay_playback import LONGEST_DELAY_S
 from inhand_runtime.recording import RecordingWriter
 from inhand_runtime.source import Captured, Pixels, SourceError
 from inhand_schemas.keys import Site
@@ -162,7 +163,7 @@ def test_a_clock_that_was_set_is_told_and_played_over_in_the_files_order(
 
 
 def test_a_long_wait_gives_signs_of_life(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("inhand_capture.sources.replay.QUIET_S", 0.02)
+    monkeypatch.setattr("inhand_capture.sources.replay_playback.QUIET_S", 0.02)
     played = list(
         ReplaySource({"file": write(tmp_path / "slow.mcap", entries(2)), "rate": 0.1}).captures(
             _wanted

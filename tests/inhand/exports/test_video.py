@@ -9,6 +9,8 @@ import trimesh
 from exported import export
 from inhand_recorder.conversion import Selection
 from inhand_runtime.errors import InhandError
+from inhand_runtime.recording import RecordingWriter, read_recording
+from inhand_runtime.recording.copying import copy_message
 from small_rig import CAMERA, FRAME_NS, pose_of, write_rig
 
 from inhand.exports.video import export_video
@@ -57,3 +59,15 @@ def test_without_poses_no_mesh_is_needed_and_with_them_a_missing_one_is_said(
     with pytest.raises(InhandError, match="has no folder mug"):
         export(export_video, source, tmp_path / "b.mp4", objects=objects)
     assert sorted(one.name for one in tmp_path.iterdir()) == ["a.mp4", "objects", "one.mcap"]
+
+
+def test_a_mesh_that_is_attached_to_the_recording_needs_no_folder(
+    tmp_path: Path, objects: Path
+) -> None:
+    path = tmp_path / "with_mesh.mcap"
+    with RecordingWriter(path) as writer:
+        for message in read_recording(write_rig(tmp_path / "one.mcap", frames=2)):
+            copy_message(writer, message)
+        data = (objects / "mug/mesh.ply").read_bytes()
+        writer.add_attachment("objects/mug/mesh.ply", "application/ply", data, received_ns=1)
+    assert export(export_video, path, tmp_path / "a.mp4")["outlines"] == 4

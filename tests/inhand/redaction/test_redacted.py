@@ -8,6 +8,7 @@ import pytest
 import simplejpeg
 from inhand_capture.estimation.found_person import FoundPerson
 from inhand_capture.faces.finder import FaceFinder
+from inhand_recorder.attachments import read_attachments
 from inhand_recorder.inspection import inspect_recording
 from inhand_recorder.verification import examine_recording
 from inhand_runtime.pixels import decode_colour, decode_depth
@@ -196,6 +197,13 @@ def test_the_file_says_what_was_hidden_and_by_which_version_each_time(tmp_path: 
     assert metadata["redaction"]["frames"] == "7"
     assert metadata["redaction of faces.mcap"]["hidden"] == "faces"
     assert metadata["session"] == {"participant": "p01"}
+
+
+def test_meshes_stay_attached_and_what_may_be_a_picture_does_not(tmp_path: Path) -> None:
+    path = write_walk(tmp_path / "walk.mcap", [0.0])
+    assert len(read_attachments(path)) == 2
+    _, output = redact(path, "faces", [0.0])
+    assert [one.name for one in read_attachments(output)] == ["objects/mug/mesh.ply"]
 
 
 def test_damaged_frames_and_previews_of_no_frame_are_left_out_and_counted(tmp_path: Path) -> None:

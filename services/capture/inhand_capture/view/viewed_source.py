@@ -7,10 +7,18 @@ from functools import cache, lru_cache, partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from inhand_runtime.pixels import raw_colour, raw_depth
-from inhand_runtime.source import Captured, Pixels, Source, SourceError, control_source
+from inhand_runtime.source import (
+    Captured,
+    Pixels,
+    Source,
+    SourceError,
+    control_playback,
+    control_source,
+)
 from inhand_schemas.errors import MessageError
 from inhand_schemas.fields import JointState, Vector3
 from inhand_schemas.messages import CameraInfo, ColourImage, Person
+from inhand_schemas.playback import PlaybackReply, PlaybackRequest
 from msgspec.structs import replace as replace_struct
 from numpy import uint8, uint16
 from numpy.typing import NDArray
@@ -114,6 +122,10 @@ class ViewedSource:
     def control(self, options: Mapping[str, Any]) -> None:
         """Change options of the source; raises SourceError."""
         control_source(self._source, options)
+
+    def playback(self, request: PlaybackRequest, camera: str) -> PlaybackReply:
+        """Change how the source plays what is recorded."""
+        return control_playback(self._source, request, camera)
 
     def close(self) -> None:
         """Close the source."""

@@ -2,8 +2,9 @@
 
 import heapq
 import os
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, TypeVar
 
@@ -26,23 +27,34 @@ from inhand_runtime.recording.layout import (
     RecordingError,
 )
 from inhand_runtime.recording.opening import opening
+from inhand_runtime.recording.seeking import CaptureTimes
 
 Item = TypeVar("Item")
 
 
 def read_recording(
-    path: Path, *, streams: Collection[str] | None = None
+    path: Path, *, streams: Collection[str] | None = None, captured_from_ns: int | None = None
 ) -> Iterator[RecordedMessage]:
     """The messages of a whole recording in the order of their reception.
 
     Where the clock was set back while it was recorded, what stands later in the file comes later;
     in files of other writers the times alone say the order.
 
-    ``streams`` chooses; keys that are not Inhand's are passed over. Raises RecordingError for a
-    file that is missing, foreign, cut off or damaged, and UnknownVersionError.
+    ``streams`` chooses; keys that are not Inhand's are passed over. In files of ours most of what
+    stands before the first message that was captured at or after ``captured_from_ns`` is not read,
+    and so not yielded; nothing after it is left out. Raises RecordingError for a file that is
+    missing, foreign, cut off or damaged, and UnknownVersionError.
     """
-    with _open(path) as reader:
-        chosen = choose_channels(_summary(path, reader).channels.values(), streams)
+    with _open(path) as (file, reader):
+        summary = _summary(path, reader)
+        chosen = choose_channels(summary.channels.values(), streams)
+        if captured_from_ns is not None and _is_ours(path, reader) and summary.chunk_indexes:
+            with explaining_damage(path):
+                chunks = CaptureTimes(file, summary, chosen).chunks_from(captured_from_ns)
+            if not chunks:
+                return
+            # The reader keeps this summary, and reads the chunks that it names.
+            summary.chunk_indexes = chunks
         for key, message in _records(path, reader, chosen):
             topic, parsed = chosen[key]
             times = message.log_time, message.publish_time
@@ -51,7 +63,7 @@ def read_recording(
 
 def read_metadata(path: Path) -> dict[str, dict[str, str]]:
     """The named records about a whole recording; raises RecordingError."""
-    with _open(path) as reader:
+    with _open(path) as (_, reader):
         _summary(path, reader)
         with explaining_damage(path):
             return {
@@ -59,6 +71,34 @@ def read_metadata(path: Path) -> dict[str, dict[str, str]]:
                 for record in reader.iter_metadata()
                 if record.name != CHECKSUMS_RECORD
             }
+
+
+@dataclass(frozen=True)
+class Outline:
+    """What a recording's index says: the number of messages of each key, when the first one was
+    received, and when the last one was captured, in nanoseconds; None without any message."""
+
+    counts: Mapping[str, int]
+    received_ns: int | None
+    last_captured_ns: int | None
+
+
+def read_outline(path: Path, streams: Collection[str]) -> Outline:
+    """The outline of streams of a whole recording, of which a few chunks are read at the most.
+
+    Raises RecordingError and UnknownVersionError as ``read_recording`` does.
+    """
+    with _open(path) as (file, reader):
+        summary = _summary(path, reader)
+        chosen = choose_channels(summary.channels.values(), streams)
+        counted = {} if summary.statistics is None else summary.statistics.channel_message_counts
+        counts = dict.fromkeys(chosen, 0)
+        for channel in summary.channels.values():
+            if channel.topic in chosen and channel.message_encoding == MESSAGE_ENCODING:
+                counts[channel.topic] += counted.get(channel.id, 0)
+        with explaining_damage(path):
+            times = CaptureTimes(file, summary, chosen)
+            return Outline(counts, times.first_received(), times.last())
 
 
 def choose_channels(
@@ -84,8 +124,7 @@ def choose_channels(
 def _records(
     path: Path, reader: SeekingReader, keys: Collection[str]
 ) -> Iterator[tuple[str, MessageRecord]]:
-    with explaining_damage(path):
-        ours = reader.get_header().profile == PROFILE
+    ours = _is_ours(path, reader)
     records = (
         (message.log_time, (channel.topic, message))
         for _, channel, message in reader.iter_messages(topics=keys, log_time_order=not ours)
@@ -108,7 +147,7 @@ def in_order_of_reception(timed: Iterable[tuple[int, Item]]) -> Iterator[Item]:
     for number, (time_ns, item) in enumerate(timed):
         if time_ns < newest_ns - REORDERED_NS:
             yield from (heapq.heappop(waiting)[2] for _ in range(len(waiting)))
-            newest_ns = 0
+            newest_ns = time_ns
         newest_ns = max(newest_ns, time_ns)
         heapq.heappush(waiting, (time_ns, number, item))
         while waiting[0][0] < newest_ns - REORDERED_NS:
@@ -116,13 +155,18 @@ def in_order_of_reception(timed: Iterable[tuple[int, Item]]) -> Iterator[Item]:
     yield from (heapq.heappop(waiting)[2] for _ in range(len(waiting)))
 
 
+def _is_ours(path: Path, reader: SeekingReader) -> bool:
+    with explaining_damage(path):
+        return bool(reader.get_header().profile == PROFILE)
+
+
 @contextmanager
-def _open(path: Path) -> Iterator[SeekingReader]:
+def _open(path: Path) -> Iterator[tuple[IO[bytes], SeekingReader]]:
     with opening(path):
         file = path.open("rb")
     with file:
         _require_whole(path, file)
-        yield SeekingReader(file, validate_crcs=True)
+        yield file, SeekingReader(file, validate_crcs=True)
 
 
 def _require_whole(path: Path, file: IO[bytes]) -> None:

@@ -1,7 +1,7 @@
 """Writing recordings, so that a crash or a full disk costs as little as can be."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
@@ -24,7 +24,7 @@ from inhand_runtime.recording.layout import (
     UNBOUNDED_CHUNK,
     RecordingError,
 )
-from inhand_runtime.recording.part_file import PART_SUFFIX, PartFile
+from inhand_runtime.recording.part_file import PART_SUFFIX, PartFile, no_room
 
 
 class RecordingWriter:
@@ -32,10 +32,17 @@ class RecordingWriter:
 
     After the first failure (a full disk, say) nothing more is written, each call raises that
     failure again, and the ``.part`` keeps what could be written. As a context manager it closes
-    the recording, except after an exception: then the ``.part`` stays too.
+    the recording, except after an exception: then the ``.part`` stays too. A full disk is a failure
+    only where ``make_room`` returns False.
     """
 
-    def __init__(self, path: Path, *, part_suffix: str = PART_SUFFIX) -> None:
+    def __init__(
+        self,
+        path: Path,
+        *,
+        part_suffix: str = PART_SUFFIX,
+        make_room: Callable[[], bool] = no_room,
+    ) -> None:
         self.path = path
         self._failure: RecordingError | None = None
         self._channels: dict[tuple[str, bool], int] = {}
@@ -43,7 +50,7 @@ class RecordingWriter:
         self._digests: list[bytes] = []
         self._in_chunk: dict[int, tuple[str, str]] = {}
         self._chunk_bytes = 0
-        self._file = _create(path, part_suffix)
+        self._file = _create(path, part_suffix, make_room)
         self._writer = Writer(
             cast(IO[bytes], self._file),
             chunk_size=UNBOUNDED_CHUNK,
@@ -112,6 +119,16 @@ class RecordingWriter:
         """Add one named record about the recording; a later one of that name replaces it."""
         with self._reporting():
             self._writer.add_metadata(name, dict(values))
+
+    def add_attachment(self, name: str, media_type: str, data: bytes, *, received_ns: int) -> None:
+        """Add a file that belongs to the recording."""
+        with self._reporting():
+            self._writer.add_attachment(0, received_ns, name, media_type, data)
+
+    def hand_over(self) -> None:
+        """Write everything so far, so that the end of this process leaves it, if no power cut."""
+        with self._reporting():
+            self._end_chunk()
 
     def sync(self) -> None:
         """Bring everything so far to the disk, so that even a power cut leaves it."""
@@ -186,11 +203,11 @@ class RecordingWriter:
             raise self._failure from error
 
 
-def _create(path: Path, part_suffix: str) -> PartFile:
+def _create(path: Path, part_suffix: str, make_room: Callable[[], bool]) -> PartFile:
     try:
         if path.exists():
             raise RecordingError(f"{path} exists already: choose another name, or move it away")
-        return PartFile(path, part_suffix)
+        return PartFile(path, part_suffix, make_room)
     except FileExistsError:
         part = path.with_name(path.name + part_suffix)
         raise RecordingError(

@@ -4,9 +4,11 @@ import time
 from collections.abc import Sequence
 
 from inhand_runtime.health_lines import (
-    closed_shutters,
+    deleted_recordings,
     late_lines,
     left_unused,
+    shown_state,
+    stilled_instances,
     unused_counts,
 )
 from inhand_runtime.roll import Heard, Instance, Roll
@@ -40,7 +42,12 @@ def processes_html(roll: Roll) -> str:
     living = roll.living()
     rows = [_row(instance, heard) for instance, heard in living.items()]
     table = table_html(("process", "state", "ms", "msg/s", "MB", "unused"), rows)
-    notes = [*closed_shutters(living), *left_unused(living), *late_lines(living)]
+    notes = [
+        *stilled_instances(living),
+        *deleted_recordings(living),
+        *left_unused(living),
+        *late_lines(living),
+    ]
     return table + lines_html(roll.troubles(), "wrong") + lines_html(notes, "note")
 
 
@@ -61,7 +68,7 @@ def _row(instance: Instance, heard: Heard | None) -> tuple[str, ...]:
     latency = health.latency_ms
     return (
         " ".join(instance),
-        "shut" if health.shutter_closed else health.state,
+        shown_state(health),
         "" if latency is None else f"{latency.p50:.0f} / {latency.p99:.0f}",
         f"{sum(topic.rate_hz for topic in health.topics.values()):.0f}",
         f"{health.resident_bytes / 1e6:.0f}",

@@ -1,0 +1,97 @@
+"""Words to recorders that run: ``inhand recorder pause`` and others."""
+
+import argparse
+import uuid
+from collections.abc import Sequence
+from pathlib import Path
+
+import msgspec
+from inhand_runtime.errors import SettingsError
+from inhand_runtime.exit_codes import DONE, FAILED
+from inhand_runtime.roll import short_key
+from inhand_runtime.settings import RigFile, load_rig_file
+from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.writable import require_writable_file
+from inhand_schemas.procedures import RecorderReply, RecorderRequest
+
+from inhand.looking import UNREACHED, add_looking_arguments, nothing_heard, open_look
+from inhand.recorder import COMMANDS, HELP
+from inhand.results import write_json
+
+SECONDS = 3.0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="inhand recorder", description="Ask running recorders.")
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    for verb, text in HELP.items():
+        one = verbs.add_parser(verb, help=text, description=f"{text[0].upper()}{text[1:]}.")
+        one.add_argument("--name", help="of this recorder only (default: of all)")
+        add_looking_arguments(one, SECONDS, "to wait for recorders to answer")
+        one.add_argument("--json", type=Path, metavar="FILE", help="write the replies there")
+    return parser
+
+
+def ask(given: Sequence[str]) -> int:
+    """Ask all recorders, or one; exit code 1 unless each one that is meant has done it.
+
+    Raises SettingsError, and InhandError where nobody answers.
+    """
+    arguments = _parser().parse_args(given)
+    if arguments.json is not None:
+        require_writable_file(arguments.json)
+    expected = _expected(load_rig_file(arguments.config), arguments.name)
+    request = RecorderRequest(id=uuid.uuid4().hex, recorder=arguments.name)
+
+    def complete(replies: list[RecorderReply]) -> bool:
+        return bool(expected) and {reply.recorder for reply in replies}.issuperset(expected)
+
+    with open_look(arguments.config) as look:
+        answers = look.ask(COMMANDS[arguments.verb], request, complete, arguments.seconds)
+        replies = {reply.recorder: reply for reply in answers}
+        if not replies and not expected:
+            raise nothing_heard(look.site, arguments.seconds)
+    for name, reply in sorted(replies.items()):
+        print(f"{name}: {_text(reply)}")
+        for key, kinds in reply.losses.items():
+            print(
+                f"{name}, {short_key(key)}: {kinds.transport} never came, {kinds.queue} came too "
+                f"fast, {kinds.disk} could not be written"
+            )
+    problems = [
+        *(f"{name}: {reply.problem}" for name, reply in sorted(replies.items()) if reply.problem),
+        *(f"{name} does not answer: {UNREACHED}" for name in expected if name not in replies),
+    ]
+    for line in problems:
+        print(f"WRONG: {line}")
+    if arguments.json is not None:
+        rows = [msgspec.to_builtins(reply) for _, reply in sorted(replies.items())]
+        write_json(arguments.json, {"recorders": rows, "problems": problems})
+    return FAILED if problems else DONE
+
+
+def _expected(rig_file: RigFile, name: str | None) -> tuple[str, ...]:
+    """Names of the recorders that must answer; raises SettingsError for one that is not there."""
+    if name is None:
+        return tuple(rig_file.recorder)
+    if rig_file.recorder and name not in rig_file.recorder:
+        raise SettingsError(
+            f"there is no table [recorder.{name}]" + suggestion(name, sorted(rig_file.recorder))
+        )
+    return (name,)
+
+
+def _text(reply: RecorderReply) -> str:
+    """What a recorder does, in a line."""
+    state = reply.recording
+    if state.paused:
+        text = "paused"
+    elif state.file is None:
+        text = "records from the next message on"
+    else:
+        text = f"records into {state.file}, {state.file_bytes / 1e6:.1f} MB so far"
+    if state.ring_bytes:
+        text += f"; holds {state.ring_seconds:.1f} s, {state.ring_bytes / 1e6:.1f} MB"
+    if state.clip is not None:
+        text += f"; makes the clip {state.clip}"
+    return text if reply.finished is None else f"{text}; {reply.finished} is whole"

@@ -1,0 +1,45 @@
+"""The attachments of a whole recording, as the meshes of its objects are."""
+
+import re
+from pathlib import Path
+
+from inhand_runtime.recording.layout import RecordingError
+from inhand_runtime.recording.opening import opening
+from inhand_runtime.recording.reading import explaining_damage
+from inhand_runtime.recording.writing import RecordingWriter
+from mcap.reader import SeekingReader
+from mcap.records import Attachment
+
+from inhand_recorder.records import attachment_is_sound, record_at
+from inhand_recorder.scanning import opened
+
+_MESH = re.compile(r"objects/(\w+)/mesh\.ply")
+
+
+def read_attachments(path: Path) -> list[Attachment]:
+    """Read what is attached to a whole recording, without what a checksum contradicts.
+
+    Raises RecordingError for a file that is missing, foreign, cut off or damaged.
+    """
+    with opening(path), path.open("rb") as file, explaining_damage(path):
+        summary = SeekingReader(file).get_summary()
+    if summary is None:
+        raise RecordingError(f"{path} has no index: `inhand recording recover {path}` writes one")
+    if not summary.attachment_indexes:
+        return []
+    with opened(path) as data, explaining_damage(path):
+        offsets = [one.offset for one in summary.attachment_indexes]
+        found = [record_at(data, offset) for offset in offsets if attachment_is_sound(data, offset)]
+    return [one for one in found if isinstance(one, Attachment)]
+
+
+def copy_attachments(writer: RecordingWriter, path: Path) -> None:
+    """Attach what is attached to a whole recording to a copy of it; raises RecordingError."""
+    for one in read_attachments(path):
+        writer.add_attachment(one.name, one.media_type, one.data, received_ns=one.log_time)
+
+
+def meshes_in(attachments: list[Attachment]) -> dict[str, bytes]:
+    """Return the meshes of objects among attachments, PLY in metres, by the objects' names."""
+    named = ((_MESH.fullmatch(one.name), one.data) for one in attachments)
+    return {match[1]: data for match, data in named if match}
