@@ -80,7 +80,7 @@ def compare_sensors(
     folder: Path,
     seed: int,
     on_progress: Callable[[], None] = lambda: None,
-    participants: int = DEFAULT_REALISM.participants,
+    parameters: RealismParameters = DEFAULT_REALISM,
 ) -> list[SensorComparison]:
     """Compare every property of the real recordings in a folder with the world of a seed.
 
@@ -88,9 +88,9 @@ def compare_sensors(
     """
     real = real_people(folder)
     on_progress()
-    lowest, highest = property_intervals(real)
+    lowest, highest = property_intervals(real, parameters)
     on_progress()
-    simulated = simulated_people(seed, participants)
+    simulated = simulated_people(seed, parameters.participants)
     on_progress()
     return [
         SensorComparison(

@@ -1,6 +1,8 @@
 """Foxglove's schemas, decoded by an independent reader, with the figures of the recording."""
 
-import resource
+import re
+import subprocess
+import sys
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -116,15 +118,22 @@ def test_events_are_log_lines(tmp_path: Path) -> None:
     )
 
 
+SMALL_FILES = """
+import resource, sys
+resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
+from inhand.__main__ import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
 def test_where_no_room_is_left_it_is_said_and_nothing_stays(tmp_path: Path) -> None:
     path = write_rig(tmp_path / "one.mcap")
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, before[1]))
-    try:
-        with pytest.raises(InhandError, match=r"cannot write .*fox.mcap: File too large"):
-            export(export_foxglove, path, tmp_path / "fox.mcap")
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    verb = ("recording", "export", str(path), "--to", "foxglove", "-o", str(tmp_path / "fox.mcap"))
+    done = subprocess.run(
+        [sys.executable, "-c", SMALL_FILES, *verb], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert re.search(r"cannot write .*fox.mcap: File too large", done.stderr)
     with pytest.raises(InhandError, match="exists already"):
         export(export_foxglove, path, path)
     assert [one.name for one in tmp_path.iterdir()] == ["one.mcap"]
