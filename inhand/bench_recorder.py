@@ -20,7 +20,7 @@ from typing import Any
 import msgspec
 import numpy as np
 from inhand_lab.benchmarks import hub_ends
-from inhand_lab.benchmarks.hub_cost import rig_streams
+from inhand_lab.benchmarks.hub_cost import rig_streams, turned
 from inhand_lab.benchmarks.hub_ends import PUBLISHED, Load, RigEnds, Stream
 from inhand_lab.benchmarks.parameters import DEFAULT_HUB_COST, RecorderCostParameters
 from inhand_lab.demonstration.preparation import free_port
@@ -107,7 +107,7 @@ def _writers(
     size = sum(len(one.payload) for one in samples)
     taken: dict[str, list[tuple[float, float]]] = {name: [] for name in WRITERS}
     for turn in range(parameters.turns):
-        for name in _turned(list(WRITERS), turn):
+        for name in turned(list(WRITERS), turn):
             with tempfile.TemporaryDirectory(dir=folder) as own:
                 begin, cpu = time.perf_counter(), time.process_time()
                 WRITERS[name](Path(own), samples)
@@ -122,11 +122,6 @@ def _writers(
         )
         for name, rows in taken.items()
     )
-
-
-def _turned(names: list[str], by: int) -> list[str]:
-    by %= len(names)
-    return names[by:] + names[:by]
 
 
 def _samples(streams: Mapping[str, Stream], frames: int) -> list[Received]:

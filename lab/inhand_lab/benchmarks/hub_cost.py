@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from multiprocessing.synchronize import Event
+from typing import TypeVar
 
 import msgspec
 import numpy as np
@@ -28,6 +29,8 @@ from inhand_lab.benchmarks.raw_zenoh import raw_router
 from inhand_lab.benchmarks.transport_delay import INTERACTION, simulated_frame
 from inhand_lab.world.messages import person_message
 from inhand_lab.world.simulation import simulate
+
+N = TypeVar("N")
 
 READERS = {RGBD.stream: "tracker", POSE.stream: "viewer"}
 """Whose delays are told, by stream: a frame to its tracker, a pose to who looks."""
@@ -124,7 +127,7 @@ def measure_hub(
     pairs = []
     with _plain_router(routers.plain):
         for number in range(parameters.pairs):
-            turns = _turned(list(ways), number)
+            turns = turned(list(ways), number)
             _, delays = _exchanged(load(*(ways[one] for one in turns)))
             pairs.append({one: _of_rig(delays, place) for place, one in enumerate(turns)})
             on_progress()
@@ -133,8 +136,8 @@ def measure_hub(
     return HubCosts(sizes, tuple(costs), tuple(security))
 
 
-def _turned(names: list[int], by: int) -> list[int]:
-    """Names in another order each time: none comes always after the same one."""
+def turned(names: list[N], by: int) -> list[N]:
+    """Return names in another order each time: none comes always after the same one."""
     by %= len(names)
     return names[by:] + names[:by]
 
