@@ -10,7 +10,7 @@
 # Output seen:
 #   read at once: verified
 #   read in 20 pieces: refused
-#   "pieces.rrd"/inhand_check/a: More than one RRD manifest
+#   "pieces.rrd"/check/a: More than one RRD manifest
 #   Error: Verification failed with 2 errors
 #
 # The script ends with 0 while that is so, and with 1 when it has changed.
@@ -25,7 +25,7 @@ import sys
 
 import rerun
 
-recording = rerun.RecordingStream("inhand_check", recording_id="a")
+recording = rerun.RecordingStream("check", recording_id="a")
 stream = recording.binary_stream()
 with open(sys.argv[1], "wb") as file:
     for number in range(20):

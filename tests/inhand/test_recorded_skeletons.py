@@ -9,11 +9,11 @@ from inhand_runtime.errors import InhandError
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_runtime.recording import RecordingError, RecordingWriter, read_recording
 from inhand_schemas.joints import Joint
-from inhand_schemas.keys import Site
-from inhand_schemas.messages import Message, ObjectPose, Person, Pose, RgbdFrame, Skeletons
-from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS, AnyTopic
+from inhand_schemas.messages import ObjectPose, Person, Pose, RgbdFrame, Skeletons
+from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS
 from posed_person import INFO as CAMERA
 from posed_person import ToldNetwork, depth_of, seen, standing
+from recordings import write_message
 
 from inhand.recorded_skeletons import add_skeletons, true_skeletons
 
@@ -28,23 +28,18 @@ SOMEBODY = Person(
 
 def recorded(path: Path, *, info: bool = True, depth: bool = True, skeletons: bool = False) -> Path:
     with RecordingWriter(path) as writer:
-
-        def write(topic: AnyTopic, message: Message) -> None:
-            writer.write(
-                topic.key(Site(), "front"),
-                topic.encode(message),  # type: ignore[arg-type]
-                received_ns=message.time_ns + 5,
-                captured_ns=message.time_ns,
-                sequence=message.sequence,
-            )
-
         if info:
-            write(INFO, CAMERA)
+            write_message(writer, INFO, "front", CAMERA)
         for number in range(FRAMES):
             stamp = {"sequence": 10 + number, "time_ns": 10**9 + number * 33_000_000}
             if skeletons:
-                write(SKELETONS, Skeletons(**stamp, people=(SOMEBODY,)))
-            write(RGBD, RgbdFrame(**stamp, colour=COLOUR, depth=DEPTH if depth else None))
+                write_message(writer, SKELETONS, "front", Skeletons(**stamp, people=(SOMEBODY,)))
+            write_message(
+                writer,
+                RGBD,
+                "front",
+                RgbdFrame(**stamp, colour=COLOUR, depth=DEPTH if depth else None),
+            )
     return path
 
 
@@ -113,19 +108,9 @@ def labelled(path: Path) -> Path:
     """A recording of what labels know better: the first two frames of four have true joints."""
     truth = tuple((x, y, z) for x, y, z in np.nan_to_num(TRUTH).tolist())
     with RecordingWriter(path) as writer:
-
-        def write(topic: AnyTopic, name: str, message: Message) -> None:
-            writer.write(
-                topic.key(Site(), name),
-                topic.encode(message),  # type: ignore[arg-type]
-                received_ns=message.time_ns + 5,
-                captured_ns=message.time_ns,
-                sequence=message.sequence,
-            )
-
         for number in range(FRAMES):
             stamp = {"sequence": 10 + number, "time_ns": 10**9 + number * 33_000_000}
-            write(SKELETONS, "front", Skeletons(**stamp, people=(SOMEBODY,)))
+            write_message(writer, SKELETONS, "front", Skeletons(**stamp, people=(SOMEBODY,)))
             joints = truth if number < 2 else None
             pose = Pose(translation=(0.0, 0.0, 2.0), rotation=(1.0, 0.0, 0.0, 0.0))
             label = ObjectPose(
@@ -137,7 +122,7 @@ def labelled(path: Path) -> Path:
                 camera_from_object=pose,
                 person_joints=joints,
             )
-            write(LABEL, "mug", label)
+            write_message(writer, LABEL, "mug", label)
     return path
 
 

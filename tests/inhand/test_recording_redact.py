@@ -11,9 +11,9 @@ from inhand_lab.world.messages import camera_info, person_message, pixels_messag
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_runtime.pixels import decode_colour, decode_depth
 from inhand_runtime.recording import RecordingWriter, read_recording
-from inhand_schemas.keys import Site
-from inhand_schemas.messages import Message, Skeletons
-from inhand_schemas.topics import INFO, RGBD, SKELETONS, AnyTopic
+from inhand_schemas.messages import Skeletons
+from inhand_schemas.topics import INFO, RGBD, SKELETONS
+from recordings import write_message
 
 from inhand.__main__ import main
 
@@ -24,21 +24,16 @@ BLACK = 70
 
 def _record(path: Path, simulation: Simulation) -> Path:
     with RecordingWriter(path) as writer:
-
-        def write(topic: AnyTopic, message: Message) -> None:
-            writer.write(
-                topic.key(Site(), "front"),
-                topic.encode(message),  # type: ignore[arg-type]
-                received_ns=message.time_ns + 5,
-                captured_ns=message.time_ns,
-                sequence=message.sequence,
-            )
-
-        write(INFO, camera_info(simulation.intrinsics, 30.0))
+        write_message(writer, INFO, "front", camera_info(simulation.intrinsics, 30.0))
         for frame in range(FRAMES):
             stamp = {"sequence": frame, "time_ns": 10**18 + frame * 33_333_333}
-            write(RGBD, pixels_message(simulation.render(frame), **stamp))
-            write(SKELETONS, Skeletons(**stamp, people=(person_message(simulation, frame),)))
+            write_message(writer, RGBD, "front", pixels_message(simulation.render(frame), **stamp))
+            write_message(
+                writer,
+                SKELETONS,
+                "front",
+                Skeletons(**stamp, people=(person_message(simulation, frame),)),
+            )
     return path
 
 

@@ -7,7 +7,7 @@ from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import RecordedMessage, RecordingWriter, read_recording
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import ColourImage, Message, ObjectPose, RgbdFrame, Skeletons
-from inhand_schemas.topics import POSE, RGBD, SKELETONS
+from inhand_schemas.topics import POSE, RGBD, SKELETONS, AnyTopic
 from mcap.writer import CompressionType, Writer
 
 SITE = Site()
@@ -43,6 +43,17 @@ def write_frame(writer: RecordingWriter, counter: LossCounter, number: int, size
             sequence=message.sequence,
         )
         counter.count(key, message.sequence)
+
+
+def write_message(writer: RecordingWriter, topic: AnyTopic, name: str, message: Message) -> None:
+    """Record a message under a name, 5 ns after its capture."""
+    writer.write(
+        topic.key(SITE, name),
+        topic.encode(message),  # type: ignore[arg-type]
+        received_ns=message.time_ns + 5,
+        captured_ns=message.time_ns,
+        sequence=message.sequence,
+    )
 
 
 def write_recording(

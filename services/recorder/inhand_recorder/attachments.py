@@ -1,6 +1,7 @@
 """The attachments of a whole recording, as the meshes of its objects are."""
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from inhand_runtime.recording.layout import RecordingError
@@ -35,7 +36,12 @@ def read_attachments(path: Path) -> list[Attachment]:
 
 def copy_attachments(writer: RecordingWriter, path: Path) -> None:
     """Attach what is attached to a whole recording to a copy of it; raises RecordingError."""
-    for one in read_attachments(path):
+    attach(writer, read_attachments(path))
+
+
+def attach(writer: RecordingWriter, attachments: Iterable[Attachment]) -> None:
+    """Attach to a recording what others have attached; raises RecordingError."""
+    for one in attachments:
         writer.add_attachment(one.name, one.media_type, one.data, received_ns=one.log_time)
 
 

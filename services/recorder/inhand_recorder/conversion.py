@@ -8,6 +8,7 @@ from inhand_runtime.recording import RecordedMessage, RecordingError, RecordingW
 from inhand_runtime.recording.copying import copy_message
 from inhand_runtime.recording.layout import LATEST_NS
 
+from inhand_recorder.attachments import attach
 from inhand_recorder.conversion_records import CONVERSION_RECORD, losses_by_source, records_of
 from inhand_recorder.losses import LossCounter
 from inhand_recorder.recording_reader import Recording
@@ -114,16 +115,12 @@ class _Outputs:
     def write(self, message: RecordedMessage) -> None:
         """Write a message, where need be to a further file."""
         if self._writer is not None and self._is_over(message.received_ns):
-            self._finish_file()
+            self.finish()
         writer = self._writer or self._open(message)
         if message.topic.delivery.kept:
             self.remember(message)
         copy_message(writer, message)
         self._count(message, message.received_ns)
-
-    def finish(self) -> None:
-        """Finish the last file."""
-        self._finish_file()
 
     def discard(self) -> None:
         """Remove all that was written."""
@@ -165,13 +162,11 @@ class _Outputs:
         self._messages += 1
         self._end_ns = max(self._end_ns, received_ns)
 
-    def _finish_file(self) -> None:
+    def finish(self) -> None:
+        """Finish the file under way."""
         if self._writer is None:
             return
-        for one in self._attachments:
-            self._writer.add_attachment(
-                one.name, one.media_type, one.data, received_ns=one.log_time
-            )
+        attach(self._writer, self._attachments)
         span = None if self._whole else (self._start_ns, self._end_ns)
         records = records_of(self._sources, self._counter, span) | {
             CONVERSION_RECORD: self._about()

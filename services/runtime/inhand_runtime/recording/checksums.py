@@ -37,9 +37,8 @@ class Checksums:
         self, channel: int, sequence: int, log_time: int, publish_time: int, payload: bytes
     ) -> bool:
         """Whether a message as it stands in the file is one of them."""
-        hashed = _ALGORITHMS[self.algorithm](payload)
-        hashed.update(_STAMP.pack(channel, sequence, log_time, publish_time))
-        return hashed.digest() in self.digests
+        stamp = channel, sequence, log_time, publish_time
+        return _digest(self.algorithm, stamp, payload) in self.digests
 
 
 def _blake2b(payload: bytes) -> Any:
@@ -57,9 +56,14 @@ NO_CHECKSUMS = Checksums(_WRITTEN, frozenset(), 0)
 
 def digest(channel: int, sequence: int, log_time: int, publish_time: int, payload: bytes) -> bytes:
     """The checksum of one message as it is written, its channel and times included."""
-    hashed = xxhash.xxh3_64(payload)
-    hashed.update(_STAMP.pack(channel, sequence, log_time, publish_time))
-    return hashed.digest()
+    return _digest(_WRITTEN, (channel, sequence, log_time, publish_time), payload)
+
+
+def _digest(algorithm: str, stamp: tuple[int, int, int, int], payload: bytes) -> bytes:
+    hashed = _ALGORITHMS[algorithm](payload)
+    hashed.update(_STAMP.pack(*stamp))
+    digest: bytes = hashed.digest()
+    return digest
 
 
 def format_checksums(
