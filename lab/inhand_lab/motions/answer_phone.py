@@ -94,7 +94,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     left_keys = [Key(0.0, left_rest), *_pass(changes, left_rest, left_held, side=-1)]
     left_hand = move_through(script.times, left_keys)
     contact = carried_by(script, *_contacts(changes))
-    return Performance(posture, right_hand, left_hand, carried, contact, furniture)
+    return Performance(posture, right_hand, left_hand, carried, contact, furniture, script.stages)
 
 
 def _sides(script: Script) -> list[float]:

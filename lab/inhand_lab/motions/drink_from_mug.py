@@ -49,7 +49,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     reach = To(carried @ grip, bow=(0.06, -0.05, 0.10))
     right_hand = script.way(rest, {"reach": reach, "withdraw": To(rest, bow=(0.06, -0.05, 0.08))})
     left_hand = idle_left_hand(script, trunk, left_rest)
-    return Performance(posture, right_hand, left_hand, carried, carried_by(script), table)
+    return Performance(
+        posture, right_hand, left_hand, carried, carried_by(script), table, script.stages
+    )
 
 
 def _stance(script: Script) -> Stance:

@@ -96,7 +96,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_hand = reaching_hand(script, right_rest, held, bow=(0.05, -0.14, 0.16))
     left_hand = _hold_nail(script, left_rest, bench.base)
     contact = carried_by(script)
-    return Performance(posture, right_hand, left_hand, carried, contact, bench.furniture)
+    return Performance(
+        posture, right_hand, left_hand, carried, contact, bench.furniture, script.stages
+    )
 
 
 def _strokes(script: Script) -> Iterator[Stroke]:

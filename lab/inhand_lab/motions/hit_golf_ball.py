@@ -88,7 +88,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     joining = (script.stage("take").at(JOINED), ContactKind.BOTH_HANDS)
     leaving = (script.stage("return").start, ContactKind.RIGHT_HAND)
     contact = carried_by(script, joining, leaving)
-    return Performance(posture, right_hand, left_hand, carried, contact, rack)
+    return Performance(posture, right_hand, left_hand, carried, contact, rack, script.stages)
 
 
 def _posture(script: Script, swing: Swing) -> Posture:

@@ -71,7 +71,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     balance = To(_balancing_hand(script, trunk, figures), bow=(-0.05, 0.05, 0.0))
     hang = To(left_rest, bow=(-0.05, 0.05, 0.0))
     left_hand = script.way(left_rest, {"lift": balance, "return": hang})
-    return Performance(posture, right_hand, left_hand, carried, carried_by(script), table)
+    return Performance(
+        posture, right_hand, left_hand, carried, carried_by(script), table, script.stages
+    )
 
 
 def _figures(script: Script) -> Array:

@@ -103,7 +103,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_hand = _take_hold(script, right_rest, right_held)
     left_hand = _take_hold(script, left_rest, left_held)
     contact = carried_by(script, taken=ContactKind.BOTH_HANDS)
-    return Performance(posture, right_hand, left_hand, carried, contact, stool.furniture)
+    return Performance(
+        posture, right_hand, left_hand, carried, contact, stool.furniture, script.stages
+    )
 
 
 def _take_hold(script: Script, rest: Transform, held: Transform) -> Transform:

@@ -57,7 +57,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_rest, left_rest = hanging_hands(person, trunk, random)
     right_hand = reaching_hand(script, right_rest, held, bow=(0.06, -0.06, 0.16))
     left_hand = _hold_page(script, left_rest, page)
-    return Performance(posture, right_hand, left_hand, carried, carried_by(script), furniture)
+    return Performance(
+        posture, right_hand, left_hand, carried, carried_by(script), furniture, script.stages
+    )
 
 
 def _read(script: Script) -> Array:

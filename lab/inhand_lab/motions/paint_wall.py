@@ -79,7 +79,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     left_hand = idle_left_hand(script, trunk, left_rest)
     right_hand = reaching_hand(script, right_rest, held, bow=(0.05, -0.05, 0.10))
     furniture = (*table, _board(board))
-    return Performance(posture, right_hand, left_hand, carried, carried_by(script), furniture)
+    return Performance(
+        posture, right_hand, left_hand, carried, carried_by(script), furniture, script.stages
+    )
 
 
 def _path(script: Script) -> Array:

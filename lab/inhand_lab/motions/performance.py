@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
@@ -17,7 +18,7 @@ from inhand_lab.geometry.transforms import (
 )
 from inhand_lab.motions.furniture import WOOD, Cuboid, Furniture
 from inhand_lab.motions.parameters import DEFAULT_VARIETY
-from inhand_lab.motions.timeline import drift, minimum_jerk
+from inhand_lab.motions.timeline import Stage, drift, minimum_jerk
 from inhand_lab.people.kinematics import Posture, Trunk
 from inhand_lab.people.person import SimulatedPerson, hip_height
 
@@ -36,7 +37,8 @@ class ContactKind(IntEnum):
 class Performance:
     """An interaction as a right-handed person means to do it, over T frames.
 
-    The hands are targets, world_from_hand; contact (T,) holds values of ContactKind.
+    The hands are targets, world_from_hand; contact (T,) holds values of ContactKind. ``stages`` are
+    what is done when.
     """
 
     posture: Posture
@@ -45,6 +47,7 @@ class Performance:
     world_from_object: Transform
     contact: Bytes
     furniture: Furniture
+    stages: Sequence[Stage]
 
 
 @dataclass(frozen=True)

@@ -73,7 +73,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     joining = (script.stage("fetch").end, ContactKind.BOTH_HANDS)
     leaving = (script.stage("return").start, ContactKind.RIGHT_HAND)
     contact = carried_by(script, joining, leaving)
-    return Performance(posture, right_hand, left_hand, carried, contact, table)
+    return Performance(posture, right_hand, left_hand, carried, contact, table, script.stages)
 
 
 def _stance(script: Script) -> Stance:

@@ -64,7 +64,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_hand = script.way(right_rest, _fetch(right_rest, right_held, chest @ RAISED))
     left_hand = script.way(left_rest, _help(left_rest, left_held, chest @ RAISED.mirrored()))
     contact = carried_by(script, *_changes(script))
-    return Performance(posture, right_hand, left_hand, carried, contact, table)
+    return Performance(posture, right_hand, left_hand, carried, contact, table, script.stages)
 
 
 def _fetch(rest: Transform, held: Transform, raised: Transform) -> dict[str, To]:

@@ -71,7 +71,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_hand = _reaching(script, right_rest, held, RIGHT_BOW)
     left_hand = _reaching(script, left_rest, _left_hand_on_leg(script), LEFT_BOW)
     contact = carried_by(script, *_changes(script))
-    return Performance(posture, right_hand, left_hand, carried, contact, (_stool(person),))
+    return Performance(
+        posture, right_hand, left_hand, carried, contact, (_stool(person),), script.stages
+    )
 
 
 def _changes(script: Script) -> list[tuple[float, ContactKind]]:

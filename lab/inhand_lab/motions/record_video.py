@@ -58,7 +58,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     joined = (script.stage("fetch").end, ContactKind.BOTH_HANDS)
     leaving = (script.stage("lower").end, ContactKind.RIGHT_HAND)
     contact = carried_by(script, joined, leaving)
-    return Performance(posture, right_hand, left_hand, carried, contact, table)
+    return Performance(posture, right_hand, left_hand, carried, contact, table, script.stages)
 
 
 def _aim(script: Script) -> tuple[Array, Array]:

@@ -54,7 +54,9 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     right_rest, left_rest = hanging_hands(person, trunk, random)
     right_hand = reaching_hand(script, right_rest, held, bow=(0.07, -0.05, 0.08))
     left_hand = idle_left_hand(script, trunk, left_rest)
-    return Performance(posture, right_hand, left_hand, carried, carried_by(script), furniture)
+    return Performance(
+        posture, right_hand, left_hand, carried, carried_by(script), furniture, script.stages
+    )
 
 
 def _stance(script: Script) -> Stance:

@@ -58,7 +58,7 @@ def perform(person: SimulatedPerson, times: Array, random: np.random.Generator) 
     joining = (script.stage("take").at(JOINED), ContactKind.BOTH_HANDS)
     leaving = (script.stage("return").start, ContactKind.RIGHT_HAND)
     contact = carried_by(script, joining, leaving)
-    return Performance(posture, right_hand, left_hand, carried, contact, cupboard)
+    return Performance(posture, right_hand, left_hand, carried, contact, cupboard, script.stages)
 
 
 def _brush_track(script: Script) -> Array:

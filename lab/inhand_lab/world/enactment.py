@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from inhand_tracker.geometry.arrays import Bytes
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.motions.furniture import Furniture
 from inhand_lab.motions.performance import ContactKind
+from inhand_lab.motions.timeline import Stage
 from inhand_lab.people.body_motion import BodyMotion
 
 MIRRORED_CONTACT = np.array(
@@ -27,12 +29,16 @@ MIRRORED_CONTACT = np.array(
 
 @dataclass(frozen=True)
 class Enactment:
-    """Body and object over T frames; ``contact`` (T,) holds values of ContactKind."""
+    """Body and object over T frames; ``contact`` (T,) holds values of ContactKind.
+
+    ``stages`` are what is done when, in seconds from the first frame of the performance.
+    """
 
     body: BodyMotion
     world_from_object: Transform
     contact: Bytes
     furniture: Furniture = ()
+    stages: Sequence[Stage] = ()
 
     def mirrored(self) -> Enactment:
         """The same by a left-handed person."""
@@ -41,6 +47,7 @@ class Enactment:
             self.world_from_object.mirrored(),
             MIRRORED_CONTACT[self.contact],
             tuple(box.mirrored() for box in self.furniture),
+            self.stages,
         )
 
     def __getitem__(self, frames: slice) -> Enactment:
@@ -49,4 +56,5 @@ class Enactment:
             self.world_from_object[frames],
             self.contact[frames],
             self.furniture,
+            self.stages,
         )

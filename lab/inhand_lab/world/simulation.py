@@ -8,6 +8,7 @@ frame = simulation.render(100)         # what the camera sees
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 
 from inhand_lab.geometry.transforms import Transform, quaternions
 from inhand_lab.motions.furniture import Furniture
+from inhand_lab.motions.timeline import Stage
 from inhand_lab.objects.model import ObjectModel
 from inhand_lab.people.body_motion import BodyMotion
 from inhand_lab.people.kinematics import place_body
@@ -67,7 +69,8 @@ class Simulation:
 
     ``reading`` is the skeleton tracker's; body, camera_from_object and ``contact`` (T,), as values
     of ContactKind, are the truth. ``facing`` is the direction to the camera as a turn to the left
-    of the person's y axis, radians.
+    of the person's y axis, radians. ``stages`` are what is done when, in seconds; the last may lie
+    beyond the last frame.
     """
 
     interaction: str
@@ -84,6 +87,7 @@ class Simulation:
     camera_from_world: Transform
     facing: float
     furniture: Furniture = ()
+    stages: Sequence[Stage] = ()
 
     @property
     def intrinsics(self) -> Intrinsics:
@@ -254,6 +258,7 @@ def simulate_cast(cast: Casting, frames: int, camera: Camera) -> Simulation:
         camera_from_world=camera_from_world,
         facing=facing,
         furniture=enacted.furniture,
+        stages=enacted.stages,
     )
 
 
@@ -269,5 +274,7 @@ def _enact(
     times = np.arange(round(seconds * frame_rate)) / frame_rate
     done = INTERACTIONS[interaction].perform(person, times, random)
     body = place_body(person, done.posture, done.right_hand, done.left_hand)
-    enacted = Enactment(body, done.world_from_object, done.contact, done.furniture)[:frames]
+    enacted = Enactment(body, done.world_from_object, done.contact, done.furniture, done.stages)[
+        :frames
+    ]
     return enacted.mirrored() if person.handedness == "left" else enacted
