@@ -233,7 +233,14 @@ class ObjectPose(Message, frozen=True, kw_only=True):
 
 
 class Event(Message, frozen=True, kw_only=True):
-    """What was achieved, when, with which object, and the evidence for it."""
+    """What was achieved, when, with which object, and the evidence for it.
+
+    It lasted ``duration_ns`` until ``time_ns``. ``id`` is the event's own, however often it is
+    published; ``probability`` is how likely it is that it happened. ``amounts`` are by names that
+    end in their unit (``volume_ml``), and ``deviations`` the standard deviations of those that have
+    one. ``rig_from_object`` is where the object was, and the frames of ``first_sequence`` to
+    ``last_sequence`` show it.
+    """
 
     kind: Name
     object: Name | None = None
@@ -241,9 +248,17 @@ class Event(Message, frozen=True, kw_only=True):
     duration_ns: Nanoseconds = 0
     evidence: Annotated[dict[Name, float], Meta(max_length=256)] = {}
     description: Text = ""
+    id: Text | None = None
+    probability: Fraction | None = None
+    amounts: Annotated[dict[Name, float], Meta(max_length=64)] = {}
+    deviations: Annotated[dict[Name, NonNegative], Meta(max_length=64)] = {}
+    rig_from_object: Pose | None = None
+    first_sequence: Count | None = None
+    last_sequence: Count | None = None
 
     def __post_init__(self) -> None:
-        require_finite("evidence", self.evidence.values())
+        numbers = (*self.evidence.values(), *self.amounts.values(), *self.deviations.values())
+        require_finite("evidence", (self.probability or 0.0, *numbers))
 
 
 class TopicHealth(Struct, frozen=True, kw_only=True):

@@ -1,0 +1,1 @@
+"""Measures of interactions: what was achieved, from an object's track. One file a family."""
