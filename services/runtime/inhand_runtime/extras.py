@@ -3,12 +3,15 @@
 EXTRAS = {
     "cluster": ("dask", "distributed"),
     "export": ("av", "foxglove", "pyarrow", "rosbags"),
+    "homeassistant": ("aiomqtt",),
     "hub": ("cryptography",),
     "lab": ("faiss", "fast_simplification", "matplotlib", "scipy", "sklearn", "trimesh"),
     "metrics": ("prometheus_client",),
     "pose": ("ai_edge_litert",),
     "oak": ("depthai",),
     "onnx": ("onnxruntime",),
+    "outcomes": ("alembic", "sqlalchemy"),
+    "postgresql": ("psycopg",),
     "studio": ("aiohttp", "viser"),
 }
 """Names of the modules that come with each extra of ours (pyproject.toml) and not without it."""
