@@ -6,9 +6,11 @@ EXTRAS = {
     "hub": ("cryptography",),
     "lab": ("faiss", "fast_simplification", "matplotlib", "scipy", "sklearn", "trimesh"),
     "metrics": ("prometheus_client",),
+    "outcomes": ("alembic", "sqlalchemy"),
     "pose": ("ai_edge_litert",),
     "oak": ("depthai",),
     "onnx": ("onnxruntime",),
+    "postgresql": ("psycopg",),
     "studio": ("aiohttp", "viser"),
 }
 """Names of the modules that come with each extra of ours (pyproject.toml) and not without it."""

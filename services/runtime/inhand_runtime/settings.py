@@ -196,6 +196,7 @@ class RigFile(Section):
     recorder: Tables = {}
     studio: Tables = {}
     hub: Tables = {}
+    outcomes: Tables = {}
 
 
 S = TypeVar("S", bound=Section)
