@@ -47,5 +47,3 @@ def load_things(
 def models_of(config: Path | None) -> tuple[Path, ...]:
     """Return the models that trackers of a settings file follow; raises SettingsError."""
     return () if config is None else model_files(load_rig_file(config).tracker, config.parent)
-
-

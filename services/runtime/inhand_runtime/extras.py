@@ -7,10 +7,10 @@ EXTRAS = {
     "hub": ("cryptography",),
     "lab": ("faiss", "fast_simplification", "matplotlib", "scipy", "sklearn", "trimesh"),
     "metrics": ("prometheus_client",),
+    "outcomes": ("alembic", "sqlalchemy"),
     "pose": ("ai_edge_litert",),
     "oak": ("depthai",),
     "onnx": ("onnxruntime",),
-    "outcomes": ("alembic", "sqlalchemy"),
     "postgresql": ("psycopg",),
     "studio": ("aiohttp", "viser"),
 }
