@@ -18,7 +18,7 @@ from rosbags.highlevel import AnyReader, AnyReaderError
 from rosbags.interfaces import Connection
 from rosbags.typesys import Stores, get_typestore
 
-from inhand.imports.foreign import ForeignMessage
+from inhand.imports.foreign import ForeignMessage, LeftOut
 from inhand.imports.pairing import nearest_partners
 from inhand.imports.ros_images import colour_of, depth_of, info_of, is_depth
 
@@ -42,16 +42,14 @@ class RosBag:
     """An open bag with the topics that are read, and how its frames are paired.
 
     ``frames`` has each frame's time of capture by the times of its images, colour and depth, -1
-    where it has none of these. ``unreadable`` counts images that could not be read, and ``reason``
-    says why the first of them could not.
+    where it has none of these.
     """
 
     reader: AnyReader
     topics: RosTopics
     frames: list[tuple[int, int]]
     frame_rate: float
-    unreadable: int = 0
-    reason: str = ""
+    left_out: LeftOut = field(default_factory=LeftOut)
     _pending: dict[tuple[int, int], dict[str, Any]] = field(default_factory=dict)
 
     def messages(self, camera: str) -> Iterator[ForeignMessage]:
@@ -83,7 +81,9 @@ class RosBag:
                 yield ForeignMessage(RGBD, camera, message, received_ns)
                 number += 1
         if number == 0:
-            raise InhandError(f"no frame of it can be read: {self.reason or 'it has none'}")
+            raise InhandError(
+                f"no frame of it can be read: {self.left_out.reason or 'it has none'}"
+            )
 
     def _raw(self) -> Iterator[tuple[Connection, int, bytes]]:
         wanted = (self.topics.colour, self.topics.depth)
@@ -95,8 +95,7 @@ class RosBag:
             message = self.reader.deserialize(raw, connection.msgtype)
             return colour_of(message) if name == "colour" else depth_of(message)
         except (InhandError, AnyReaderError) as error:
-            self.unreadable += 1
-            self.reason = self.reason or f"{connection.topic}: {error}"
+            self.left_out.add(f"{connection.topic}: {error}")
             return None
 
     def _info(self, camera: str, received_ns: int) -> ForeignMessage:
