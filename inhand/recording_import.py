@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from inhand.imports.foreign import LeftOut
 
 
+FIRST_CLOCK_NS = 946_684_800_000_000_000
+"""Nanoseconds since the epoch of the year 2000: times before it are of no clock that was set."""
 OPTIONS = {
     "tum": {"object"},
     "ros": {"colour", "depth", "camera_info"},
@@ -103,6 +105,8 @@ def _import_ros(arguments: argparse.Namespace, site: Site) -> dict[str, int]:
         bag = plan_import(reader, asked)
         topics = {k: v for k, v in asdict(bag.topics).items() if v is not None}
         about = {"source": arguments.source.name, "format": arguments.format, **topics}
+        if bag.device is not None:
+            about |= {"device": bag.device, "aligned": str(bag.align is not None).lower()}
         with progress_bar("messages", 1 + len(bag.frames)) as advance:
             messages = bag.messages(arguments.camera)
             counts = write_imported(arguments.output, site, messages, about, advance)
@@ -110,6 +114,10 @@ def _import_ros(arguments: argparse.Namespace, site: Site) -> dict[str, int]:
         print(f"{name} of {topic}")
     if bag.topics.depth is not None:
         _say_without_depth(len(bag.frames), sum(depth < 0 for _, depth in bag.frames))
+    if bag.align is not None:
+        print("depth is aligned to colour by the calibration in the bag")
+    if bag.info.time_ns < FIRST_CLOCK_NS:
+        print("times are of the camera's own clock, and not since 1970")
     _say_left_out(bag.left_out, "image")
     return counts
 

@@ -9,18 +9,30 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from inhand_runtime.errors import InhandError
+from inhand_runtime.pixels import decode_depth, encode_depth
 from inhand_schemas.keys import require_name
-from inhand_schemas.messages import ColourImage, DepthImage, RgbdFrame
+from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, RgbdFrame
 from inhand_schemas.topics import INFO, RGBD
 from rosbags.highlevel import AnyReader, AnyReaderError
 from rosbags.interfaces import Connection
 from rosbags.typesys import Stores, get_typestore
 
+from inhand.imports.alignment import DepthAlignment
 from inhand.imports.foreign import ForeignMessage, LeftOut
 from inhand.imports.pairing import nearest_partners
-from inhand.imports.ros_images import colour_of, depth_of, info_of, is_depth
+from inhand.imports.realsense import (
+    RealSenseStream,
+    alignment_of,
+    check_lens,
+    depth_units,
+    device_name,
+    realsense_streams,
+    standard_image,
+)
+from inhand.imports.ros_images import DEPTH_SCALE, colour_of, depth_of, info_of, is_depth
 
 IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
 LENS = "sensor_msgs/msg/CameraInfo"
@@ -42,13 +54,16 @@ class RosBag:
     """An open bag with the topics that are read, and how its frames are paired.
 
     ``frames`` has each frame's time of capture by the times of its images, colour and depth, -1
-    where it has none of these.
+    where it has none of these. ``info`` is the lens, ``align`` makes depth of another view depth of
+    the colour's; ``device`` is a RealSense's model, whose bags do not say when they received what.
     """
 
     reader: AnyReader
     topics: RosTopics
     frames: list[tuple[int, int]]
-    frame_rate: float
+    info: CameraInfo
+    align: DepthAlignment | None = None
+    device: str | None = None
     left_out: LeftOut = field(default_factory=LeftOut)
     _pending: dict[tuple[int, int], dict[str, Any]] = field(default_factory=dict)
 
@@ -62,13 +77,15 @@ class RosBag:
             if time_ns >= 0
         }
         names = {self.topics.colour: "colour", self.topics.depth: "depth"}
-        number, begun = 0, False
-        for connection, received_ns, raw in self._raw():
-            if not begun:
-                yield self._info(camera, received_ns)
-                begun = True
+        number, latest_ns = 0, -1
+        for connection, bag_ns, raw in self._raw():
+            captured_ns = _stamp(self.reader, raw, bag_ns)
+            received_ns = max(captured_ns, latest_ns) if self.device else bag_ns
+            if latest_ns < 0:
+                yield ForeignMessage(INFO, camera, self.info, received_ns)
+            latest_ns = received_ns
             name = names[connection.topic]
-            frame = by_time.pop((name, _stamp(self.reader, raw, received_ns)), None)
+            frame = by_time.pop((name, captured_ns), None)
             if frame is None:
                 continue
             images = self._pending.setdefault(frame, {})
@@ -92,20 +109,14 @@ class RosBag:
 
     def _image(self, name: str, connection: Connection, raw: bytes) -> Any:
         try:
-            message = self.reader.deserialize(raw, connection.msgtype)
-            return colour_of(message) if name == "colour" else depth_of(message)
-        except (InhandError, AnyReaderError) as error:
+            message = _message(self.reader, connection, raw)
+            if name == "colour":
+                return colour_of(message)
+            depth = depth_of(message)
+            return depth if self.align is None else encode_depth(self.align(decode_depth(depth)))
+        except InhandError as error:
             self.left_out.add(f"{connection.topic}: {error}")
             return None
-
-    def _info(self, camera: str, received_ns: int) -> ForeignMessage:
-        chosen = [one for one in self.reader.connections if one.topic == self.topics.camera_info]
-        for connection, _, raw in self.reader.messages(chosen):
-            message = self.reader.deserialize(raw, connection.msgtype)
-            time_ns = min(max(frame) for frame in self.frames)
-            info = info_of(message, time_ns, self.frame_rate)
-            return ForeignMessage(INFO, camera, info, received_ns)
-        raise InhandError(f"{self.topics.camera_info} has no message")
 
 
 @contextmanager
@@ -131,11 +142,63 @@ def plan_import(reader: AnyReader, asked: Mapping[str, str | None]) -> RosBag:
     ``asked`` has a topic for ``colour``, ``depth`` and ``camera_info`` where one is chosen. Raises
     InhandError where one is missing, or there are several and none is chosen.
     """
+    streams = realsense_streams(reader.connections) if not reader.is2 else []
+    if streams:
+        return _plan_realsense(reader, streams, asked)
     topics = _topics(reader, asked)
+    frames, rate = _paired(reader, topics)
+    return RosBag(reader, topics, frames, _lens(reader, topics.camera_info, frames, rate)[1])
+
+
+def _plan_realsense(
+    reader: AnyReader, streams: Sequence[RealSenseStream], asked: Mapping[str, str | None]
+) -> RosBag:
+    by_topic = {stream.topic: stream for stream in streams}
+    chosen = {
+        name: _one(name, [one.topic for one in streams if one.kind == kind], asked[name])
+        for name, kind in (("colour", "Color"), ("depth", "Depth"))
+    }
+    main = by_topic.get(chosen["colour"] or chosen["depth"] or "")
+    if main is None:
+        raise InhandError(f"neither colour nor depth is in it; its topics are: {_listed(reader)}")
+    lenses = {topic: f"{stream.prefix}/info/camera_info" for topic, stream in by_topic.items()}
+    topics = RosTopics(
+        chosen["colour"], chosen["depth"], asked["camera_info"] or lenses[main.topic]
+    )
+    frames, rate = _paired(reader, topics)
+    model, info = _lens(reader, topics.camera_info, frames, rate)
+    check_lens(model, info)
+    device, align = device_name(reader, main), None
+    units = DEPTH_SCALE
+    if topics.depth is not None:
+        depth = by_topic[topics.depth]
+        units = depth_units(reader, depth)
+        if depth is not main:
+            model, of_depth = _lens(reader, lenses[depth.topic], frames, rate)
+            check_lens(model, of_depth)
+            align = alignment_of(reader, (depth, of_depth), (main, info), units)
+    about = {"depth_scale": units, "description": f"{device}, of a bag"}
+    return RosBag(reader, topics, frames, msgspec.structs.replace(info, **about), align, device)
+
+
+def _paired(reader: AnyReader, topics: RosTopics) -> tuple[list[tuple[int, int]], float]:
+    """Return the frames by the times of their images, and the usual rate in hertz."""
     frames = _frames(_times(reader, topics.colour), _times(reader, topics.depth))
     steps = np.diff([max(frame) for frame in frames])
     rate = float(1e9 / np.median(steps)) if len(steps) and np.median(steps) > 0 else 30.0
-    return RosBag(reader, topics, frames, rate)
+    return frames, rate
+
+
+def _lens(
+    reader: AnyReader, topic: str, frames: Sequence[tuple[int, int]], rate: float
+) -> tuple[str, CameraInfo]:
+    """Return the model of distortion and the lens; raises InhandError where there is none."""
+    chosen = [one for one in reader.connections if one.topic == topic]
+    message = _first(reader, chosen[0]) if chosen else None
+    if message is None:
+        raise InhandError(f"{topic} has no message")
+    time_ns = min(max(frame) for frame in frames)
+    return message.distortion_model, info_of(message, time_ns, rate)
 
 
 def _topics(reader: AnyReader, asked: Mapping[str, str | None]) -> RosTopics:
@@ -185,10 +248,20 @@ def _first(reader: AnyReader, connection: Connection) -> Any:
     """Return the first message of a connection; None without any."""
     for _, _, raw in reader.messages([connection]):
         try:
-            return reader.deserialize(raw, connection.msgtype)
-        except AnyReaderError as error:
+            return _message(reader, connection, raw)
+        except InhandError as error:
             raise InhandError(f"{connection.topic} cannot be read: {error}") from None
     return None
+
+
+def _message(reader: AnyReader, connection: Connection, raw: bytes) -> Any:
+    """Return a message, also an Image as RealSense writes it; raises InhandError."""
+    if not reader.is2 and connection.msgtype == IMAGES[0]:
+        raw, _ = standard_image(raw)
+    try:
+        return reader.deserialize(raw, connection.msgtype)
+    except AnyReaderError as error:
+        raise InhandError(str(error)) from None
 
 
 def _times(reader: AnyReader, topic: str | None) -> list[int]:
