@@ -20,10 +20,11 @@ if TYPE_CHECKING:
 
 FIRST_CLOCK_NS = 946_684_800_000_000_000
 """Nanoseconds since the epoch of the year 2000: times before it are of no clock that was set."""
-OPTIONS = {
+OPTIONS: dict[str, set[str]] = {
     "tum": {"object"},
     "ros": {"colour", "depth", "camera_info"},
     "bop": {"frame_rate"},
+    "kinect": set(),
 }
 """Options that belong to a format alone."""
 
@@ -39,7 +40,7 @@ def add_action(actions: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         required=True,
         dest="format",
         help="a TUM RGB-D folder; a bag of ROS 1 or 2, also of a RealSense, or MCAP with messages "
-        "of ROS 2; a scene of BOP",
+        "of ROS 2; a scene of BOP; a recording of an Azure Kinect (MKV)",
     )
     action.add_argument("-o", "--output", type=Path, required=True, metavar="OUT")
     action.add_argument("--rig", default="rig", metavar="NAME", help="its rig (default: rig)")
@@ -62,8 +63,13 @@ def add_action(actions: "argparse._SubParsersAction[argparse.ArgumentParser]") -
 def _import(arguments: argparse.Namespace) -> int:
     site = _site(arguments)
     _refuse_options_of_others(arguments)
-    importer = {"tum": _import_tum, "ros": _import_ros, "bop": _import_bop}[arguments.format]
-    counts = importer(arguments, site)
+    importers = {
+        "tum": _import_tum,
+        "ros": _import_ros,
+        "bop": _import_bop,
+        "kinect": _import_kinect,
+    }
+    counts = importers[arguments.format](arguments, site)
     print(f"{arguments.output}: " + ", ".join(f"{n:,} {topic}" for topic, n in counts.items()))
     if arguments.json is not None:
         write_json(arguments.json, {"output": str(arguments.output), "counts": counts})
@@ -149,6 +155,25 @@ def _import_bop(arguments: argparse.Namespace, site: Site) -> dict[str, int]:
     if all(frame.depth is None for frame in scene.frames):
         print("it has no depth, without which no tracker finds an object")
     _say_left_out(recording.left_out, "frame")
+    return counts
+
+
+def _import_kinect(arguments: argparse.Namespace, site: Site) -> dict[str, int]:
+    from inhand.imports.azure_kinect import open_kinect
+    from inhand.imports.foreign import write_imported
+
+    with open_kinect(arguments.source) as recording:
+        about = {"source": arguments.source.name, "format": arguments.format, **recording.about}
+        with progress_bar("messages", 1 + len(recording.frames)) as advance:
+            messages = recording.messages(arguments.camera)
+            counts = write_imported(arguments.output, site, messages, about, advance)
+    if recording.align is not None:
+        print("depth is aligned to colour by the calibration in the file")
+        without = sum(depth < 0 for _, depth in recording.frames)
+        _say_without_depth(len(recording.frames), without)
+    if not recording.clock:
+        print("the file does not say when it was begun: times count from 9 September 2001")
+    _say_left_out(recording.left_out, "image")
     return counts
 
 

@@ -10,11 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-import numpy as np
 from inhand_runtime.errors import InhandError
 from inhand_runtime.pixels import decode_depth, encode_depth
 from inhand_schemas.keys import require_name
-from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage, RgbdFrame
+from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage
 from inhand_schemas.topics import INFO, RGBD
 from rosbags.highlevel import AnyReader, AnyReaderError
 from rosbags.interfaces import Connection
@@ -22,7 +21,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from inhand.imports.alignment import DepthAlignment
 from inhand.imports.foreign import ForeignMessage, LeftOut
-from inhand.imports.pairing import nearest_partners
+from inhand.imports.pairing import FrameAssembler, Stream, Times, frame_rate, paired_frames
 from inhand.imports.realsense import (
     RealSenseStream,
     alignment_of,
@@ -60,44 +59,29 @@ class RosBag:
 
     reader: AnyReader
     topics: RosTopics
-    frames: list[tuple[int, int]]
+    frames: list[Times]
     info: CameraInfo
     align: DepthAlignment | None = None
     device: str | None = None
     left_out: LeftOut = field(default_factory=LeftOut)
-    _pending: dict[tuple[int, int], dict[str, Any]] = field(default_factory=dict)
 
     def messages(self, camera: str) -> Iterator[ForeignMessage]:
         """Yield the camera's info and its frames, each when its last image was received."""
         require_name("camera", camera)
-        by_time = {
-            (name, time_ns): frame
-            for frame in self.frames
-            for name, time_ns in zip(("colour", "depth"), frame, strict=True)
-            if time_ns >= 0
-        }
-        names = {self.topics.colour: "colour", self.topics.depth: "depth"}
-        number, latest_ns = 0, -1
+        assembler, latest_ns = FrameAssembler(self.frames), -1
         for connection, bag_ns, raw in self._raw():
             captured_ns = _stamp(self.reader, raw, bag_ns)
             received_ns = max(captured_ns, latest_ns) if self.device else bag_ns
             if latest_ns < 0:
                 yield ForeignMessage(INFO, camera, self.info, received_ns)
             latest_ns = received_ns
-            name = names[connection.topic]
-            frame = by_time.pop((name, captured_ns), None)
-            if frame is None:
+            stream: Stream = "colour" if connection.topic == self.topics.colour else "depth"
+            if not assembler.wants(stream, captured_ns):
                 continue
-            images = self._pending.setdefault(frame, {})
-            images[name] = self._image(name, connection, raw)
-            if len(images) < sum(time_ns >= 0 for time_ns in frame):
-                continue
-            del self._pending[frame]
-            message = _frame(number, frame, images.get("colour"), images.get("depth"))
-            if message is not None:
-                yield ForeignMessage(RGBD, camera, message, received_ns)
-                number += 1
-        if number == 0:
+            frame = assembler.put(stream, captured_ns, self._image(stream, connection, raw))
+            if frame is not None:
+                yield ForeignMessage(RGBD, camera, frame, received_ns)
+        if not assembler.made:
             raise InhandError(
                 f"no frame of it can be read: {self.left_out.reason or 'it has none'}"
             )
@@ -107,10 +91,12 @@ class RosBag:
         chosen = [one for one in self.reader.connections if one.topic in wanted]
         yield from self.reader.messages(chosen)
 
-    def _image(self, name: str, connection: Connection, raw: bytes) -> Any:
+    def _image(
+        self, stream: Stream, connection: Connection, raw: bytes
+    ) -> ColourImage | DepthImage | None:
         try:
             message = _message(self.reader, connection, raw)
-            if name == "colour":
+            if stream == "colour":
                 return colour_of(message)
             depth = depth_of(message)
             return depth if self.align is None else encode_depth(self.align(decode_depth(depth)))
@@ -146,8 +132,8 @@ def plan_import(reader: AnyReader, asked: Mapping[str, str | None]) -> RosBag:
     if streams:
         return _plan_realsense(reader, streams, asked)
     topics = _topics(reader, asked)
-    frames, rate = _paired(reader, topics)
-    return RosBag(reader, topics, frames, _lens(reader, topics.camera_info, frames, rate)[1])
+    frames = _paired(reader, topics)
+    return RosBag(reader, topics, frames, _lens(reader, topics.camera_info, frames)[1])
 
 
 def _plan_realsense(
@@ -165,8 +151,8 @@ def _plan_realsense(
     topics = RosTopics(
         chosen["colour"], chosen["depth"], asked["camera_info"] or lenses[main.topic]
     )
-    frames, rate = _paired(reader, topics)
-    model, info = _lens(reader, topics.camera_info, frames, rate)
+    frames = _paired(reader, topics)
+    model, info = _lens(reader, topics.camera_info, frames)
     check_lens(model, info)
     device, align = device_name(reader, main), None
     units = DEPTH_SCALE
@@ -174,31 +160,25 @@ def _plan_realsense(
         depth = by_topic[topics.depth]
         units = depth_units(reader, depth)
         if depth is not main:
-            model, of_depth = _lens(reader, lenses[depth.topic], frames, rate)
+            model, of_depth = _lens(reader, lenses[depth.topic], frames)
             check_lens(model, of_depth)
             align = alignment_of(reader, (depth, of_depth), (main, info), units)
     about = {"depth_scale": units, "description": f"{device}, of a bag"}
     return RosBag(reader, topics, frames, msgspec.structs.replace(info, **about), align, device)
 
 
-def _paired(reader: AnyReader, topics: RosTopics) -> tuple[list[tuple[int, int]], float]:
-    """Return the frames by the times of their images, and the usual rate in hertz."""
-    frames = _frames(_times(reader, topics.colour), _times(reader, topics.depth))
-    steps = np.diff([max(frame) for frame in frames])
-    rate = float(1e9 / np.median(steps)) if len(steps) and np.median(steps) > 0 else 30.0
-    return frames, rate
+def _paired(reader: AnyReader, topics: RosTopics) -> list[Times]:
+    return paired_frames(_times(reader, topics.colour), _times(reader, topics.depth))
 
 
-def _lens(
-    reader: AnyReader, topic: str, frames: Sequence[tuple[int, int]], rate: float
-) -> tuple[str, CameraInfo]:
+def _lens(reader: AnyReader, topic: str, frames: Sequence[Times]) -> tuple[str, CameraInfo]:
     """Return the model of distortion and the lens; raises InhandError where there is none."""
     chosen = [one for one in reader.connections if one.topic == topic]
     message = _first(reader, chosen[0]) if chosen else None
     if message is None:
         raise InhandError(f"{topic} has no message")
     time_ns = min(max(frame) for frame in frames)
-    return message.distortion_model, info_of(message, time_ns, rate)
+    return message.distortion_model, info_of(message, time_ns, frame_rate(frames))
 
 
 def _topics(reader: AnyReader, asked: Mapping[str, str | None]) -> RosTopics:
@@ -277,25 +257,3 @@ def _stamp(reader: AnyReader, raw: bytes, received_ns: int) -> int:
     seconds, rest = _STAMPS[reader.is2].unpack_from(raw)
     time_ns: int = 1_000_000_000 * seconds + rest
     return time_ns if time_ns > 0 else received_ns
-
-
-def _frames(colour: list[int], depth: list[int]) -> list[tuple[int, int]]:
-    if not colour:
-        return [(-1, time_ns) for time_ns in depth]
-    return list(zip(colour, nearest_partners(colour, depth), strict=True))
-
-
-def _frame(
-    number: int, times: tuple[int, int], colour: ColourImage | None, depth: DepthImage | None
-) -> RgbdFrame | None:
-    if colour is None and depth is None:
-        return None
-    time_ns = times[0] if times[0] >= 0 else times[1]
-    apart_ns = abs(times[0] - times[1]) if min(times) >= 0 else 0
-    return RgbdFrame(
-        sequence=number,
-        time_ns=time_ns,
-        time_uncertainty_ns=apart_ns,
-        colour=colour,
-        depth=depth,
-    )
