@@ -104,7 +104,8 @@ def _import_tum(arguments: argparse.Namespace, site: Site) -> dict[str, int]:
 
 def _import_ros(arguments: argparse.Namespace, site: Site) -> dict[str, int]:
     from inhand.imports.foreign import write_imported
-    from inhand.imports.ros import open_bag, plan_import
+    from inhand.imports.ros import plan_import
+    from inhand.imports.ros_bag import open_bag
 
     asked = {name: getattr(arguments, name) for name in ("colour", "depth", "camera_info")}
     with open_bag(arguments.source) as reader:

@@ -13,12 +13,17 @@ from inhand_runtime.errors import InhandError
 from inhand_schemas.messages import CameraInfo
 from numpy.typing import NDArray
 
+from inhand.imports.kernels.depth_alignment import NOTHING, draw_depth
+
 Floats = NDArray[np.float64]
 OVERLAP_PX = 0.25
 """Pixels by which the square that a pixel of depth covers is larger than it is: between two pixels
 of a slanted surface no row of pixels may stay without depth."""
 CLOSEST_M = 0.01
 """Metres before a camera within which nothing is projected."""
+BEYOND = 1.05
+"""Share of the farthest ray from a view's axis in its image beyond which nothing is projected:
+what a lens's distortion means is known in the image alone."""
 MOST_UNDISTORTION_PX = 0.5
 """Pixels by which a ray may miss its pixel where a lens cannot be inverted: beyond, at the far
 corners of wide lenses, depth is left out."""
@@ -30,13 +35,12 @@ class DepthAlignment:
     """Makes depth of one view depth of another one.
 
     ``rays`` (H + 1, W + 1, 2) are x and y at a distance of 1 of the corners of the depth's pixels,
-    NaN where the lens cannot be inverted. ``rotation`` (3, 3) and ``translation`` (3,) in metres
-    take points of the depth camera to the other one, whose ``view`` it is.
+    NaN where the lens cannot be inverted. ``motion`` (3, 4) takes points of the depth camera to the
+    other one, in metres, whose ``view`` it is; ``widest`` is how far from its axis it sees.
     """
 
     rays: Floats
-    rotation: Floats
-    translation: Floats
+    motion: Floats
     view: CameraInfo
     depth_scale: float
     widest: float
@@ -52,48 +56,13 @@ class DepthAlignment:
                 f"depth is {depth.shape[1]} × {depth.shape[0]}, and its calibration is of "
                 f"{width} × {height}"
             )
-        rows, columns = np.nonzero(depth)
-        metres = depth[rows, columns].astype(np.float64) * self.depth_scale
-        first, nearest = self._project(self.rays[rows, columns], metres)
-        last, farther = self._project(self.rays[rows + 1, columns + 1], metres)
-        units = np.round(0.5 * (nearest + farther) / self.depth_scale)
-        begin = np.ceil(np.minimum(first, last) - OVERLAP_PX)
-        end = np.floor(np.maximum(first, last) + OVERLAP_PX)
-        size = np.array([self.view.width, self.view.height])
-        shown = np.isfinite(begin + end).all(axis=1) & (units < np.iinfo(np.uint16).max)
-        shown[shown] = ((end[shown] >= 0) & (begin[shown] < size)).all(axis=1)
-        return self._nearest(
-            np.maximum(begin[shown], 0).astype(int),
-            np.minimum(end[shown], size - 1).astype(int),
-            units[shown].astype(np.uint16),
-        )
-
-    def _project(self, rays: Floats, metres: Floats) -> tuple[Floats, Floats]:
-        """Return pixels (N, 2) of the other view, NaN for what it cannot see, and z (N,)."""
-        points = np.column_stack((rays * metres[:, None], metres)) @ self.rotation.T
-        points += self.translation
-        z = points[:, 2]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            seen = (z > CLOSEST_M) & (np.hypot(points[:, 0], points[:, 1]) < self.widest * z)
-        pixels = np.full((len(points), 2), np.nan)
-        if seen.any():
-            pixels[seen] = project(points[seen], self.view)
-        return pixels, z
-
-    def _nearest(
-        self, begin: NDArray[np.int_], end: NDArray[np.int_], units: NDArray[np.uint16]
-    ) -> NDArray[np.uint16]:
-        """Return the least of ``units`` (N,) over squares from ``begin`` to ``end`` (N, 2)."""
-        farthest = np.iinfo(np.uint16).max
-        shape = self.view.height, self.view.width
-        drawn = np.full(shape, farthest, np.uint16)
-        extent = end - begin
-        for down in range(int(extent[:, 1].max(initial=-1)) + 1):
-            for right in range(int(extent[:, 0].max(initial=-1)) + 1):
-                covers = (extent[:, 0] >= right) & (extent[:, 1] >= down)
-                places = begin[covers, 1] + down, begin[covers, 0] + right
-                np.minimum.at(drawn, places, units[covers])
-        return np.where(drawn == farthest, 0, drawn).astype(np.uint16)
+        view, limits = self.view, (self.depth_scale, CLOSEST_M, OVERLAP_PX)
+        lens = np.array([view.fx, view.fy, view.cx, view.cy])
+        drawn = np.full((view.height, view.width), NOTHING, np.uint16)
+        seen = lens, _distortion(view), self.widest
+        draw_depth(np.ascontiguousarray(depth), self.rays, self.motion, seen, limits, drawn)
+        drawn[drawn == NOTHING] = 0
+        return drawn
 
 
 def align_depth(
@@ -109,7 +78,17 @@ def align_depth(
     border: Floats = np.stack(np.meshgrid(*places), axis=-1).reshape(-1, 2)
     widest = float(np.nanmax(np.hypot(*unproject(border - 0.5, view).T)))
     rays = unproject(corners.reshape(-1, 2), depth).reshape(corners.shape)
-    return DepthAlignment(rays, rotation, translation, view, depth.depth_scale, 1.05 * widest)
+    motion = np.column_stack((rotation, translation))
+    return DepthAlignment(rays, motion, view, depth.depth_scale, BEYOND * widest)
+
+
+def _distortion(camera: CameraInfo) -> Floats:
+    """Return the distortion (8,) as OpenCV orders it; raises InhandError for a lens with more."""
+    numbers = np.zeros(14)
+    numbers[: len(camera.distortion)] = camera.distortion
+    if numbers[8:].any():
+        raise InhandError("a lens with thin prisms or a tilted sensor is not aligned to")
+    return numbers[:8]
 
 
 def project(points: Floats, camera: CameraInfo) -> Floats:

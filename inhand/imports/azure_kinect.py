@@ -23,7 +23,7 @@ from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage
 from inhand_schemas.topics import INFO, RGBD
 
 from inhand.imports.alignment import DepthAlignment
-from inhand.imports.foreign import ForeignMessage, LeftOut
+from inhand.imports.foreign import ForeignMessage, LeftOut, explaining
 from inhand.imports.kinect_calibration import aligned_views
 from inhand.imports.pairing import FrameAssembler, Stream, Times, frame_rate, paired_frames
 
@@ -95,10 +95,8 @@ class KinectRecording:
 @contextmanager
 def open_kinect(path: Path) -> Iterator[KinectRecording]:
     """Open a recording and read the times of its images; raises InhandError for what is none."""
-    try:
-        container = av.open(str(path))
-    except (av.error.FFmpegError, OSError) as error:
-        raise InhandError(f"{path} is no Matroska file that can be read: {error}") from None
+    with explaining(f"{path} is no Matroska file that can be read"):
+        container = av.open(str(path), metadata_errors="replace")
     with container:
         yield _plan(path, container)
 
@@ -133,7 +131,8 @@ def _plan(path: Path, container: Any) -> KinectRecording:
 def _check_formats(path: Path, tracks: dict[Stream, Any]) -> None:
     for stream, track in tracks.items():
         known = (_DEPTH_FORMAT,) if stream == "depth" else ("MJPG", *_COLOURS)
-        if (found := track.codec_context.codec_tag) not in known:
+        codec = track.codec_context
+        if (found := "an unknown format" if codec is None else codec.codec_tag) not in known:
             raise InhandError(f"{path}: {stream} in {found!r} is not read, only {', '.join(known)}")
 
 
@@ -164,15 +163,17 @@ def _images(
     A file that was cut off ends with its last whole image; raises InhandError for a damaged one.
     """
     of_track = {track.index: stream for stream, track in tracks.items()}
-    try:
+    with explaining("the file is damaged"):
         container.seek(0)
-        for packet in container.demux(list(tracks.values())):
-            if packet.pts is None or packet.size == 0:
-                continue
+        packets = container.demux(list(tracks.values()))
+    while True:
+        with explaining("the file is damaged"):
+            packet = next(packets, None)
+        if packet is None:
+            return
+        if packet.pts is not None and packet.size > 0:
             time_ns = begin_ns + int(packet.pts * packet.time_base * 1_000_000_000)
             yield of_track[packet.stream.index], time_ns, bytes(packet)
-    except av.error.FFmpegError as error:
-        raise InhandError(f"the file is damaged: {error}") from None
 
 
 def _colour(data: bytes, code: str, width: int, height: int) -> ColourImage:

@@ -1,14 +1,17 @@
 """What foreign recordings are read as, and how they become one of Inhand's."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
 from inhand_recorder.recording_file import MESH_PLACE, MESH_TYPE
+from inhand_runtime.errors import InhandError
 from inhand_runtime.recording import RecordingError, RecordingWriter
 from inhand_runtime.recording.copying import written_or_gone
+from inhand_runtime.wording import printable
 from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import Message
@@ -16,6 +19,8 @@ from inhand_schemas.topics import AnyTopic
 
 IMPORT_RECORD = "import"
 """The name of the metadata record that says what a recording was made of."""
+LONGEST_REASON = 200
+"""Number of characters that are shown of what another library says of a damaged file."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +32,18 @@ class ForeignMessage:
     name: str
     message: Message
     received_ns: int
+
+
+@contextmanager
+def explaining(what: str) -> Iterator[None]:
+    """Raise whatever a reader of foreign files raises in a block as an InhandError of one line.
+
+    Nothing but the reader is called in such a block: our own faults are no damaged file.
+    """
+    try:
+        yield
+    except Exception as error:
+        raise InhandError(f"{what}: {printable(str(error))[:LONGEST_REASON]}") from error
 
 
 @dataclass

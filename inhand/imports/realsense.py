@@ -8,10 +8,8 @@ length of a unit of depth. The times of messages in the bag count from the begin
 """
 
 import re
-import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -19,16 +17,13 @@ from inhand_runtime.errors import InhandError
 from inhand_schemas.messages import CameraInfo
 from inhand_tracker.geometry.rotations import to_matrix
 from numpy.typing import NDArray
-from rosbags.highlevel import AnyReader, AnyReaderError
+from rosbags.highlevel import AnyReader
 from rosbags.interfaces import Connection
 
 from inhand.imports.alignment import DepthAlignment, align_depth
+from inhand.imports.ros_bag import first_message, messages_on, read_message, standard_image
 
 _IMAGES = re.compile(r"(/device_\d+/sensor_\d+)/(\w+)_\d+/image/data")
-_BEFORE_NAME = struct.Struct("<I8x")
-"""A header's number and time; its name follows, in whose place librealsense writes a version."""
-_LENGTH, _SIZE, _STEP = struct.Struct("<I"), struct.Struct("<II"), struct.Struct("<BI")
-_UNITS = struct.Struct("<f")
 _KNOWN_LENSES = ("None", "Brown Conrady", "Modified Brown Conrady", "Inverse Brown Conrady")
 """Models of distortion that librealsense projects as OpenCV does, by its names."""
 
@@ -54,33 +49,13 @@ def realsense_streams(connections: Sequence[Connection]) -> list[RealSenseStream
     return [RealSenseStream(topic, match[1], match[2]) for topic, match in found if match]
 
 
-def standard_image(raw: bytes) -> tuple[bytes, float]:
-    """Return a message as ROS defines an Image, and the metres of a unit of depth that follow it.
-
-    These are 0 where they are not written, as by releases before 2.54, and of what is no depth.
-    What is too short stays as it is.
-    """
-    try:
-        place = _BEFORE_NAME.size
-        place += _LENGTH.size + _LENGTH.unpack_from(raw, place)[0]
-        place += _SIZE.size
-        place += _LENGTH.size + _LENGTH.unpack_from(raw, place)[0]
-        place += _STEP.size
-        place += _LENGTH.size + _LENGTH.unpack_from(raw, place)[0]
-    except struct.error:
-        return raw, 0.0
-    if len(raw) != place + _UNITS.size:
-        return raw, 0.0
-    return raw[:place], float(_UNITS.unpack_from(raw, place)[0])
-
-
 def depth_units(reader: AnyReader, depth: RealSenseStream) -> float:
     """Return the metres of a unit of depth; raises InhandError where the bag does not say them."""
-    for _, _, raw in reader.messages(_of(reader, depth.topic)):
+    for _, _, raw in messages_on(reader, depth.topic):
         if (units := standard_image(raw)[1]) > 0.0:
             return units
         break
-    option = _only(reader, f"{depth.sensor}/option/Depth_Units/value")
+    option = first_message(reader, f"{depth.sensor}/option/Depth_Units/value")
     if option is None:
         raise InhandError(f"{depth.topic} does not say how long its units are")
     return float(option.data)
@@ -88,9 +63,8 @@ def depth_units(reader: AnyReader, depth: RealSenseStream) -> float:
 
 def device_name(reader: AnyReader, stream: RealSenseStream) -> str:
     """Return the model of the camera, ``Intel RealSense D435``, or else ``RealSense``."""
-    topic = f"/{stream.topic.split('/')[1]}/info"
-    for connection, _, raw in reader.messages(_of(reader, topic)) if _of(reader, topic) else ():
-        entry: Any = reader.deserialize(raw, connection.msgtype)
+    for connection, _, raw in messages_on(reader, f"/{stream.topic.split('/')[1]}/info"):
+        entry = read_message(reader, connection, raw)
         if entry.key == "Name":
             return str(entry.value)
     return "RealSense"
@@ -125,7 +99,7 @@ def _from_reference(
     """Return which reference it is, and the rotation (3, 3) and translation (3,) from there."""
     topics = {one.topic for one in reader.connections}
     found = sorted(topic for topic in topics if topic.startswith(f"{stream.prefix}/tf/"))
-    transform = _only(reader, found[0]) if found else None
+    transform = first_message(reader, found[0]) if found else None
     if transform is None:
         raise InhandError(
             f"there is no {stream.prefix}/tf/0: where the colour camera is from the depth camera, "
@@ -134,18 +108,3 @@ def _from_reference(
     turn, shift = transform.rotation, transform.translation
     rotation = to_matrix(np.array([turn.w, turn.x, turn.y, turn.z]))
     return found[0].rpartition("/")[2], rotation, np.array([shift.x, shift.y, shift.z])
-
-
-def _of(reader: AnyReader, topic: str) -> list[Connection]:
-    return [one for one in reader.connections if one.topic == topic]
-
-
-def _only(reader: AnyReader, topic: str) -> Any:
-    """Return the first message of a topic; None without any. Raises InhandError."""
-    chosen = _of(reader, topic)
-    for connection, _, raw in reader.messages(chosen) if chosen else ():
-        try:
-            return reader.deserialize(raw, connection.msgtype)
-        except AnyReaderError as error:
-            raise InhandError(f"{topic} cannot be read: {error}") from None
-    return None

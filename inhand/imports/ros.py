@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -15,9 +13,8 @@ from inhand_runtime.pixels import decode_depth, encode_depth
 from inhand_schemas.keys import require_name
 from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage
 from inhand_schemas.topics import INFO, RGBD
-from rosbags.highlevel import AnyReader, AnyReaderError
+from rosbags.highlevel import AnyReader
 from rosbags.interfaces import Connection
-from rosbags.typesys import Stores, get_typestore
 
 from inhand.imports.alignment import DepthAlignment
 from inhand.imports.foreign import ForeignMessage, LeftOut
@@ -29,11 +26,11 @@ from inhand.imports.realsense import (
     depth_units,
     device_name,
     realsense_streams,
-    standard_image,
 )
+from inhand.imports.ros_bag import IMAGE, first_message, messages_of, messages_on, read_message
 from inhand.imports.ros_images import DEPTH_SCALE, colour_of, depth_of, info_of, is_depth
 
-IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+IMAGES = (IMAGE, "sensor_msgs/msg/CompressedImage")
 LENS = "sensor_msgs/msg/CameraInfo"
 _STAMPS = {True: struct.Struct("<4xiI"), False: struct.Struct("<4xII")}
 """Where a message's header has its time: of ROS 2, and of ROS 1."""
@@ -69,7 +66,9 @@ class RosBag:
         """Yield the camera's info and its frames, each when its last image was received."""
         require_name("camera", camera)
         assembler, latest_ns = FrameAssembler(self.frames), -1
-        for connection, bag_ns, raw in self._raw():
+        for connection, bag_ns, raw in messages_on(
+            self.reader, self.topics.colour, self.topics.depth
+        ):
             captured_ns = _stamp(self.reader, raw, bag_ns)
             received_ns = max(captured_ns, latest_ns) if self.device else bag_ns
             if latest_ns < 0:
@@ -86,16 +85,11 @@ class RosBag:
                 f"no frame of it can be read: {self.left_out.reason or 'it has none'}"
             )
 
-    def _raw(self) -> Iterator[tuple[Connection, int, bytes]]:
-        wanted = (self.topics.colour, self.topics.depth)
-        chosen = [one for one in self.reader.connections if one.topic in wanted]
-        yield from self.reader.messages(chosen)
-
     def _image(
         self, stream: Stream, connection: Connection, raw: bytes
     ) -> ColourImage | DepthImage | None:
         try:
-            message = _message(self.reader, connection, raw)
+            message = read_message(self.reader, connection, raw)
             if stream == "colour":
                 return colour_of(message)
             depth = depth_of(message)
@@ -103,23 +97,6 @@ class RosBag:
         except InhandError as error:
             self.left_out.add(f"{connection.topic}: {error}")
             return None
-
-
-@contextmanager
-def open_bag(path: Path) -> Iterator[AnyReader]:
-    """Open a bag of ROS 1 (a file), of ROS 2 (a folder), or an MCAP file with messages of ROS 2.
-
-    Raises InhandError for what is none.
-    """
-    try:
-        reader = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE))
-        reader.open()
-    except (AnyReaderError, OSError) as error:
-        raise InhandError(f"{path} is no bag of ROS that can be read: {error}") from None
-    try:
-        yield reader
-    finally:
-        reader.close()
 
 
 def plan_import(reader: AnyReader, asked: Mapping[str, str | None]) -> RosBag:
@@ -173,8 +150,7 @@ def _paired(reader: AnyReader, topics: RosTopics) -> list[Times]:
 
 def _lens(reader: AnyReader, topic: str, frames: Sequence[Times]) -> tuple[str, CameraInfo]:
     """Return the model of distortion and the lens; raises InhandError where there is none."""
-    chosen = [one for one in reader.connections if one.topic == topic]
-    message = _first(reader, chosen[0]) if chosen else None
+    message = first_message(reader, topic)
     if message is None:
         raise InhandError(f"{topic} has no message")
     time_ns = min(max(frame) for frame in frames)
@@ -226,34 +202,22 @@ def _listed(reader: AnyReader) -> str:
 
 def _first(reader: AnyReader, connection: Connection) -> Any:
     """Return the first message of a connection; None without any."""
-    for _, _, raw in reader.messages([connection]):
-        try:
-            return _message(reader, connection, raw)
-        except InhandError as error:
-            raise InhandError(f"{connection.topic} cannot be read: {error}") from None
+    for _, _, raw in messages_of(reader, [connection]):
+        return read_message(reader, connection, raw)
     return None
-
-
-def _message(reader: AnyReader, connection: Connection, raw: bytes) -> Any:
-    """Return a message, also an Image as RealSense writes it; raises InhandError."""
-    if not reader.is2 and connection.msgtype == IMAGES[0]:
-        raw, _ = standard_image(raw)
-    try:
-        return reader.deserialize(raw, connection.msgtype)
-    except AnyReaderError as error:
-        raise InhandError(str(error)) from None
 
 
 def _times(reader: AnyReader, topic: str | None) -> list[int]:
     """Return the times of capture of a topic's messages, each once, as they rise."""
-    chosen = [one for one in reader.connections if one.topic == topic]
-    if not chosen:
-        return []
-    return sorted({_stamp(reader, raw, at_ns) for _, at_ns, raw in reader.messages(chosen)})
+    messages = messages_on(reader, topic)
+    return sorted({_stamp(reader, raw, at_ns) for _, at_ns, raw in messages})
 
 
 def _stamp(reader: AnyReader, raw: bytes, received_ns: int) -> int:
     """Return a message's time of capture in nanoseconds; that of its reception without one."""
-    seconds, rest = _STAMPS[reader.is2].unpack_from(raw)
+    try:
+        seconds, rest = _STAMPS[reader.is2].unpack_from(raw)
+    except struct.error:
+        return received_ns
     time_ns: int = 1_000_000_000 * seconds + rest
     return time_ns if time_ns > 0 else received_ns

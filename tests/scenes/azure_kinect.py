@@ -12,7 +12,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import simplejpeg
 
+FRAME_US, LATE_US = 33_333, 160
+COLOUR, DEPTH, IR = 1, 2, 3
+WIDE, NARROW = (1280, 720), (320, 288)
+WALL_M, BOARD_M = 1.0, 0.6
+BOARD = slice(110, 170), slice(130, 190)
 SINCE_2001_NS = 978_307_200_000_000_000
 """Nanoseconds from 1970 to the year that Matroska counts from."""
 EBML, SEGMENT, INFO, TRACKS = 0x1A45DFA3, 0x18538067, 0x1549A966, 0x1654AE6B
@@ -160,3 +166,31 @@ def write_kinect(
     head = parent(EBML, element(0x4282, "matroska"), element(0x4287, 2), element(0x4285, 2))
     path.write_bytes(head + parent(SEGMENT, *body))
     return path
+
+
+def depth_image() -> np.ndarray:
+    """A wall across the depth camera's view, and before it a board of 60 × 60 pixels."""
+    depth = np.full(NARROW[::-1], round(1000 * WALL_M), np.uint16)
+    depth[BOARD] = round(1000 * BOARD_M)
+    return depth
+
+
+def jpeg(size: tuple[int, int] = WIDE) -> bytes:
+    pixels = np.full((size[1], size[0], 3), (200, 20, 10), np.uint8)
+    return simplejpeg.encode_jpeg(pixels, 90, "RGB", "422")
+
+
+def tracks(colour: bytes = b"MJPG", bits: int = 24, size: tuple[int, int] = WIDE) -> list[bytes]:
+    return [
+        track(COLOUR, "COLOR", size, colour, bits),
+        track(DEPTH, "DEPTH", NARROW, b"b16g", 16),
+        track(IR, "IR", NARROW, b"b16g", 16),
+    ]
+
+
+def images(colour: bytes, frames: int = 3, kinds: tuple[int, ...] = (COLOUR, DEPTH, IR)) -> Any:
+    depth = depth_image().astype(">u2").tobytes()
+    for number in range(frames):
+        for kind in kinds:
+            late = 0 if kind == COLOUR else LATE_US
+            yield kind, number * FRAME_US + late, colour if kind == COLOUR else depth

@@ -8,15 +8,28 @@ import azure_kinect
 import inhand_recorder
 import numpy as np
 import pytest
-import simplejpeg
 from azure_kinect import (
+    BOARD,
+    BOARD_M,
+    COLOUR,
     COLOUR_LENS,
+    DEPTH,
     DEPTH_LENS,
+    FRAME_US,
+    IR,
+    LATE_US,
+    NARROW,
     SHIFT_M,
     TANGENTIAL,
     TURN,
+    WALL_M,
+    WIDE,
     calibration,
+    depth_image,
+    images,
+    jpeg,
     track,
+    tracks,
     write_kinect,
 )
 from inhand_recorder.verification import verify_recording
@@ -26,39 +39,6 @@ from scipy.optimize import fsolve
 from inhand.__main__ import main
 
 BEGIN_NS = 1_700_000_000_000_000_000
-FRAME_US, LATE_US = 33_333, 160
-COLOUR, DEPTH, IR = 1, 2, 3
-WIDE, NARROW = (1280, 720), (320, 288)
-WALL_M, BOARD_M = 1.0, 0.6
-BOARD = slice(110, 170), slice(130, 190)
-
-
-def depth_image() -> np.ndarray:
-    """A wall across the depth camera's view, and before it a board of 60 × 60 pixels."""
-    depth = np.full(NARROW[::-1], round(1000 * WALL_M), np.uint16)
-    depth[BOARD] = round(1000 * BOARD_M)
-    return depth
-
-
-def jpeg(size: tuple[int, int] = WIDE) -> bytes:
-    pixels = np.full((size[1], size[0], 3), (200, 20, 10), np.uint8)
-    return simplejpeg.encode_jpeg(pixels, 90, "RGB", "422")
-
-
-def tracks(colour: bytes = b"MJPG", bits: int = 24, size: tuple[int, int] = WIDE) -> list[bytes]:
-    return [
-        track(COLOUR, "COLOR", size, colour, bits),
-        track(DEPTH, "DEPTH", NARROW, b"b16g", 16),
-        track(IR, "IR", NARROW, b"b16g", 16),
-    ]
-
-
-def images(colour: bytes, frames: int = 3, kinds: tuple[int, ...] = (COLOUR, DEPTH, IR)) -> Any:
-    depth = depth_image().astype(">u2").tobytes()
-    for number in range(frames):
-        for kind in kinds:
-            late = 0 if kind == COLOUR else LATE_US
-            yield kind, number * FRAME_US + late, colour if kind == COLOUR else depth
 
 
 def bring(source: Path, output: Path, *more: str) -> int:
@@ -134,8 +114,8 @@ def test_colour_that_is_no_jpeg_is_coded(code: str, tmp_path: Path) -> None:
     }[code]
     source = write_kinect(
         tmp_path / "k.mkv",
-        tracks(code.encode(), bits),
-        images(data, frames=1),
+        tracks(code.encode(), bits)[:1],
+        images(data, frames=1, kinds=(COLOUR,)),
         attached=calibration(),
     )
     assert bring(source, tmp_path / "out.mcap") == 0
@@ -179,7 +159,10 @@ def test_an_early_calibration_of_a_part_of_the_sensor_is_the_same_camera(tmp_pat
     infos = []
     for name, attached in (("new", calibration()), ("early", spoilt)):
         source = write_kinect(
-            tmp_path / f"{name}.mkv", tracks(), images(jpeg(), frames=1), attached=attached
+            tmp_path / f"{name}.mkv",
+            tracks()[:1],
+            images(jpeg(), frames=1, kinds=(COLOUR,)),
+            attached=attached,
         )
         assert bring(source, tmp_path / f"{name}.mcap") == 0
         with inhand_recorder.open(tmp_path / f"{name}.mcap") as recording:

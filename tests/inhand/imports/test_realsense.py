@@ -1,167 +1,28 @@
-"""Bags as RealSense's SDK writes them become recordings, with depth aligned to colour.
+"""Bags as RealSense's SDK writes them become recordings, with depth aligned to colour."""
 
-The bags are written by the layout of librealsense 2.56: its topics, its image message, which has
-four bytes more than its definition says, and times in the bag that begin at 0.
-"""
-
-import struct
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import inhand_recorder
 import numpy as np
 import pytest
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import read_metadata
-from rosbags.rosbag1 import Writer
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from realsense_bag import (
+    CENTRE,
+    COLOUR,
+    DEPTH,
+    DEVICE,
+    FRAME_NS,
+    SIZE,
+    START_NS,
+    TURN,
+    UNITS_M,
+    Bag,
+    depth_image,
+    write_bag,
+)
 
 from inhand.__main__ import main
-
-STORE = get_typestore(Stores.ROS1_NOETIC)
-STORE.register(
-    get_types_from_msg(
-        "uint32 fps\nstring encoding\nbool is_recommended\n", "realsense_msgs/msg/StreamInfo"
-    )
-)
-DEVICE = "/device_0"
-DEPTH, COLOUR = f"{DEVICE}/sensor_0/Depth_0", f"{DEVICE}/sensor_1/Color_0"
-SIZE = 48
-CENTRE = (SIZE - 1) / 2.0
-UNITS_M = 0.0005
-START_NS, FRAME_NS = 1_700_000_000_123_000_000, 33_000_000
-FIRST = 1
-"""Time in the bag of what was written before the stream, nanoseconds."""
-AHEAD = (0.0, 0.0, 0.0, 1.0)
-TURN = (0.0, 0.0, np.sqrt(0.5), np.sqrt(0.5))
-"""A quarter turn about the optical axis, x y z w: x to y."""
-
-
-def message(name: str, **fields: Any) -> Any:
-    package, _, kind = name.partition("/")
-    return STORE.types[f"{package}/msg/{kind}"](**fields)
-
-
-def header(time_ns: int, version: str) -> Any:
-    seconds, rest = divmod(time_ns, 1_000_000_000)
-    stamp = message("builtin_interfaces/Time", sec=seconds, nanosec=rest)
-    return message("std_msgs/Header", seq=0, stamp=stamp, frame_id=version)
-
-
-class Bag:
-    """Writes what librealsense would."""
-
-    def __init__(self, writer: Writer) -> None:
-        self._writer, self._connections = writer, {}
-
-    def put(self, topic: str, name: str, bag_ns: int, fields: Any, more: bytes = b"") -> None:
-        kind = name.replace("/", "/msg/")
-        if topic not in self._connections:
-            connection = self._writer.add_connection(topic, kind, typestore=STORE)
-            self._connections[topic] = connection
-        raw = bytes(STORE.serialize_ros1(fields, kind)) + more
-        self._writer.write(self._connections[topic], bag_ns, raw)
-
-    def say(self, topic: str, key: str, value: str, bag_ns: int = FIRST) -> None:
-        entry = message("diagnostic_msgs/KeyValue", key=key, value=value)
-        self.put(topic, "diagnostic_msgs/KeyValue", bag_ns, entry)
-
-    def option(self, sensor: str, name: str, value: float) -> None:
-        topic = f"{DEVICE}/{sensor}/option/{name}/value"
-        self.put(topic, "std_msgs/Float32", FIRST, message("std_msgs/Float32", data=value))
-
-    def stream(self, prefix: str, encoding: str, model: str, coefficients: Any) -> None:
-        info = message("realsense_msgs/StreamInfo", fps=30, encoding=encoding, is_recommended=True)
-        self.put(f"{prefix}/info", "realsense_msgs/StreamInfo", FIRST, info)
-        roi = {"x_offset": 0, "y_offset": 0, "height": 0, "width": 0, "do_rectify": False}
-        lens = message(
-            "sensor_msgs/CameraInfo",
-            header=header(0, ""),
-            height=SIZE,
-            width=SIZE,
-            distortion_model=model,
-            D=np.array(coefficients),
-            K=np.array([60.0, 0.0, CENTRE, 0.0, 60.0, CENTRE, 0.0, 0.0, 1.0]),
-            R=np.zeros(9),
-            P=np.zeros(12),
-            binning_x=0,
-            binning_y=0,
-            roi=message("sensor_msgs/RegionOfInterest", **roi),
-        )
-        self.put(f"{prefix}/info/camera_info", "sensor_msgs/CameraInfo", FIRST, lens)
-
-    def place(self, prefix: str, shift: tuple[float, ...], turn: tuple[float, ...]) -> None:
-        vector = message("geometry_msgs/Vector3", **dict(zip("xyz", shift, strict=True)))
-        rotation = message("geometry_msgs/Quaternion", **dict(zip("xyzw", turn, strict=True)))
-        transform = message("geometry_msgs/Transform", translation=vector, rotation=rotation)
-        self.put(f"{prefix}/tf/0", "geometry_msgs/Transform", FIRST, transform)
-
-    def image(self, prefix: str, time_ns: int, pixels: Any, encoding: str, units: float) -> None:
-        """Put an image; without units as releases before that wrote them."""
-        image = message(
-            "sensor_msgs/Image",
-            header=header(time_ns, "1" if units else ""),
-            height=SIZE,
-            width=SIZE,
-            encoding=encoding,
-            is_bigendian=0,
-            step=pixels.strides[0],
-            data=np.frombuffer(pixels.tobytes(), np.uint8),
-        )
-        more = struct.pack("<f", units if encoding == "mono16" else 0.0) if units else b""
-        bag_ns = time_ns % START_NS + 5_000_000
-        self.put(f"{prefix}/image/data", "sensor_msgs/Image", bag_ns, image, more)
-        self.say(f"{prefix}/image/metadata", "timestamp_domain", "Global Time", bag_ns)
-
-
-def depth_image() -> np.ndarray:
-    """A wall a metre away, and before it, at half of that, a board of 10 × 10 pixels."""
-    depth = np.full((SIZE, SIZE), round(1.0 / UNITS_M), np.uint16)
-    depth[20:30, 26:36] = round(0.5 / UNITS_M)
-    return depth
-
-
-def write_bag(
-    path: Path,
-    *,
-    turn: tuple[float, ...] = AHEAD,
-    shift: tuple[float, ...] = (-0.05, 0.0, 0.0),
-    units: float = UNITS_M,
-    model: str = "Inverse Brown Conrady",
-    coefficients: tuple[float, ...] = (0.0,) * 5,
-    encoding: str = "rgb8",
-    spoil: Callable[[Bag], None] = lambda bag: None,
-    start_ns: int = START_NS,
-) -> Path:
-    """Write three frames; ``turn`` and ``shift`` are from the depth to the colour camera."""
-    writer = Writer(path)
-    writer.set_compression(Writer.CompressionFormat.LZ4)
-    with writer:
-        bag = Bag(writer)
-        bag.put("/file_version", "std_msgs/UInt32", FIRST, message("std_msgs/UInt32", data=4))
-        bag.say(f"{DEVICE}/info", "Name", "Intel RealSense D435")
-        bag.say(f"{DEVICE}/info", "Serial Number", "012345678901")
-        bag.say(f"{DEVICE}/sensor_0/info", "Name", "Stereo Module")
-        bag.option("sensor_0", "Depth_Units", UNITS_M)
-        bag.option("sensor_0", "Exposure", 8500.0)
-        bag.stream(DEPTH, "mono16", "Brown Conrady", (0.0,) * 5)
-        bag.stream(COLOUR, encoding, model, coefficients)
-        infrared = f"{DEVICE}/sensor_0/Infrared_1"
-        bag.stream(infrared, "16UC1", "Brown Conrady", (0.0,) * 5)
-        bag.place(DEPTH, (0.0, 0.0, 0.0), AHEAD)
-        bag.place(COLOUR, shift, turn)
-        for number in range(3):
-            time_ns = start_ns + number * FRAME_NS
-            grey = np.full((SIZE, SIZE), 300, np.uint16)
-            bag.image(infrared, time_ns, grey, "16UC1", units)
-            bag.image(DEPTH, time_ns, depth_image(), "mono16", units)
-            colour = np.full((SIZE, SIZE, 3), (200, 20, 10), np.uint8)
-            if encoding == "yuv422":  # U and Y, V and Y
-                colour = np.full((SIZE, SIZE, 2), (128, 90), np.uint8)
-            bag.image(COLOUR, time_ns + 4_000_000, colour, encoding, units)
-        spoil(bag)
-    return path
 
 
 def bring(source: Path, output: Path, *more: str) -> int:
