@@ -26,8 +26,10 @@ from inhand.imports.alignment import DepthAlignment
 from inhand.imports.foreign import ForeignMessage, LeftOut, explaining
 from inhand.imports.kinect_calibration import aligned_views
 from inhand.imports.pairing import FrameAssembler, Stream, Times, frame_rate, paired_frames
+from inhand.progress import progress_bar
 
 CALIBRATION_FILE = "calibration.json"
+PERCENT = 100
 _TRACKS: dict[str, Stream] = {"COLOR": "colour", "DEPTH": "depth"}
 _COLOURS = {
     "NV12": cv2.COLOR_YUV2RGB_NV12,
@@ -69,7 +71,7 @@ class KinectRecording:
         """
         assembler, latest_ns = FrameAssembler(self.frames), self.info.time_ns
         yield ForeignMessage(INFO, camera, self.info, latest_ns)
-        for stream, time_ns, data in _images(self.container, self.tracks, self.begin_ns):
+        for stream, time_ns, data, _ in _images(self.container, self.tracks, self.begin_ns):
             latest_ns = max(latest_ns, time_ns)
             if not assembler.wants(stream, time_ns):
                 continue
@@ -114,8 +116,13 @@ def _plan(path: Path, container: Any) -> KinectRecording:
     begin_ns = _begin_ns(container.metadata.get("creation_time"))
     times: dict[Stream, set[int]] = {"colour": set(), "depth": set()}
     begin = START_NS if begin_ns is None else begin_ns
-    for stream, time_ns, _ in _images(container, tracks, begin):
-        times[stream].add(time_ns)
+    with progress_bar("percent of the file's times", PERCENT) as advance:
+        done = 0
+        for stream, time_ns, data, place in _images(container, tracks, begin):
+            times[stream].add(time_ns)
+            while done < PERCENT and (place + len(data)) * PERCENT > done * container.size:
+                done += 1
+                advance()
     frames = paired_frames(sorted(times["colour"]), sorted(times["depth"]))
     if not frames:
         raise InhandError(f"{path} has no image")
@@ -157,8 +164,9 @@ def _begin_ns(text: str | None) -> int | None:
 
 def _images(
     container: Any, tracks: dict[Stream, Any], begin_ns: int
-) -> Iterator[tuple[Stream, int, bytes]]:
-    """Yield what track an image is of, when it was taken, and its bytes, from the file's begin.
+) -> Iterator[tuple[Stream, int, bytes, int]]:
+    """Yield what track an image is of, when it was taken, its bytes, and where they are in the
+    file, from its begin.
 
     A file that was cut off ends with its last whole image; raises InhandError for a damaged one.
     """
@@ -173,7 +181,7 @@ def _images(
             return
         if packet.pts is not None and packet.size > 0:
             time_ns = begin_ns + int(packet.pts * packet.time_base * 1_000_000_000)
-            yield of_track[packet.stream.index], time_ns, bytes(packet)
+            yield of_track[packet.stream.index], time_ns, bytes(packet), packet.pos or 0
 
 
 def _colour(data: bytes, code: str, width: int, height: int) -> ColourImage:

@@ -29,6 +29,7 @@ from inhand.imports.realsense import (
 )
 from inhand.imports.ros_bag import IMAGE, first_message, messages_of, messages_on, read_message
 from inhand.imports.ros_images import DEPTH_SCALE, colour_of, depth_of, info_of, is_depth
+from inhand.progress import progress_bar
 
 IMAGES = (IMAGE, "sensor_msgs/msg/CompressedImage")
 LENS = "sensor_msgs/msg/CameraInfo"
@@ -209,8 +210,14 @@ def _first(reader: AnyReader, connection: Connection) -> Any:
 
 def _times(reader: AnyReader, topic: str | None) -> list[int]:
     """Return the times of capture of a topic's messages, each once, as they rise."""
-    messages = messages_on(reader, topic)
-    return sorted({_stamp(reader, raw, at_ns) for _, at_ns, raw in messages})
+    if topic is None:
+        return []
+    times = set()
+    with progress_bar(f"times of {topic}", reader.topics[topic].msgcount) as advance:
+        for _, at_ns, raw in messages_on(reader, topic):
+            times.add(_stamp(reader, raw, at_ns))
+            advance()
+    return sorted(times)
 
 
 def _stamp(reader: AnyReader, raw: bytes, received_ns: int) -> int:
