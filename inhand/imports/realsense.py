@@ -1,15 +1,17 @@
-"""Bags of RealSense's SDK and viewer: bags of ROS 1 with topics and an image message of their own.
+"""Recordings of RealSense's SDK and viewer, which have topics and times of their own.
 
-As `ros_file_format.h` and `ros_writer.cpp` of librealsense 2 write them: a stream has its images on
-``/device_0/sensor_0/Depth_0/image/data``, its lens on ``…/info/camera_info``, and on ``…/tf/0`` how
-points get to it from the device's reference stream; a sensor's settings are on
-``/device_0/sensor_0/option/Depth_Units/value``. Images have four bytes more than ROS defines, the
-length of a unit of depth. The times of messages in the bag count from the begin of the recording.
+Up to release 2.56 these are bags of ROS 1 (``.bag``), of later ones bags of ROS 2 (``.db3``). A
+stream has its images on ``/device_0/sensor_0/Depth_0/image/data``, with ``/compressedDepth`` after
+it where they are. Beside it stand its lens, how points get to it from the device's reference
+stream, and the settings of its sensor: as messages of ROS in the former, and mostly as texts
+(``width=640;height=480``) in the latter. There the header's time counts from the begin of the
+recording, and the image's own time stands in the text of its ``image/metadata``.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
 
 import msgspec
 import numpy as np
@@ -23,57 +25,92 @@ from rosbags.interfaces import Connection
 from inhand.imports.alignment import DepthAlignment, align_depth
 from inhand.imports.ros_bag import first_message, messages_on, read_message, standard_image
 
-_IMAGES = re.compile(r"(/device_\d+/sensor_\d+)/(\w+)_\d+/image/data")
+_IMAGES = re.compile(
+    r"((/device_\d+/sensor_\d+)/(\w+)_\d+)/image/data(?:/compressed|/compressedDepth)?"
+)
 _KNOWN_LENSES = ("None", "Brown Conrady", "Modified Brown Conrady", "Inverse Brown Conrady")
 """Models of distortion that librealsense projects as OpenCV does, by its names."""
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class RealSenseStream:
-    """A stream of images: its topic, that of its sensor, and what it is, ``Depth`` or ``Color``."""
+    """A stream of images: its topic, what its topics and those of its sensor begin with, and what
+    it is, ``Depth`` or ``Color``."""
 
     topic: str
+    prefix: str
     sensor: str
     kind: str
-
-    @property
-    def prefix(self) -> str:
-        """What its topics begin with."""
-        return self.topic.removesuffix("/image/data")
 
 
 def realsense_streams(connections: Sequence[Connection]) -> list[RealSenseStream]:
     """Return the streams of images of a bag; none where it is no RealSense's."""
     topics = sorted({one.topic for one in connections})
     found = [(topic, _IMAGES.fullmatch(topic)) for topic in topics]
-    return [RealSenseStream(topic, match[1], match[2]) for topic, match in found if match]
+    return [RealSenseStream(topic, *match.groups()) for topic, match in found if match]
+
+
+def lens_topic(reader: AnyReader, stream: RealSenseStream) -> str:
+    """Return the topic of a stream's CameraInfo."""
+    return f"{stream.prefix}/{'image' if reader.is2 else 'info'}/camera_info"
+
+
+def check_lens(reader: AnyReader, stream: RealSenseStream, info: CameraInfo) -> None:
+    """Raise InhandError for a stream whose distortion is not as OpenCV has it."""
+    if reader.is2:
+        model = _text(reader, f"{stream.prefix}/camera_info").get("model", "")
+    else:
+        model = first_message(reader, lens_topic(reader, stream)).distortion_model
+    if model not in _KNOWN_LENSES and any(info.distortion):
+        raise InhandError(f"a lens of the model {model!r} is not read, only {_KNOWN_LENSES}")
+
+
+def capture_times(reader: AnyReader, stream: RealSenseStream) -> dict[int, int]:
+    """Return when images were taken by their times in the bag, both in nanoseconds.
+
+    Empty where the images' headers say it, as in bags of ROS 1.
+    """
+    times: dict[int, int] = {}
+    if not reader.is2:
+        return times
+    for connection, bag_ns, raw in messages_on(reader, f"{stream.prefix}/image/metadata"):
+        entries = _entries(read_message(reader, connection, raw).data)
+        try:
+            times[bag_ns] = int(Decimal(entries.get("timestamp", "")).scaleb(6))
+        except (InvalidOperation, ValueError, OverflowError):
+            continue
+    return times
 
 
 def depth_units(reader: AnyReader, depth: RealSenseStream) -> float:
     """Return the metres of a unit of depth; raises InhandError where the bag does not say them."""
-    for _, _, raw in messages_on(reader, depth.topic):
-        if (units := standard_image(raw)[1]) > 0.0:
-            return units
-        break
-    option = first_message(reader, f"{depth.sensor}/option/Depth_Units/value")
+    topic = f"{depth.sensor}/option/Depth_Units/value"
+    if not reader.is2:
+        for _, _, raw in messages_on(reader, depth.topic):
+            if (units := standard_image(raw)[1]) > 0.0:
+                return units
+            break
+    option = first_message(reader, topic)
     if option is None:
-        raise InhandError(f"{depth.topic} does not say how long its units are")
-    return float(option.data)
+        raise InhandError(f"there is no {topic}: how long the units of depth are, is not said")
+    try:
+        return float(option.data)
+    except ValueError:
+        raise InhandError(f"{topic}: {option.data!r} is no number") from None
 
 
 def device_name(reader: AnyReader, stream: RealSenseStream) -> str:
     """Return the model of the camera, ``Intel RealSense D435``, or else ``RealSense``."""
-    for connection, _, raw in messages_on(reader, f"/{stream.topic.split('/')[1]}/info"):
+    topic = f"/{stream.topic.split('/')[1]}/info"
+    if reader.is2:
+        return _text(reader, topic).get("Name", "RealSense")
+    for connection, _, raw in messages_on(reader, topic):
         entry = read_message(reader, connection, raw)
         if entry.key == "Name":
             return str(entry.value)
     return "RealSense"
-
-
-def check_lens(model: str, info: CameraInfo) -> None:
-    """Raise InhandError for a distortion that is not as OpenCV has it."""
-    if model not in _KNOWN_LENSES and any(info.distortion):
-        raise InhandError(f"a lens of the model {model!r} is not read, only {_KNOWN_LENSES}")
 
 
 def alignment_of(
@@ -93,9 +130,7 @@ def alignment_of(
     return align_depth(scaled, colour_info, turn, place - turn @ depth_place)
 
 
-def _from_reference(
-    reader: AnyReader, stream: RealSenseStream
-) -> tuple[str, NDArray[np.float64], NDArray[np.float64]]:
+def _from_reference(reader: AnyReader, stream: RealSenseStream) -> tuple[str, Floats, Floats]:
     """Return which reference it is, and the rotation (3, 3) and translation (3,) from there."""
     topics = {one.topic for one in reader.connections}
     found = sorted(topic for topic in topics if topic.startswith(f"{stream.prefix}/tf/"))
@@ -105,6 +140,34 @@ def _from_reference(
             f"there is no {stream.prefix}/tf/0: where the colour camera is from the depth camera, "
             "is not said"
         )
+    group = found[0].rpartition("/")[2]
+    if reader.is2:
+        entries = _entries(transform.data)
+        # Column by column, as all matrices of librealsense.
+        turned = _numbers(found[0], entries.get("rotation", ""), 9).reshape(3, 3).T
+        return group, turned, _numbers(found[0], entries.get("translation", ""), 3)
     turn, shift = transform.rotation, transform.translation
     rotation = to_matrix(np.array([turn.w, turn.x, turn.y, turn.z]))
-    return found[0].rpartition("/")[2], rotation, np.array([shift.x, shift.y, shift.z])
+    return group, rotation, np.array([shift.x, shift.y, shift.z])
+
+
+def _text(reader: AnyReader, topic: str) -> Mapping[str, str]:
+    """Return the entries of a topic's first text; empty without any."""
+    message = first_message(reader, topic)
+    return {} if message is None else _entries(message.data)
+
+
+def _entries(text: str) -> dict[str, str]:
+    """Return ``name=value`` of a text that has them between semicolons."""
+    pairs = (part.partition("=") for part in str(text).split(";"))
+    return {name: value for name, sign, value in pairs if sign}
+
+
+def _numbers(topic: str, text: str, count: int) -> Floats:
+    try:
+        numbers = np.array([float(one) for one in text.split(",")])
+    except ValueError:
+        numbers = np.zeros(0)
+    if len(numbers) != count or not np.isfinite(numbers).all():
+        raise InhandError(f"{topic}: {text!r} is not {count} numbers")
+    return numbers

@@ -22,9 +22,11 @@ from inhand.imports.pairing import FrameAssembler, Stream, Times, frame_rate, pa
 from inhand.imports.realsense import (
     RealSenseStream,
     alignment_of,
+    capture_times,
     check_lens,
     depth_units,
     device_name,
+    lens_topic,
     realsense_streams,
 )
 from inhand.imports.ros_bag import IMAGE, first_message, messages_of, messages_on, read_message
@@ -32,6 +34,9 @@ from inhand.imports.ros_images import DEPTH_SCALE, colour_of, depth_of, info_of,
 from inhand.progress import progress_bar
 
 IMAGES = (IMAGE, "sensor_msgs/msg/CompressedImage")
+UNKNOWN = -1
+"""A time of capture that is nowhere."""
+TimesInBag = Mapping[str, Mapping[int, int]]
 LENS = "sensor_msgs/msg/CameraInfo"
 _STAMPS = {True: struct.Struct("<4xiI"), False: struct.Struct("<4xII")}
 """Where a message's header has its time: of ROS 2, and of ROS 1."""
@@ -52,7 +57,8 @@ class RosBag:
 
     ``frames`` has each frame's time of capture by the times of its images, colour and depth, -1
     where it has none of these. ``info`` is the lens, ``align`` makes depth of another view depth of
-    the colour's; ``device`` is a RealSense's model, whose bags do not say when they received what.
+    the colour's; ``device`` is a RealSense's model, whose bags do not say when they received what,
+    and ``taken_ns`` when images were taken by topic and time in the bag, where headers do not.
     """
 
     reader: AnyReader
@@ -61,6 +67,7 @@ class RosBag:
     info: CameraInfo
     align: DepthAlignment | None = None
     device: str | None = None
+    taken_ns: TimesInBag = field(default_factory=dict)
     left_out: LeftOut = field(default_factory=LeftOut)
 
     def messages(self, camera: str) -> Iterator[ForeignMessage]:
@@ -70,7 +77,9 @@ class RosBag:
         for connection, bag_ns, raw in messages_on(
             self.reader, self.topics.colour, self.topics.depth
         ):
-            captured_ns = _stamp(self.reader, raw, bag_ns)
+            captured_ns = _captured(self.reader, self.taken_ns, connection.topic, bag_ns, raw)
+            if captured_ns == UNKNOWN:
+                continue
             received_ns = max(captured_ns, latest_ns) if self.device else bag_ns
             if latest_ns < 0:
                 yield ForeignMessage(INFO, camera, self.info, received_ns)
@@ -106,12 +115,12 @@ def plan_import(reader: AnyReader, asked: Mapping[str, str | None]) -> RosBag:
     ``asked`` has a topic for ``colour``, ``depth`` and ``camera_info`` where one is chosen. Raises
     InhandError where one is missing, or there are several and none is chosen.
     """
-    streams = realsense_streams(reader.connections) if not reader.is2 else []
+    streams = realsense_streams(reader.connections)
     if streams:
         return _plan_realsense(reader, streams, asked)
     topics = _topics(reader, asked)
-    frames = _paired(reader, topics)
-    return RosBag(reader, topics, frames, _lens(reader, topics.camera_info, frames)[1])
+    frames = _paired(reader, topics, {})
+    return RosBag(reader, topics, frames, _lens(reader, topics.camera_info, frames))
 
 
 def _plan_realsense(
@@ -125,37 +134,38 @@ def _plan_realsense(
     main = by_topic.get(chosen["colour"] or chosen["depth"] or "")
     if main is None:
         raise InhandError(f"neither colour nor depth is in it; its topics are: {_listed(reader)}")
-    lenses = {topic: f"{stream.prefix}/info/camera_info" for topic, stream in by_topic.items()}
-    topics = RosTopics(
-        chosen["colour"], chosen["depth"], asked["camera_info"] or lenses[main.topic]
-    )
-    frames = _paired(reader, topics)
-    model, info = _lens(reader, topics.camera_info, frames)
-    check_lens(model, info)
-    device, align = device_name(reader, main), None
-    units = DEPTH_SCALE
+    lens = asked["camera_info"] or lens_topic(reader, main)
+    topics = RosTopics(chosen["colour"], chosen["depth"], lens)
+    taken_ns = {topic: capture_times(reader, by_topic[topic]) for topic in chosen.values() if topic}
+    frames = _paired(reader, topics, taken_ns)
+    info = _lens(reader, lens, frames)
+    check_lens(reader, main, info)
+    device, align, units = device_name(reader, main), None, DEPTH_SCALE
     if topics.depth is not None:
         depth = by_topic[topics.depth]
         units = depth_units(reader, depth)
         if depth is not main:
-            model, of_depth = _lens(reader, lenses[depth.topic], frames)
-            check_lens(model, of_depth)
+            of_depth = _lens(reader, lens_topic(reader, depth), frames)
+            check_lens(reader, depth, of_depth)
             align = alignment_of(reader, (depth, of_depth), (main, info), units)
     about = {"depth_scale": units, "description": f"{device}, of a bag"}
-    return RosBag(reader, topics, frames, msgspec.structs.replace(info, **about), align, device)
+    info = msgspec.structs.replace(info, **about)
+    return RosBag(reader, topics, frames, info, align, device, taken_ns)
 
 
-def _paired(reader: AnyReader, topics: RosTopics) -> list[Times]:
-    return paired_frames(_times(reader, topics.colour), _times(reader, topics.depth))
+def _paired(reader: AnyReader, topics: RosTopics, taken_ns: TimesInBag) -> list[Times]:
+    colour, depth = (_times(reader, topic, taken_ns) for topic in (topics.colour, topics.depth))
+    return paired_frames(colour, depth)
 
 
-def _lens(reader: AnyReader, topic: str, frames: Sequence[Times]) -> tuple[str, CameraInfo]:
-    """Return the model of distortion and the lens; raises InhandError where there is none."""
+def _lens(reader: AnyReader, topic: str, frames: Sequence[Times]) -> CameraInfo:
+    """Return the lens; raises InhandError where there is none."""
     message = first_message(reader, topic)
     if message is None:
         raise InhandError(f"{topic} has no message")
-    time_ns = min(max(frame) for frame in frames)
-    return message.distortion_model, info_of(message, time_ns, frame_rate(frames))
+    if not frames:
+        raise InhandError("no image in it says when it was taken")
+    return info_of(message, min(max(frame) for frame in frames), frame_rate(frames))
 
 
 def _topics(reader: AnyReader, asked: Mapping[str, str | None]) -> RosTopics:
@@ -208,23 +218,26 @@ def _first(reader: AnyReader, connection: Connection) -> Any:
     return None
 
 
-def _times(reader: AnyReader, topic: str | None) -> list[int]:
+def _times(reader: AnyReader, topic: str | None, taken_ns: TimesInBag) -> list[int]:
     """Return the times of capture of a topic's messages, each once, as they rise."""
     if topic is None:
         return []
     times = set()
     with progress_bar(f"times of {topic}", reader.topics[topic].msgcount) as advance:
-        for _, at_ns, raw in messages_on(reader, topic):
-            times.add(_stamp(reader, raw, at_ns))
+        for _, bag_ns, raw in messages_on(reader, topic):
+            times.add(_captured(reader, taken_ns, topic, bag_ns, raw))
             advance()
-    return sorted(times)
+    return sorted(times - {UNKNOWN})
 
 
-def _stamp(reader: AnyReader, raw: bytes, received_ns: int) -> int:
-    """Return a message's time of capture in nanoseconds; that of its reception without one."""
+def _captured(reader: AnyReader, taken_ns: TimesInBag, topic: str, bag_ns: int, raw: bytes) -> int:
+    """Return when an image was taken, in nanoseconds: by its header, or its time in the bag where
+    that says nothing; UNKNOWN where it is to be looked up and is not there."""
+    if taken_ns.get(topic):
+        return taken_ns[topic].get(bag_ns, UNKNOWN)
     try:
         seconds, rest = _STAMPS[reader.is2].unpack_from(raw)
     except struct.error:
-        return received_ns
+        return bag_ns
     time_ns: int = 1_000_000_000 * seconds + rest
-    return time_ns if time_ns > 0 else received_ns
+    return time_ns if time_ns > 0 else bag_ns

@@ -1,13 +1,20 @@
-"""Bags of a RealSense, as librealsense 2.56 writes them: its topics, its image message, which has
-four bytes more than its definition says, and times in the bag that begin at 0."""
+"""Bags of a RealSense, as librealsense 2.56 and 2.59 write them, by what they wrote.
+
+The former are of ROS 1: its topics, its image message, which has four bytes more than its
+definition says, and times in the bag that begin at 0. The latter are of ROS 2: compressed images
+with such times in their headers, and texts for all else.
+"""
 
 import struct
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 from rosbags.rosbag1 import Writer
+from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import Writer as FolderWriter
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 STORE = get_typestore(Stores.ROS1_NOETIC)
@@ -153,3 +160,83 @@ def write_bag(
             bag.image(COLOUR, time_ns + 4_000_000, colour, encoding, units)
         spoil(bag)
     return path
+
+
+def write_db3(
+    folder: Path, *, model: str = "Inverse Brown Conrady", first_coefficient: float = 0.0
+) -> Path:
+    """Write three frames as release 2.59 does, the colour camera 5 cm beside the depth camera.
+
+    The second image of depth lacks its metadata.
+    """
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    connections: dict[str, Any] = {}
+
+    def of(name: str, **fields: Any) -> Any:
+        package, _, kind = name.partition("/")
+        return store.types[f"{package}/msg/{kind}"](**fields)
+
+    with FolderWriter(folder, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+
+        def put(topic: str, name: str, bag_ns: int, fields: Any) -> None:
+            kind = name.replace("/", "/msg/")
+            if topic not in connections:
+                connections[topic] = writer.add_connection(topic, kind, typestore=store)
+            writer.write(connections[topic], bag_ns, store.serialize_cdr(fields, kind))
+
+        def say(topic: str, text: str, bag_ns: int = 0) -> None:
+            put(topic, "std_msgs/String", bag_ns, of("std_msgs/String", data=text))
+
+        def stamped(bag_ns: int, frame: str) -> Any:
+            stamp = of("builtin_interfaces/Time", sec=0, nanosec=bag_ns)
+            return of("std_msgs/Header", stamp=stamp, frame_id=frame)
+
+        def image(prefix: str, bag_ns: int, time_ns: int, pixels: Any, *, whole: bool) -> None:
+            deep = prefix == DEPTH
+            data = (bytes(12) if deep else b"") + cv2.imencode(".png", pixels)[1].tobytes()
+            compressed = of(
+                "sensor_msgs/CompressedImage",
+                header=stamped(bag_ns, "Depth" if deep else "Color"),
+                format="16UC1; compressedDepth png" if deep else "rgb8; png compressed bgr8",
+                data=np.frombuffer(data, np.uint8),
+            )
+            suffix = "compressedDepth" if deep else "compressed"
+            put(f"{prefix}/image/data/{suffix}", "sensor_msgs/CompressedImage", bag_ns, compressed)
+            if whole:
+                text = f"Frame number=1;timestamp_domain=Global Time;timestamp={time_ns / 1e6:.6f};"
+                say(f"{prefix}/image/metadata", text, bag_ns)
+            numbers = {
+                "d": np.array([first_coefficient, 0.0, 0.0, 0.0, 0.0]),
+                "k": np.array([60.0, 0.0, CENTRE, 0.0, 60.0, CENTRE, 0.0, 0.0, 1.0]),
+                "r": np.eye(3).ravel(),
+                "p": np.eye(3, 4).ravel(),
+            }
+            roi = {"x_offset": 0, "y_offset": 0, "height": 0, "width": 0, "do_rectify": False}
+            lens = of(
+                "sensor_msgs/CameraInfo",
+                header=stamped(bag_ns, "Depth"),
+                height=SIZE,
+                width=SIZE,
+                distortion_model="plumb_bob",
+                binning_x=0,
+                binning_y=0,
+                roi=of("sensor_msgs/RegionOfInterest", **roi),
+                **numbers,
+            )
+            put(f"{prefix}/image/camera_info", "sensor_msgs/CameraInfo", bag_ns, lens)
+
+        say(f"{DEVICE}/info", "Name=Intel RealSense D455;Serial Number=012345678901")
+        say(f"{DEVICE}/sensor_0/option/Depth_Units/value", f"{UNITS_M:.6f}")
+        say(f"{COLOUR}/camera_info", f"width={SIZE};height={SIZE};model={model};coeffs=0,0,0,0,0")
+        say(f"{DEPTH}/camera_info", f"width={SIZE};height={SIZE};model=Brown Conrady")
+        # The reference stream is turned: x to y, column by column.
+        turned = "rotation=0.0,1.0,0.0,-1.0,0.0,0.0,0.0,0.0,1.0;translation="
+        say(f"{DEPTH}/tf/ref_1", f"{turned}0.100000,0.000000,0.000000")
+        say(f"{COLOUR}/tf/ref_1", f"{turned}0.050000,0.000000,0.000000")
+        for number in range(3):
+            bag_ns = 500 + number * FRAME_NS
+            time_ns = START_NS + number * FRAME_NS
+            colour = np.full((SIZE, SIZE, 3), (10, 20, 200), np.uint8)
+            image(DEPTH, bag_ns, time_ns, depth_image(), whole=number != 1)
+            image(COLOUR, bag_ns + 700_000, time_ns + 4_000_000, colour, whole=True)
+    return next(folder.glob("*.db3"))

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from azure_kinect import DEPTH, calibration, images, tracks, write_kinect
 from inhand_recorder.verification import verify_recording
-from realsense_bag import write_bag
+from realsense_bag import write_bag, write_db3
 from ros_bags import bag
 from small_rig import FRAME_NS, START_NS, depth_of
 
@@ -18,6 +18,10 @@ VARIANTS = 12
 
 def realsense(folder: Path) -> Path:
     return write_bag(folder / "whole.bag")
+
+
+def realsense_db3(folder: Path) -> Path:
+    return write_db3(folder / "whole")
 
 
 def sqlite(folder: Path) -> Path:
@@ -53,7 +57,7 @@ def spoilt(data: bytes, chance: random.Random, number: int) -> bytes:
     return bytes(changed)
 
 
-@pytest.mark.parametrize("write", [realsense, sqlite, mcap, kinect])
+@pytest.mark.parametrize("write", [realsense, realsense_db3, sqlite, mcap, kinect])
 def test_damage_is_told_in_a_line_or_does_no_harm(
     write: Callable[[Path], Path], tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

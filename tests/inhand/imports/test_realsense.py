@@ -20,6 +20,7 @@ from realsense_bag import (
     Bag,
     depth_image,
     write_bag,
+    write_db3,
 )
 
 from inhand.__main__ import main
@@ -27,6 +28,44 @@ from inhand.__main__ import main
 
 def bring(source: Path, output: Path, *more: str) -> int:
     return main(["recording", "import", str(source), "--from", "ros", "-o", str(output), *more])
+
+
+def moved_depth() -> np.ndarray:
+    """What a camera 5 cm to the right sees, at 60 pixels a radian: the wall moved by 3 pixels, the
+    board by 6."""
+    depth = np.zeros((SIZE, SIZE), int)
+    depth[:, :45] = round(1.0 / UNITS_M)
+    depth[20:30, 20:30] = round(0.5 / UNITS_M)
+    depth[20:30, 30:33] = 0  # seen by the colour camera alone
+    return depth
+
+
+def test_a_bag_of_a_later_release_has_the_same_frames(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = tmp_path / "out.mcap"
+    assert bring(write_db3(tmp_path / "a"), output) == 0
+    said = capsys.readouterr().out
+    assert "1 of 3 frames have no depth within 20 ms" in said
+    assert "own clock" not in said
+    assert verify_recording(output) == []
+    assert read_metadata(output)["import"]["device"] == "Intel RealSense D455"
+    with inhand_recorder.open(output) as recording:
+        assert recording.infos["camera"].depth_scale == UNITS_M
+        frames = list(recording["rgbd/camera"])
+        assert len(frames) == 3
+        for number, frame in enumerate(frames):
+            # Milliseconds with six decimals, as a float of 64 bits has them: to 0.2 µs.
+            true_ns = START_NS + number * FRAME_NS + 4_000_000
+            assert frame.time_ns == frame.received_ns == pytest.approx(true_ns, rel=0, abs=300)
+            np.testing.assert_allclose(frame.colour[20, 20], (200, 20, 10), atol=3)
+            if number == 1:
+                assert frame.depth is None
+            else:
+                np.testing.assert_array_equal(frame.depth, moved_depth())
+    odd = write_db3(tmp_path / "b", model="Kannala Brandt4", first_coefficient=0.1)
+    assert bring(odd, tmp_path / "odd.mcap") == 1
+    assert "a lens of the model 'Kannala Brandt4' is not read" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("units", [UNITS_M, 0.0], ids=["units in images", "units of an option"])
@@ -44,11 +83,6 @@ def test_depth_is_what_the_colour_camera_would_measure(
     about = read_metadata(output)["import"]
     assert (about["device"], about["aligned"]) == ("Intel RealSense D435", "true")
     assert (about["depth"], about["colour"]) == (f"{DEPTH}/image/data", f"{COLOUR}/image/data")
-    # 5 cm to the right, at 60 pixels a radian: the wall moves by 3 pixels, the board by 6.
-    true = np.zeros((SIZE, SIZE), int)
-    true[:, :45] = round(1.0 / UNITS_M)
-    true[20:30, 20:30] = round(0.5 / UNITS_M)
-    true[20:30, 30:33] = 0  # seen by the colour camera alone
     with inhand_recorder.open(output) as recording:
         assert recording.infos["front"].depth_scale == pytest.approx(UNITS_M)
         frames = list(recording["rgbd/front"])
@@ -56,7 +90,7 @@ def test_depth_is_what_the_colour_camera_would_measure(
             assert frame.time_ns == START_NS + number * FRAME_NS + 4_000_000
             assert frame.received_ns == frame.time_ns
             assert frame.message.time_uncertainty_ns == 4_000_000
-            np.testing.assert_array_equal(frame.depth, true)
+            np.testing.assert_array_equal(frame.depth, moved_depth())
             np.testing.assert_allclose(frame.colour[20, 20], (200, 20, 10), atol=3)
 
 
