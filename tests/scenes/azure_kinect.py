@@ -96,7 +96,23 @@ def calibration(**colour: Any) -> bytes:
         camera_json("D0", DEPTH_LENS, (1024, 1024)),
         camera_json("PV0", COLOUR_LENS, (4096, 3072), **colour),
     ]
-    return json.dumps({"CalibrationInformation": {"Cameras": cameras}}).encode()
+    inertial = [
+        {
+            "BiasTemperatureModel": [0.0] * 12,
+            "BiasUncertainty": [0.0001] * 3,
+            "MixingMatrixTemperatureModel": [0.0] * 36,
+            "ModelTypeMask": 16,
+            "Noise": [0.001] * 6,
+            "Rt": {"Rotation": np.eye(3).ravel().tolist(), "Translation": [0.0] * 3},
+            "SecondOrderScaling": [0.0] * 9,
+            "SensorType": f"CALIBRATION_InertialSensorType_{kind}",
+            "TemperatureBounds": [5.0, 60.0],
+            "TemperatureC": 20.0,
+        }
+        for kind in ("Gyro", "Accelerometer")
+    ]
+    information = {"Cameras": cameras, "InertialSensors": inertial}
+    return json.dumps({"CalibrationInformation": information}).encode()
 
 
 def block(track_number: int, away_us: int, data: bytes) -> bytes:
