@@ -1,6 +1,6 @@
 """Recordings of RealSense's SDK and viewer, which have topics and times of their own.
 
-Up to release 2.56 these are bags of ROS 1 (``.bag``), of later ones bags of ROS 2 (``.db3``). A
+Up to release 2.57 these are bags of ROS 1 (``.bag``), of later ones bags of ROS 2 (``.db3``). A
 stream has its images on ``/device_0/sensor_0/Depth_0/image/data``, with ``/compressedDepth`` after
 it where they are. Beside it stand its lens, how points get to it from the device's reference
 stream, and the settings of its sensor: as messages of ROS in the former, and mostly as texts

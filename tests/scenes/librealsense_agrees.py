@@ -1,7 +1,7 @@
 """Checks imports of a RealSense with librealsense itself, which is too large for the tests.
 
 ``python tests/scenes/librealsense_agrees.py PYTHON SUFFIX``: PYTHON has ``pyrealsense2``, up to
-2.56 for ``.bag`` and later for ``.db3``. It records a device of software: a wall and a board before
+2.57 for ``.bag`` and later for ``.db3``. It records a device of software: a wall and a board before
 it, a colour camera with distortion, moved and turned against the depth camera. Inhand imports the
 file, and librealsense plays it back and aligns its depth.
 """
