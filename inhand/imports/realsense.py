@@ -1,9 +1,10 @@
 """Recordings of RealSense's SDK and viewer, which have topics and times of their own.
 
-Up to release 2.57 these are bags of ROS 1 (``.bag``), of later ones bags of ROS 2 (``.db3``). A
-stream has its images on ``/device_0/sensor_0/Depth_0/image/data``, with ``/compressedDepth`` after
-it where they are. Beside it stand its lens, how points get to it from the device's reference
-stream, and the settings of its sensor: as messages of ROS in the former, and mostly as texts
+Up to release 2.57 these are bags of ROS 1 (``.bag``), of later ones bags of ROS 2 (``.db3``), of
+which 2.58 compresses each message by itself. A stream has its images on
+``/device_0/sensor_0/Depth_0/image/data``, with ``/compressedDepth`` or ``/compressed`` after it
+where they are so. Beside it stand its lens, how points get to it from the device's reference
+stream, and the settings of its sensor: as messages of ROS in the former, and as texts
 (``width=640;height=480``) in the latter. There the header's time counts from the begin of the
 recording, and the image's own time stands in the text of its ``image/metadata``.
 """
@@ -24,6 +25,7 @@ from rosbags.interfaces import Connection
 
 from inhand.imports.alignment import DepthAlignment, align_depth
 from inhand.imports.ros_bag import first_message, messages_on, read_message, standard_image
+from inhand.imports.ros_images import info_of
 
 _IMAGES = re.compile(
     r"((/device_\d+/sensor_\d+)/(\w+)_\d+)/image/data(?:/compressed|/compressedDepth)?"
@@ -53,18 +55,48 @@ def realsense_streams(connections: Sequence[Connection]) -> list[RealSenseStream
 
 
 def lens_topic(reader: AnyReader, stream: RealSenseStream) -> str:
-    """Return the topic of a stream's CameraInfo."""
-    return f"{stream.prefix}/{'image' if reader.is2 else 'info'}/camera_info"
+    """Return the topic that has a stream's lens, a CameraInfo in ROS 1 and a text in ROS 2."""
+    return f"{stream.prefix}/{'camera_info' if reader.is2 else 'info/camera_info'}"
 
 
-def check_lens(reader: AnyReader, stream: RealSenseStream, info: CameraInfo) -> None:
-    """Raise InhandError for a stream whose distortion is not as OpenCV has it."""
+def lens_of(
+    reader: AnyReader, stream: RealSenseStream, time_ns: int, frame_rate: float
+) -> CameraInfo:
+    """Return a stream's lens; raises InhandError where it is missing, or not as OpenCV has it."""
+    topic = lens_topic(reader, stream)
+    message = first_message(reader, topic)
+    if message is None:
+        raise InhandError(f"{topic} has no message")
     if reader.is2:
-        model = _text(reader, f"{stream.prefix}/camera_info").get("model", "")
+        model, info = _lens_of_text(topic, message.data, time_ns, frame_rate)
     else:
-        model = first_message(reader, lens_topic(reader, stream)).distortion_model
+        model, info = message.distortion_model, info_of(message, time_ns, frame_rate)
     if model not in _KNOWN_LENSES and any(info.distortion):
         raise InhandError(f"a lens of the model {model!r} is not read, only {_KNOWN_LENSES}")
+    return info
+
+
+def _lens_of_text(topic: str, text: str, time_ns: int, frame_rate: float) -> tuple[str, CameraInfo]:
+    entries = _entries(text)
+    names = ("width", "height", "fx", "fy", "ppx", "ppy")
+    found = ",".join(entries.get(name, "") for name in names)
+    width, height, fx, fy, cx, cy = _numbers(topic, found, len(names)).tolist()
+    distortion = _numbers(topic, entries.get("coeffs", ""), 5).tolist()
+    try:
+        return entries.get("model", ""), CameraInfo(
+            sequence=0,
+            time_ns=time_ns,
+            width=int(width),
+            height=int(height),
+            fx=fx,
+            fy=fy,
+            cx=cx,
+            cy=cy,
+            distortion=tuple(distortion),
+            frame_rate=frame_rate,
+        )
+    except ValueError as error:
+        raise InhandError(f"{topic}: {error}") from None
 
 
 def capture_times(reader: AnyReader, stream: RealSenseStream) -> dict[int, int]:

@@ -23,9 +23,9 @@ from inhand.imports.realsense import (
     RealSenseStream,
     alignment_of,
     capture_times,
-    check_lens,
     depth_units,
     device_name,
+    lens_of,
     lens_topic,
     realsense_streams,
 )
@@ -134,20 +134,22 @@ def _plan_realsense(
     main = by_topic.get(chosen["colour"] or chosen["depth"] or "")
     if main is None:
         raise InhandError(f"neither colour nor depth is in it; its topics are: {_listed(reader)}")
-    lens = asked["camera_info"] or lens_topic(reader, main)
+    lens = _one("camera_info", [lens_topic(reader, main)], asked["camera_info"])
+    assert lens is not None  # it is the only one
     topics = RosTopics(chosen["colour"], chosen["depth"], lens)
     taken_ns = {topic: capture_times(reader, by_topic[topic]) for topic in chosen.values() if topic}
     frames = _paired(reader, topics, taken_ns)
-    info = _lens(reader, lens, frames)
-    check_lens(reader, main, info)
-    device, align, units = device_name(reader, main), None, DEPTH_SCALE
+    if not frames:
+        raise InhandError("no image in it says when it was taken")
+    since = min(max(frame) for frame in frames), frame_rate(frames)
+    info, align, units = lens_of(reader, main, *since), None, DEPTH_SCALE
     if topics.depth is not None:
         depth = by_topic[topics.depth]
         units = depth_units(reader, depth)
         if depth is not main:
-            of_depth = _lens(reader, lens_topic(reader, depth), frames)
-            check_lens(reader, depth, of_depth)
+            of_depth = lens_of(reader, depth, *since)
             align = alignment_of(reader, (depth, of_depth), (main, info), units)
+    device = device_name(reader, main)
     about = {"depth_scale": units, "description": f"{device}, of a bag"}
     info = msgspec.structs.replace(info, **about)
     return RosBag(reader, topics, frames, info, align, device, taken_ns)
@@ -163,8 +165,6 @@ def _lens(reader: AnyReader, topic: str, frames: Sequence[Times]) -> CameraInfo:
     message = first_message(reader, topic)
     if message is None:
         raise InhandError(f"{topic} has no message")
-    if not frames:
-        raise InhandError("no image in it says when it was taken")
     return info_of(message, min(max(frame) for frame in frames), frame_rate(frames))
 
 

@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import zstandard
+from inhand_runtime.errors import InhandError
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import Connection
 from rosbags.typesys import Stores, get_typestore
@@ -17,6 +19,9 @@ from rosbags.typesys import Stores, get_typestore
 from inhand.imports.foreign import explaining
 
 IMAGE = "sensor_msgs/msg/Image"
+MOST_BYTES = 1 << 28
+"""Bytes of a message at the most: 256 MiB."""
+_ZSTD = b"\x28\xb5\x2f\xfd"
 _BEFORE_NAME = struct.Struct("<I8x")
 """A header's number and time; its name follows, in whose place librealsense writes a version."""
 _LENGTH, _SIZE, _STEP = struct.Struct("<I"), struct.Struct("<II"), struct.Struct("<BI")
@@ -57,7 +62,21 @@ def messages_of(
             one = next(messages, None)
         if one is None:
             return
-        yield one
+        connection, bag_ns, raw = one
+        compressed = reader.is2 and raw.startswith(_ZSTD)
+        yield connection, bag_ns, _decompressed(raw) if compressed else raw
+
+
+def _decompressed(raw: bytes) -> bytes:
+    """Return a message that is compressed by itself: ``rosbags`` knows that only of bags with a
+    ``metadata.yaml``, and no message begins as Zstandard does."""
+    try:
+        if zstandard.frame_content_size(raw) > MOST_BYTES:
+            raise InhandError("a message is larger than any camera's image")
+        message: bytes = zstandard.ZstdDecompressor().decompress(raw, max_output_size=MOST_BYTES)
+    except zstandard.ZstdError as error:
+        raise InhandError(f"the bag is damaged: {error}") from None
+    return message
 
 
 def read_message(reader: AnyReader, connection: Connection, raw: bytes) -> Any:

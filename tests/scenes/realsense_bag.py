@@ -12,6 +12,7 @@ from typing import Any
 
 import cv2
 import numpy as np
+import zstandard
 from rosbags.rosbag1 import Writer
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as FolderWriter
@@ -163,11 +164,16 @@ def write_bag(
 
 
 def write_db3(
-    folder: Path, *, model: str = "Inverse Brown Conrady", first_coefficient: float = 0.0
+    folder: Path,
+    *,
+    model: str = "Inverse Brown Conrady",
+    first_coefficient: float = 0.0,
+    one_by_one: bool = False,
 ) -> Path:
     """Write three frames as release 2.59 does, the colour camera 5 cm beside the depth camera.
 
-    The second image of depth lacks its metadata.
+    The second image of depth lacks its metadata. With ``one_by_one`` each message is compressed by
+    itself, as by 2.58.
     """
     store = get_typestore(Stores.ROS2_HUMBLE)
     connections: dict[str, Any] = {}
@@ -182,7 +188,9 @@ def write_db3(
             kind = name.replace("/", "/msg/")
             if topic not in connections:
                 connections[topic] = writer.add_connection(topic, kind, typestore=store)
-            writer.write(connections[topic], bag_ns, store.serialize_cdr(fields, kind))
+            raw = bytes(store.serialize_cdr(fields, kind))
+            data = zstandard.ZstdCompressor().compress(raw) if one_by_one else raw
+            writer.write(connections[topic], bag_ns, data)
 
         def say(topic: str, text: str, bag_ns: int = 0) -> None:
             put(topic, "std_msgs/String", bag_ns, of("std_msgs/String", data=text))
@@ -205,30 +213,12 @@ def write_db3(
             if whole:
                 text = f"Frame number=1;timestamp_domain=Global Time;timestamp={time_ns / 1e6:.6f};"
                 say(f"{prefix}/image/metadata", text, bag_ns)
-            numbers = {
-                "d": np.array([first_coefficient, 0.0, 0.0, 0.0, 0.0]),
-                "k": np.array([60.0, 0.0, CENTRE, 0.0, 60.0, CENTRE, 0.0, 0.0, 1.0]),
-                "r": np.eye(3).ravel(),
-                "p": np.eye(3, 4).ravel(),
-            }
-            roi = {"x_offset": 0, "y_offset": 0, "height": 0, "width": 0, "do_rectify": False}
-            lens = of(
-                "sensor_msgs/CameraInfo",
-                header=stamped(bag_ns, "Depth"),
-                height=SIZE,
-                width=SIZE,
-                distortion_model="plumb_bob",
-                binning_x=0,
-                binning_y=0,
-                roi=of("sensor_msgs/RegionOfInterest", **roi),
-                **numbers,
-            )
-            put(f"{prefix}/image/camera_info", "sensor_msgs/CameraInfo", bag_ns, lens)
 
         say(f"{DEVICE}/info", "Name=Intel RealSense D455;Serial Number=012345678901")
         say(f"{DEVICE}/sensor_0/option/Depth_Units/value", f"{UNITS_M:.6f}")
-        say(f"{COLOUR}/camera_info", f"width={SIZE};height={SIZE};model={model};coeffs=0,0,0,0,0")
-        say(f"{DEPTH}/camera_info", f"width={SIZE};height={SIZE};model=Brown Conrady")
+        lens = f"width={SIZE};height={SIZE};fx=60;ppx={CENTRE};fy=60;ppy={CENTRE};model="
+        say(f"{COLOUR}/camera_info", f"{lens}{model};coeffs={first_coefficient},0,0,0,0")
+        say(f"{DEPTH}/camera_info", f"{lens}Brown Conrady;coeffs=0,0,0,0,0")
         # The reference stream is turned: x to y, column by column.
         turned = "rotation=0.0,1.0,0.0,-1.0,0.0,0.0,0.0,0.0,1.0;translation="
         say(f"{DEPTH}/tf/ref_1", f"{turned}0.100000,0.000000,0.000000")

@@ -40,11 +40,12 @@ def moved_depth() -> np.ndarray:
     return depth
 
 
+@pytest.mark.parametrize("one_by_one", [False, True], ids=["2.59", "2.58"])
 def test_a_bag_of_a_later_release_has_the_same_frames(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    one_by_one: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     output = tmp_path / "out.mcap"
-    assert bring(write_db3(tmp_path / "a"), output) == 0
+    assert bring(write_db3(tmp_path / "a", one_by_one=one_by_one), output) == 0
     said = capsys.readouterr().out
     assert "1 of 3 frames have no depth within 20 ms" in said
     assert "own clock" not in said
