@@ -131,6 +131,25 @@ class RgbdFrame(Message, frozen=True, kw_only=True):
     depth: DepthImage | None = None
 
 
+class ViewedColour(ColourImage, frozen=True):
+    """Colour whose ``data`` is a view of what it was decoded from."""
+
+    data: memoryview  # type: ignore[assignment]
+
+
+class ViewedDepth(DepthImage, frozen=True):
+    """Depth whose ``data`` is a view of what it was decoded from."""
+
+    data: memoryview  # type: ignore[assignment]
+
+
+class ViewedFrame(RgbdFrame, frozen=True, kw_only=True):
+    """A frame that was decoded without a copy of its pictures."""
+
+    colour: ViewedColour | None = None
+    depth: ViewedDepth | None = None
+
+
 class Preview(Message, frozen=True, kw_only=True):
     """A small JPEG for far viewers; ``sequence`` and ``time_ns`` are the source frame's."""
 

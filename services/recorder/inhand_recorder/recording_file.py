@@ -154,6 +154,10 @@ class RecordingFile:
         """Bring everything to the disk, and make sure that the file is still there."""
         self._writer.sync()
         self.worth_keeping = True
+        self._require_part()
+        self._in_memory.clear()
+
+    def _require_part(self) -> None:
         try:
             self._part.stat()
         except OSError as error:
@@ -161,13 +165,13 @@ class RecordingFile:
                 f"{self._part} was removed while it was written ({error.strerror}): "
                 "bring its disk or folder back; a new file is begun"
             ) from error
-        self._in_memory.clear()
 
     def finish(
         self, dropped: Mapping[str, int], unwritten: Mapping[str, int] | None = None
     ) -> Path:
         """Write the losses (with the drops of a queue by key, and those for which the disk was to
-        blame) and give the file its name."""
+        blame), bring everything to the disk, and give the file its name."""
+        self._require_part()
         losses = self._losses.losses(dropped, unwritten)
         self._writer.add_metadata(LOSSES_RECORD, format_losses(losses))
         return self._writer.close()

@@ -16,8 +16,6 @@ MESSAGE_ENCODING = "msgpack"
 APART_ENCODING = "x-undecodable"
 """The message encoding of a channel that holds what could not be read on its key."""
 CHUNK_BYTES = 1024 * 1024
-UNBOUNDED_CHUNK = 1 << 40
-"""The writer's own bound on chunks, which are ended here, after their messages' checksums."""
 MOST_CHANNELS = 0xFFFF
 LATEST_NS = (1 << 64) - 1
 SEQUENCE_MASK = 0xFFFFFFFF
