@@ -112,7 +112,7 @@ def retrack(task: Retracking) -> Retracked:
             raise RecordingError(index.note)
         tracked = _Tracked(task, index)
         with written_or_gone(task.output) as writer:
-            for message in read_recording(task.path):
+            for message in read_recording(task.path, apart=True):
                 copy_message(writer, message)
                 for pose in tracked.poses_of(message):
                     key = POSE.key(parse_key(message.key).site, pose.object)
@@ -138,7 +138,7 @@ class _Tracked:
 
     def poses_of(self, message: RecordedMessage) -> Iterable[ObjectPose]:
         """Track what a message brings: poses with the names that the new tracks have."""
-        if message.name != self.camera:
+        if message.apart or message.name != self.camera:
             return ()
         try:
             if message.topic is INFO:

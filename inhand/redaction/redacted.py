@@ -37,10 +37,12 @@ is left out, as nobody said yet what it shows."""
 
 @dataclass(frozen=True)
 class Redaction:
-    """What was written, and by name what became of frames and previews."""
+    """What was written, by name what became of frames and previews, and how many messages were left
+    out, as nobody can read on their keys what they show."""
 
     written: Conversion
     counts: Mapping[str, int]
+    apart: int
 
 
 def redact_recording(
@@ -64,7 +66,7 @@ def redact_recording(
         written = convert_recording(
             recording, output, Selection(), on_message=lambda: on_step("writing", messages)
         )
-        return Redaction(written, dict(recording.counts))
+        return Redaction(written, dict(recording.counts), sum(recording.apart.values()))
 
 
 class RedactedRecording(Recording):
@@ -110,6 +112,12 @@ class RedactedRecording(Recording):
             redacted = self._redacted(message)
             if redacted is not None:
                 yield redacted
+
+    def messages_apart(
+        self, keys: Iterable[str], *, start_ns: int = 0, end_ns: int = LATEST_NS
+    ) -> Iterator[RecordedMessage]:
+        """Yield nothing: what could not be read may show anybody."""
+        return iter(())
 
     def metadata(self) -> dict[Path, dict[str, dict[str, str]]]:
         """Read the named records of each file, with one on what was hidden, which is complete when

@@ -34,7 +34,7 @@ CAMERA = CameraInfo(
 
 def recorded(path: Path, *, camera: str = "front", seed: int = 0, skeletons: bool = True) -> Path:
     """Somebody who waves before a wall of noise, with poses that a tracker published then; one
-    picture is damaged, and one was lost."""
+    picture is damaged, one was lost, and one message of skeletons could not be read."""
     random = np.random.default_rng(seed)
     depth = encode_depth(np.full((120, 160), 3000, np.uint16))
     with RecordingWriter(path) as writer:
@@ -68,6 +68,10 @@ def recorded(path: Path, *, camera: str = "front", seed: int = 0, skeletons: boo
                 write(RGBD, camera, RgbdFrame(**stamp, colour=colour, depth=depth))
             lost = {"object": "wedge", "camera": camera, "state": "lost", "confidence": 0.5}
             write(POSE, "wedge", ObjectPose(**stamp, **lost))
+            if number == 6:
+                writer.write_apart(
+                    SKELETONS.key(Site(), camera), b"\xc1", received_ns=stamp["time_ns"]
+                )
         writer.add_metadata(LOSSES_RECORD, format_losses(counter.losses()))
     return path
 
@@ -99,6 +103,8 @@ def test_new_poses_stand_beside_all_that_was_recorded(tmp_path: Path, model: Pat
     key = POSE.key(Site(), "wedge_retrack")
     kept = [(m.key, m.payload, m.received_ns, m.captured_ns) for m in after if m.key != key]
     assert kept == before
+    apart = [m for m in read_recording(output, apart=True) if m.apart]
+    assert [(m.name, m.payload) for m in apart] == [("front", b"\xc1")]
     new = [m for m in poses(output, "wedge_retrack") if isinstance(m, ObjectPose)]
     assert [(m.sequence, m.time_ns) for m in new] == [
         (10 + number, 10**18 + number * FRAME_NS) for number in range(FRAMES)

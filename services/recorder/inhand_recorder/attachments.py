@@ -14,7 +14,10 @@ from mcap.records import Attachment
 from inhand_recorder.records import attachment_is_sound, record_at
 from inhand_recorder.scanning import opened
 
-_MESH = re.compile(r"objects/(\w+)/mesh\.ply")
+_MESH_NAME = "objects/{}/mesh.ply"
+_MESH_TYPE = "model/ply"
+"""The name and the type of the attachment that holds an object's mesh."""
+_MESH = re.compile(re.escape(_MESH_NAME).replace(re.escape("{}"), r"(\w+)"))
 
 
 def read_attachments(path: Path) -> list[Attachment]:
@@ -43,6 +46,11 @@ def attach(writer: RecordingWriter, attachments: Iterable[Attachment]) -> None:
     """Attach to a recording what others have attached; raises RecordingError."""
     for one in attachments:
         writer.add_attachment(one.name, one.media_type, one.data, received_ns=one.log_time)
+
+
+def attach_mesh(writer: RecordingWriter, name: str, ply: bytes, received_ns: int) -> None:
+    """Attach an object's mesh, a PLY file in metres; raises RecordingError."""
+    writer.add_attachment(_MESH_NAME.format(name), _MESH_TYPE, ply, received_ns=received_ns)
 
 
 def meshes_in(attachments: list[Attachment]) -> dict[str, bytes]:

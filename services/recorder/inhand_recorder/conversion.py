@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
+from heapq import merge
 from pathlib import Path
 
 from inhand_runtime.recording import RecordedMessage, RecordingError, RecordingWriter
@@ -11,7 +12,7 @@ from inhand_runtime.recording.layout import LATEST_NS
 from inhand_recorder.attachments import attach
 from inhand_recorder.conversion_records import CONVERSION_RECORD, losses_by_source, records_of
 from inhand_recorder.losses import LossCounter
-from inhand_recorder.recording_reader import Recording
+from inhand_recorder.recording_reader import Recording, matches
 
 CONVERTING_SUFFIX = ".converting"
 
@@ -37,8 +38,8 @@ class ConvertedFile:
 
 @dataclass(frozen=True)
 class Conversion:
-    """The files that were written, and the numbers of damaged messages, by topic, and of those kept
-    apart as undecodable that none of them holds."""
+    """The files that were written, the numbers of damaged messages by topic, which none of them
+    holds, and how many they keep apart, as these could not be read on their keys."""
 
     files: tuple[ConvertedFile, ...]
     damaged: Mapping[str, int]
@@ -68,18 +69,20 @@ def convert_recording(
         for before in _kept_before(recording, keys, selection.start_ns):
             outputs.remember(before)
         recording.damaged.clear()
-        for message in recording.messages(
-            keys, start_ns=selection.start_ns, end_ns=selection.end_ns
-        ):
+        times = {"start_ns": selection.start_ns, "end_ns": selection.end_ns}
+        apart = recording.messages_apart(_chosen_apart(recording, selection), **times)
+        read = recording.messages(keys, **times)
+        for message in merge(read, apart, key=lambda one: one.received_ns):
             outputs.write(message)
-            on_message()
+            if not message.apart:
+                on_message()
         if not outputs.files:
             raise RecordingError("no message is left: choose a longer time, or other topics")
         outputs.finish()
     except BaseException:
         outputs.discard()
         raise
-    return Conversion(tuple(outputs.files), dict(recording.damaged), recording.apart)
+    return Conversion(tuple(outputs.files), dict(recording.damaged), outputs.apart)
 
 
 def chosen_keys(recording: Recording, selection: Selection) -> list[str]:
@@ -92,6 +95,16 @@ def chosen_keys(recording: Recording, selection: Selection) -> list[str]:
     return keys
 
 
+def _chosen_apart(recording: Recording, selection: Selection) -> list[str]:
+    """Return the keys that are selected of what is kept apart."""
+    return [
+        key
+        for key in recording.apart
+        if not any(matches(key, pattern) for pattern in selection.exclude)
+        and (not selection.include or any(matches(key, one) for one in selection.include))
+    ]
+
+
 class _Outputs:
     """Writes messages to one file, or to one after another."""
 
@@ -99,6 +112,7 @@ class _Outputs:
         self, recording: Recording, output: Path, selection: Selection, split_seconds: float
     ) -> None:
         self.files: list[ConvertedFile] = []
+        self.apart = 0
         self._sources, self._attachments = recording.metadata(), recording.attachments()
         self._output, self._selection = output, selection
         self._split_ns = round(1e9 * split_seconds)
@@ -106,6 +120,7 @@ class _Outputs:
         self._kept: dict[str, RecordedMessage] = {}
         self._writer: RecordingWriter | None = None
         self._written: list[Path] = []
+        self._start_ns = self._end_ns = 0
         self._begin()
 
     def remember(self, message: RecordedMessage) -> None:
@@ -117,9 +132,13 @@ class _Outputs:
         if self._writer is not None and self._is_over(message.received_ns):
             self.finish()
         writer = self._writer or self._open(message)
+        copy_message(writer, message)
+        if message.apart:
+            self.apart += 1
+            self._end_ns = max(self._end_ns, message.received_ns)
+            return
         if message.topic.delivery.kept:
             self.remember(message)
-        copy_message(writer, message)
         self._count(message, message.received_ns)
 
     def discard(self) -> None:
@@ -133,7 +152,6 @@ class _Outputs:
 
     def _begin(self) -> None:
         self._counter, self._messages = LossCounter(), 0
-        self._start_ns = self._end_ns = 0
 
     def _is_over(self, received_ns: int) -> bool:
         return 0 < self._split_ns <= received_ns - self._start_ns
