@@ -40,6 +40,8 @@ from inhand_tracker.people.following import PeopleWatched
 from inhand_tracker.people.watching import Watcher
 from inhand_tracker.settings import TrackerSettings
 
+from inhand.resumed_work import digest_of_recording
+
 RECORD = "retrack"
 """The metadata record that says what tracked a recording again."""
 
@@ -235,8 +237,8 @@ def _first_info(infos: IndexedMessages, task: Retracking, camera: str) -> Camera
 
 
 def _about(task: Retracking) -> dict[str, str]:
-    size = str(task.path.stat().st_size)
-    return {"source": task.path.name, "source_bytes": size, "mark": task.mark}
+    digest = digest_of_recording(task.path)
+    return {"source": task.path.name, "source_digest": digest, "mark": task.mark}
 
 
 def _note(writer: RecordingWriter, task: Retracking, tracked: _Tracked) -> None:

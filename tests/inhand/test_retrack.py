@@ -32,7 +32,14 @@ CAMERA = CameraInfo(
 )
 
 
-def recorded(path: Path, *, camera: str = "front", seed: int = 0, skeletons: bool = True) -> Path:
+def recorded(
+    path: Path,
+    *,
+    camera: str = "front",
+    seed: int = 0,
+    skeletons: bool = True,
+    person: int = 7,
+) -> Path:
     """Somebody who waves before a wall of noise, with poses that a tracker published then; one
     picture is damaged, one was lost, and one message of skeletons could not be read."""
     random = np.random.default_rng(seed)
@@ -53,14 +60,14 @@ def recorded(path: Path, *, camera: str = "front", seed: int = 0, skeletons: boo
         write(INFO, camera, CAMERA)
         for number, joints in enumerate(unseen_wave(FRAMES) + 0.01 * seed):
             stamp = {"sequence": 10 + number, "time_ns": 10**18 + number * FRAME_NS}
-            person = Person(
-                id=7,
+            waving = Person(
+                id=person,
                 joints=tuple(map(tuple, joints.tolist())),
                 states=("tracked",) * 20,
                 confidences=(1.0,) * 20,
             )
             if skeletons:
-                write(SKELETONS, camera, Skeletons(**stamp, people=(person,)))
+                write(SKELETONS, camera, Skeletons(**stamp, people=(waving,)))
             colour = encode_colour(random.integers(0, 255, (120, 160, 3), np.uint8))
             if number == 3:
                 colour = ColourImage("jpeg", 160, 120, b"no picture")
@@ -160,6 +167,11 @@ def test_a_result_of_something_else_is_not_taken_for_done(
     path, folder = recorded(tmp_path / "walk.mcap"), tmp_path / "again"
     assert retrack(model, path, folder=folder) == 0
     assert retrack(model, path, folder=folder, more=("--tracker", "other")) == 1
+    assert "is of another recording, model, setting or release" in capsys.readouterr().err
+    (tmp_path / "other").mkdir()
+    other = recorded(tmp_path / "other" / "walk.mcap", person=8)
+    assert other.stat().st_size == path.stat().st_size
+    assert retrack(model, other, folder=folder) == 1
     assert "is of another recording, model, setting or release" in capsys.readouterr().err
     again = tmp_path / "twice"
     assert retrack(model, folder / "walk.mcap", folder=again, more=("--tracker", "other")) == 0
