@@ -153,7 +153,8 @@ def test_nothing_stays_of_a_conversion_that_fails_and_no_file_is_changed(tmp_pat
         convert([path], tmp_path / "part.mcap", split=0.4)
 
     def interrupt() -> None:
-        if len(list(tmp_path.glob("other_*"))) > 1:
+        if len(list(tmp_path.rglob("other_*"))) > 1:
+            assert list(tmp_path.glob("other_*")) == []  # none looks finished before all are
             raise KeyboardInterrupt
 
     other = tmp_path / "other.mcap"

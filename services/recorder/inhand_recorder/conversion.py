@@ -1,5 +1,6 @@
 """Recordings made of recordings: merged, cut, filtered and split."""
 
+import shutil
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from heapq import merge
@@ -57,9 +58,10 @@ def convert_recording(
     """Write what is selected of an open recording, which may be of many files, to a new file.
 
     With ``split_seconds`` it is several files, ``NAME_000.mcap`` and so on, each of as many seconds
-    at the most. Each begins with the last message of each kept stream. ``on_message`` is called for
-    each message. Raises RecordingError, also where two files hold different messages of one key at
-    one time, and then leaves no file; an existing file is never changed.
+    at the most, which get their names when all are whole. Each begins with the last message of each
+    kept stream. ``on_message`` is called for each message. Raises RecordingError, also where two
+    files hold different messages of one key at one time, and then leaves no file; an existing file
+    is never changed.
     """
     keys = chosen_keys(recording, selection)
     _refuse_clashes(recording, keys)
@@ -78,7 +80,7 @@ def convert_recording(
                 on_message()
         if not outputs.files:
             raise RecordingError("no message is left: choose a longer time, or other topics")
-        outputs.finish()
+        outputs.publish()
     except BaseException:
         outputs.discard()
         raise
@@ -115,6 +117,7 @@ class _Outputs:
         self.apart = 0
         self._sources, self._attachments = recording.metadata(), recording.attachments()
         self._output, self._selection = output, selection
+        self._split_folder = output.with_name(output.name + CONVERTING_SUFFIX)
         self._split_ns = round(1e9 * split_seconds)
         self._whole = not split_seconds and selection == Selection()
         self._kept: dict[str, RecordedMessage] = {}
@@ -149,6 +152,25 @@ class _Outputs:
             unfinished.with_name(unfinished.name + CONVERTING_SUFFIX).unlink(missing_ok=True)
         for path in self._written:
             path.unlink(missing_ok=True)
+        if self._split_ns and self._split_folder.exists():
+            shutil.rmtree(self._split_folder)
+
+    def publish(self) -> None:
+        """Finish the file under way, and give those of a split their names; raises
+        RecordingError."""
+        self.finish()
+        if not self._split_ns:
+            return
+        try:
+            for number, path in enumerate(self._written):
+                self._written[number] = path.rename(self._output.with_name(path.name))
+            self._split_folder.rmdir()
+        except OSError as error:
+            raise RecordingError(f"cannot name {self._output}: {error.strerror}") from error
+        self.files = [
+            ConvertedFile(path, one.messages)
+            for path, one in zip(self._written, self.files, strict=True)
+        ]
 
     def _begin(self) -> None:
         self._counter, self._messages = LossCounter(), 0
@@ -157,7 +179,7 @@ class _Outputs:
         return 0 < self._split_ns <= received_ns - self._start_ns
 
     def _open(self, first: RecordedMessage) -> RecordingWriter:
-        path = _numbered(self._output, len(self.files)) if self._split_ns else self._output
+        path = self._next_path()
         path.with_name(path.name + CONVERTING_SUFFIX).unlink(missing_ok=True)
         self._begin()
         self._writer = RecordingWriter(path, part_suffix=CONVERTING_SUFFIX)
@@ -174,6 +196,21 @@ class _Outputs:
                 )
                 self._count(kept, first.received_ns)
         return self._writer
+
+    def _next_path(self) -> Path:
+        """Return where the next file goes; raises RecordingError where no folder can be made."""
+        if not self._split_ns:
+            return self._output
+        if not self.files:
+            if self._split_folder.is_dir():
+                shutil.rmtree(self._split_folder)
+            try:
+                self._split_folder.mkdir()
+            except OSError as error:
+                raise RecordingError(
+                    f"cannot make {self._split_folder}: {error.strerror}"
+                ) from error
+        return self._split_folder / _numbered(self._output, len(self.files)).name
 
     def _count(self, message: RecordedMessage, received_ns: int) -> None:
         self._counter.count(message.key, message.sequence)
