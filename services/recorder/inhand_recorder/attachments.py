@@ -9,9 +9,10 @@ from inhand_runtime.recording.opening import opening
 from inhand_runtime.recording.reading import explaining_damage
 from inhand_runtime.recording.writing import RecordingWriter
 from mcap.reader import SeekingReader
-from mcap.records import Attachment
+from mcap.records import Attachment, Header, Metadata
+from mcap.writer import MCAP0_MAGIC
 
-from inhand_recorder.records import attachment_is_sound, record_at
+from inhand_recorder.records import attachment_is_sound, length_at, record_at
 from inhand_recorder.scanning import opened
 
 _MESH_NAME = "objects/{}/mesh.ply"
@@ -35,6 +36,19 @@ def read_attachments(path: Path) -> list[Attachment]:
         offsets = [one.offset for one in summary.attachment_indexes]
         found = [record_at(data, offset) for offset in offsets if attachment_is_sound(data, offset)]
     return [one for one in found if isinstance(one, Attachment)]
+
+
+def first_attachments(path: Path) -> list[Attachment]:
+    """Read what is attached at the begin of a recording in any state, as a recorder attaches
+    meshes, without what a checksum contradicts; raises RecordingError."""
+    found = []
+    with opened(path) as data:
+        offset = len(MCAP0_MAGIC)
+        while isinstance(record := record_at(data, offset), Header | Metadata | Attachment):
+            if isinstance(record, Attachment) and attachment_is_sound(data, offset):
+                found.append(record)
+            offset += length_at(data, offset)
+    return found
 
 
 def copy_attachments(writer: RecordingWriter, path: Path) -> None:

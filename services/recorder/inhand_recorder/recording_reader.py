@@ -20,7 +20,7 @@ from inhand_schemas.messages import CameraInfo
 from inhand_schemas.topics import INFO, RGBD, AnyTopic
 from mcap.records import Attachment
 
-from inhand_recorder.attachments import read_attachments
+from inhand_recorder.attachments import first_attachments, read_attachments
 from inhand_recorder.recorded import Recorded, decoded
 from inhand_recorder.recording_files import RecordingFiles
 from inhand_recorder.recording_series import Places, Series
@@ -136,10 +136,12 @@ class Recording:
         }
 
     def attachments(self) -> list[Attachment]:
-        """Read what is attached to the files that are whole, the same once."""
+        """Read what is attached to the files, the same once; of those that are not whole what
+        stands at their begin, as meshes do."""
         found: dict[tuple[str, bytes], Attachment] = {}
         for one in self._files.summaries:
-            for attached in read_attachments(one.path) if one.whole else ():
+            read = read_attachments if one.whole else first_attachments
+            for attached in read(one.path):
                 found.setdefault((attached.name, attached.data), attached)
         return list(found.values())
 
