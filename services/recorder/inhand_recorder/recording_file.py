@@ -8,12 +8,9 @@ from pathlib import Path
 from inhand_runtime.recording import RecordingError, RecordingWriter
 from inhand_runtime.recording.part_file import PART_SUFFIX, no_room
 
+from inhand_recorder.attachments import attach_mesh
 from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
-
-MESH_PLACE = "objects/{}/mesh.ply"
-MESH_TYPE = "model/ply"
-"""The name and the type of the attachment that holds an object's mesh."""
 
 
 @dataclass(frozen=True)
@@ -126,9 +123,7 @@ class RecordingFile:
         """Write what each file of a recorder begins with."""
         self.note_all(handling.records())
         for name, data in handling.meshes().items():
-            self._writer.add_attachment(
-                MESH_PLACE.format(name), MESH_TYPE, data, received_ns=now_ns
-            )
+            attach_mesh(self._writer, name, data, now_ns)
 
     def repeat(self, entry: Entry, received_ns: int) -> None:
         """Add an entry of before this file, as if it were received with the file's first one."""

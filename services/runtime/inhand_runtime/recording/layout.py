@@ -43,7 +43,8 @@ class RecordingError(InhandError):
 class RecordedMessage:
     """One message of a recording; times are nanoseconds since the epoch.
 
-    ``sequence`` is the message's own, its lowest 32 bits.
+    ``sequence`` is the message's own, its lowest 32 bits. One that is ``apart`` could not be read
+    on its key when it was recorded: it is there to be kept, and ``message`` raises.
     """
 
     key: str
@@ -53,6 +54,7 @@ class RecordedMessage:
     received_ns: int
     captured_ns: int
     sequence: int
+    apart: bool = False
 
     def message(self) -> Message:
         """The payload decoded; raises MessageError."""
