@@ -14,6 +14,7 @@ from inhand_recorder.recording_files import find_files
 from inhand_recorder.recording_reader import Recording
 from inhand_recorder.redaction import REDACTION_RECORD
 from inhand_runtime.recording import RecordedMessage, RecordingError
+from inhand_runtime.recording.copying import as_jpeg
 from inhand_runtime.recording.layout import LATEST_NS
 from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import parse_key
@@ -140,7 +141,9 @@ class RedactedRecording(Recording):
         return None
 
     def _frame(self, message: RecordedMessage) -> RecordedMessage:
-        frame: RgbdFrame = RGBD.decode(message.payload)
+        # What is coded upon a picture that shows more would be unreadable here, or show it.
+        message = as_jpeg(message)
+        frame = message.frame()
         hidden = self._hiding[message.key].hidden_in(frame)
         redacted = hide_in_frame(frame, hidden)
         self._note("frames")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from inhand_runtime.recording import RecordedMessage, RecordingError, RecordingWriter
-from inhand_runtime.recording.copying import copy_message
+from inhand_runtime.recording.copying import StandingAlone, copy_message
 from inhand_runtime.recording.layout import LATEST_NS
 
 from inhand_recorder.attachments import attach
@@ -119,7 +119,7 @@ class _Outputs:
         writer = self._writer or self._open(message)
         if message.topic.delivery.kept:
             self.remember(message)
-        copy_message(writer, message)
+        copy_message(writer, self._standing.standing(message))
         self._count(message, message.received_ns)
 
     def discard(self) -> None:
@@ -134,6 +134,7 @@ class _Outputs:
     def _begin(self) -> None:
         self._counter, self._messages = LossCounter(), 0
         self._start_ns = self._end_ns = 0
+        self._standing = StandingAlone()
 
     def _is_over(self, received_ns: int) -> bool:
         return 0 < self._split_ns <= received_ns - self._start_ns

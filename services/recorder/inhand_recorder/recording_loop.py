@@ -2,6 +2,7 @@
 
 import contextlib
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from msgspec.structs import replace
 
 from inhand_recorder.announcing import Announcer
 from inhand_recorder.clock import ClockWatch
+from inhand_recorder.colour_coding import ColourCoding
 from inhand_recorder.commands import CommandDesk
 from inhand_recorder.drop_causes import DropCauses
 from inhand_recorder.event_clips import EventClips
@@ -35,6 +37,8 @@ SYNC_PERIOD_S = 0.75
 """A power cut loses this much and what a sync takes itself: a second at the most."""
 TIDY_PERIOD_S = 5.0
 IDLE_S = 0.1
+CODING_S = 0.005
+"""How long what arrives is waited for while colour is coded."""
 FIRST_RETRY_S, LAST_RETRY_S = 1.0, 5.0
 MOST_KEYS = 10_000
 """Number of keys that are recorded; a file holds 65,535 channels, and a site has some dozens."""
@@ -44,7 +48,7 @@ REFUSED_KEYS_LAST_S = 5.0
 @dataclass(frozen=True)
 class RecorderParts:
     """What a recorder works with: where it writes, who asks it, what is kept, what it announces,
-    where files come from, and clips, where any are wanted."""
+    where files come from, clips, where any are wanted, and what codes colour, where that is."""
 
     journal: Journal
     desk: CommandDesk
@@ -52,6 +56,7 @@ class RecorderParts:
     announcer: Announcer
     provenance: Provenance
     clips: EventClips | None = None
+    colour: ColourCoding | None = None
 
 
 class RecordingLoop:
@@ -62,6 +67,7 @@ class RecordingLoop:
         self._parts = parts
         self._journal = parts.journal
         self._clips = parts.clips
+        self._colour = parts.colour
         self._gaps = GapReporter(daemon.health.error)
         self._keys: set[str] = set()
         self._clock = ClockWatch()
@@ -126,9 +132,12 @@ class RecordingLoop:
         next_sync = time.monotonic() + SYNC_PERIOD_S
         while not self._daemon.stop.is_set():
             self._parts.desk.serve(self._do)
-            sample = self._daemon.receive(IDLE_S)
+            coding = self._colour is not None and self._colour.under_way
+            sample = self._daemon.receive(CODING_S if coding else IDLE_S)
             if sample is not None:
                 self._write(sample)
+            if self._colour is not None:
+                self._write_coded(self._colour.ready())
             if self._clips is not None:
                 self._clips.clips.step(time.monotonic(), all_came=sample is None)
             if time.monotonic() >= next_hand_over:
@@ -175,6 +184,8 @@ class RecordingLoop:
         finished: Path | None = None
         problem: str | None = None
         try:
+            if verb in (PAUSE.verb, SPLIT.verb) and self._colour is not None:
+                self._write_coded(self._colour.all())
             if verb == PAUSE.verb:
                 finished = self._journal.pause(time.time_ns())
             elif verb == RESUME.verb:
@@ -220,6 +231,8 @@ class RecordingLoop:
                 ring_bytes=clips.ring.bytes,
                 clip=clips.under_way,
             )
+        if self._colour is not None:
+            state = replace(state, colour=dict(self._colour.counts))
         retention = self._parts.retention
         state = replace(
             state,
@@ -245,6 +258,8 @@ class RecordingLoop:
     def _write_all(self) -> None:
         while (sample := self._daemon.inbox.get(0)) is not None:
             self._write(sample)
+        if self._colour is not None:
+            self._write_coded(self._colour.all())
         self._journal.close()
         if self._clips is not None:
             self._clips.clips.close(time.monotonic())
@@ -283,7 +298,14 @@ class RecordingLoop:
     def _keep(self, sample: Received, entry: Entry) -> None:
         if self._clips is not None:
             self._clips.take(sample, entry)
-        self._journal.write(entry)
+        if self._colour is None or self._journal.paused:
+            self._journal.write(entry)
+        else:
+            self._write_coded(self._colour.take(entry))
+
+    def _write_coded(self, entries: Iterable[Entry]) -> None:
+        for entry in entries:
+            self._journal.write(entry)
 
     def _refuse_key(self, key: str) -> None:
         self._daemon.health.refused(key)
@@ -296,6 +318,8 @@ class RecordingLoop:
 
     def _count_what_is_left(self) -> None:
         left = self._journal.waiting
+        if self._colour is not None:
+            left += self._colour.waiting
         while (sample := self._daemon.inbox.get(0)) is not None:
             left[sample.key] += 1
         for key, messages in left.items():

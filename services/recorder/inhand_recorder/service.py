@@ -1,6 +1,7 @@
 """The recorder's daemon: what it is made of, and what it subscribes to."""
 
 import time
+from dataclasses import replace
 from functools import lru_cache
 
 from inhand_runtime.daemon import Daemon, running_daemon
@@ -8,6 +9,7 @@ from inhand_runtime.settings import Settings
 from inhand_schemas.topics import EVENT, RGBD, TOPICS
 
 from inhand_recorder.announcing import Announcer
+from inhand_recorder.colour_coding import ColourCoding
 from inhand_recorder.commands import CommandDesk
 from inhand_recorder.event_clips import event_clips
 from inhand_recorder.journal import Journal
@@ -43,8 +45,9 @@ def _parts(daemon: Daemon, settings: Settings[RecorderSettings]) -> RecorderPart
     provenance = Provenance(settings)
     announcer = Announcer(daemon.publisher(EVENT, daemon.instance).put)
     retention = Retention(chosen.folder, chosen.quotas, announcer.deleted)
+    colour = ColourCoding(daemon.health, time.monotonic) if chosen.colour == "h264" else None
     files = FileHandling(
-        records=provenance.records,
+        records=lambda: {**provenance.records(), **(colour.records() if colour else {})},
         meshes=provenance.meshes,
         make_room=retention.make_room,
         unwritten=daemon.health.unwritten_counts,
@@ -62,7 +65,8 @@ def _parts(daemon: Daemon, settings: Settings[RecorderSettings]) -> RecorderPart
         retention,
         announcer,
         provenance,
-        event_clips(daemon, settings, files),
+        event_clips(daemon, settings, replace(files, records=provenance.records)),
+        colour,
     )
 
 

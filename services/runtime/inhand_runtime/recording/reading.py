@@ -10,7 +10,7 @@ from typing import IO, TypeVar
 
 from inhand_schemas.errors import KeyFormatError, UnknownVersionError
 from inhand_schemas.keys import ParsedKey
-from inhand_schemas.topics import AnyTopic, topic_of
+from inhand_schemas.topics import RGBD, AnyTopic, topic_of
 from mcap.reader import SeekingReader
 from mcap.records import Channel
 from mcap.records import Message as MessageRecord
@@ -18,6 +18,7 @@ from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
+from inhand_runtime.recording.coded_colour import LONGEST_CHAIN_NS, ColourChains
 from inhand_runtime.recording.layout import (
     DAMAGE,
     MESSAGE_ENCODING,
@@ -42,7 +43,7 @@ def read_recording(
 
     ``streams`` chooses; keys that are not Inhand's are passed over. In files of ours most of what
     stands before the first message that was captured at or after ``captured_from_ns`` is not read,
-    and so not yielded; nothing after it is left out. Raises RecordingError for a file that is
+    and so not yielded; nothing after it is left out, nor what colour after it builds on. Raises RecordingError for a file that is
     missing, foreign, cut off or damaged, and UnknownVersionError.
     """
     with _open(path) as (file, reader):
@@ -50,15 +51,26 @@ def read_recording(
         chosen = choose_channels(summary.channels.values(), streams)
         if captured_from_ns is not None and _is_ours(path, reader) and summary.chunk_indexes:
             with explaining_damage(path):
-                chunks = CaptureTimes(file, summary, chosen).chunks_from(captured_from_ns)
-            if not chunks:
-                return
+                times = CaptureTimes(file, summary, chosen)
+                if not (chunks := times.chunks_from(captured_from_ns)):
+                    return
+                if any(topic is RGBD for topic, _ in chosen.values()):
+                    chunks = times.chunks_from(captured_from_ns - LONGEST_CHAIN_NS)
             # The reader keeps this summary, and reads the chunks that it names.
             summary.chunk_indexes = chunks
+        chains = ColourChains()
         for key, message in _records(path, reader, chosen):
             topic, parsed = chosen[key]
             times = message.log_time, message.publish_time
-            yield RecordedMessage(key, topic, parsed.name, message.data, *times, message.sequence)
+            yield RecordedMessage(
+                key,
+                topic,
+                parsed.name,
+                message.data,
+                *times,
+                message.sequence,
+                chains.next_picture(key, message.data) if topic is RGBD else None,
+            )
 
 
 def read_metadata(path: Path) -> dict[str, dict[str, str]]:
