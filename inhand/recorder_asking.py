@@ -11,6 +11,7 @@ from inhand_runtime.exit_codes import DONE, FAILED
 from inhand_runtime.roll import short_key
 from inhand_runtime.settings import RigFile, load_rig_file
 from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.wording import counted
 from inhand_runtime.writable import require_writable_file
 from inhand_schemas.procedures import RecorderReply, RecorderRequest
 
@@ -94,4 +95,8 @@ def _text(reply: RecorderReply) -> str:
         text += f"; holds {state.ring_seconds:.1f} s, {state.ring_bytes / 1e6:.1f} MB"
     if state.clip is not None:
         text += f"; makes the clip {state.clip}"
+    if state.colour:
+        kept = {fate: count for fate, count in state.colour.items() if fate != "coded"}
+        text += f"; colour as H.264 of {counted(state.colour.get('coded', 0), 'frame')}"
+        text += "".join(f", as it came of {count:,} ({fate})" for fate, count in kept.items())
     return text if reply.finished is None else f"{text}; {reply.finished} is whole"

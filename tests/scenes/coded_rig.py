@@ -3,11 +3,15 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+import msgspec
 import numpy as np
 from inhand_recorder.colour_coding import ColourCoding
+from inhand_recorder.colour_encoder import ColourEncoder
 from inhand_recorder.journal import Journal
 from inhand_recorder.recording_file import Entry, FileHandling, Limits
 from inhand_runtime.pixels import encode_colour, encode_depth
+from inhand_runtime.recording import RecordingWriter, read_metadata, read_recording
+from inhand_runtime.recording.copying import copy_message, write_beside
 from inhand_schemas.messages import ColourImage, RgbdFrame
 from inhand_schemas.topics import INFO, RGBD
 from numpy.typing import NDArray
@@ -95,3 +99,20 @@ def record(folder: Path, frames: int, first: int = 0) -> Path:
     return rig.split()
 
 
+def recoded(source: Path, output: Path) -> Path:
+    """Copy a recording with its colour as H.264, as if it had been recorded so."""
+    encoders: dict[str, ColourEncoder] = {}
+    with RecordingWriter(output) as writer:
+        for one in read_recording(source):
+            if one.topic is not RGBD:
+                copy_message(writer, one)
+                continue
+            message = one.frame()
+            if message.colour is not None:
+                encoder = encoders.setdefault(one.key, ColourEncoder())
+                colour = encoder.encode(message.colour, message.time_ns)
+                message = msgspec.structs.replace(message, colour=colour)
+            write_beside(writer, one.key, one, RGBD.encode(message))
+        for name, values in read_metadata(source).items():
+            writer.add_metadata(name, values)
+    return output

@@ -10,7 +10,6 @@ from inhand_runtime.recording.coded_colour import LONGEST_CHAIN, LONGEST_CHAIN_N
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import ColourImage
 
-
 _ANY, _BEGINNING = 0, 1
 """FFmpeg's numbers of kinds of pictures: as the encoder likes, or one that builds on none."""
 

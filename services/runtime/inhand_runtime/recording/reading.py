@@ -43,8 +43,8 @@ def read_recording(
 
     ``streams`` chooses; keys that are not Inhand's are passed over. In files of ours most of what
     stands before the first message that was captured at or after ``captured_from_ns`` is not read,
-    and so not yielded; nothing after it is left out, nor what colour after it builds on. Raises RecordingError for a file that is
-    missing, foreign, cut off or damaged, and UnknownVersionError.
+    and so not yielded; nothing after it is left out, nor what colour after it builds on. Raises
+    RecordingError for a file that is missing, foreign, cut off or damaged, and UnknownVersionError.
     """
     with _open(path) as (file, reader):
         summary = _summary(path, reader)
