@@ -9,7 +9,7 @@ import av
 import numpy as np
 import pytest
 import simplejpeg
-from coded_rig import KEY, CodedRig, entry, frame, picture, record
+from coded_rig import KEY, CodedRig, Heard, entry, frame, picture, record
 from inhand_recorder import colour_coding
 from inhand_recorder.colour_coding import COLOUR_RECORD, MOST_CODERS, MOST_WAITING, ColourCoding
 from inhand_recorder.colour_encoder import ColourEncoder
@@ -167,7 +167,7 @@ def test_frames_without_colour_and_other_messages_pass(tmp_path: Path) -> None:
 
 def test_what_comes_faster_than_it_is_coded_is_recorded_as_it_came(tmp_path: Path) -> None:
     rig = CodedRig(tmp_path)
-    large = [frame(n, encode_colour(picture(n, 1280, 960))) for n in range(5 * MOST_WAITING)]
+    large = [frame(n, encode_colour(picture(n, 640, 480))) for n in range(5 * MOST_WAITING)]
     rig.record(large, in_turn=False)
     path = rig.split()
     recorded = frames_of(path)
@@ -177,14 +177,14 @@ def test_what_comes_faster_than_it_is_coded_is_recorded_as_it_came(tmp_path: Pat
     assert counts["coded"] > 0
     assert codecs(path).count("h264") == counts["coded"]
     assert counts["coded"] + counts["late"] + counts.get("baseless", 0) == len(large)
-    assert all(one.frame().colour.width == 1280 for one in recorded)
+    assert all(one.frame().colour.width == 640 for one in recorded)
     assert verify_recording(path) == []
     assert any("takes longer than it comes" in text for text in rig.heard.texts)
 
 
 def test_a_frame_waits_no_longer_than_a_crash_may_cost(tmp_path: Path) -> None:
     rig = CodedRig(tmp_path)
-    huge = frame(0, encode_colour(picture(0, 4000, 3000)))
+    huge = frame(0, encode_colour(picture(0, 1920, 1440)))
     rig.write(rig.coding.take(entry(huge)))
     rig.write(rig.coding.ready())
     assert rig.coding.under_way
@@ -232,7 +232,7 @@ def test_a_paused_time_between_frames_costs_no_picture(tmp_path: Path) -> None:
     assert min(errors_db(rig.split())) > 33.0
 
 
-def test_nothing_waits_where_colour_is_not_coded(tmp_path: Path) -> None:
-    coding = ColourCoding(CodedRig(tmp_path).heard, time.monotonic)
+def test_nothing_waits_before_anything_came() -> None:
+    coding = ColourCoding(Heard(), time.monotonic)
     assert not coding.under_way
     assert list(coding.all()) == list(coding.ready()) == []

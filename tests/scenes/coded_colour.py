@@ -24,7 +24,7 @@ from inhand_schemas.messages import CameraInfo, RgbdFrame
 from inhand_schemas.topics import INFO, RGBD
 from numpy.typing import NDArray
 from real_data import DATA
-from running_recorder import numbers, recordings, start_recorder
+from running_recorder import RGBD_KEY, numbers, recordings, start_recorder
 from running_rig import RunningRig, eventually
 from wire import Wire
 
@@ -128,6 +128,7 @@ def record(colour: str, frames: Sequence[RgbdFrame], seconds: float) -> None:
                 passed, after = time.monotonic() - begin, process.cpu_times()
                 cores = (after.user + after.system - cpu.user - cpu.system) / passed
                 counts = rig.health("disk")["recording"]["colour"]
+                never_came = rig.counted("disk", RGBD_KEY, "lost")
                 rss = process.memory_info().rss / 2**20
                 time.sleep(0.5)
             assert recorder.stop() == 0
@@ -135,7 +136,8 @@ def record(colour: str, frames: Sequence[RgbdFrame], seconds: float) -> None:
             size_kb, lost = path.stat().st_size / sent / 1e3, sent - len(numbers([path]))
             print(
                 f"recorded as {colour}: {cores:.3f} cores, {rss:.0f} MiB, {size_kb:.1f} kB a frame "
-                f"with depth, {sent} frames sent, {lost} lost; {counts}",
+                f"with depth, {sent} frames sent, {lost} not recorded, of which {never_came} never "
+                f"came; {counts}",
                 flush=True,
             )
             print_seeks(path)

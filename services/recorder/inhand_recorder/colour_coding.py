@@ -6,6 +6,7 @@ A frame whose colour is not coded in time, or cannot be, is recorded as it came.
 import threading
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from queue import SimpleQueue
 from typing import Literal, Protocol
@@ -17,7 +18,7 @@ from inhand_schemas.messages import ColourImage, RgbdFrame
 from inhand_schemas.topics import RGBD
 from msgspec import structs
 
-from inhand_recorder.colour_encoder import QUALITY, ColourEncoder
+from inhand_recorder.colour_encoder import QUALITY, ColourEncoder, load_pyav
 from inhand_recorder.recording_file import CodedEntry, Entry
 
 COLOUR_RECORD = "colour"
@@ -104,6 +105,8 @@ class _Coder:
                     encoder.begin_anew()
                 if not waiting.given_up:
                     waiting.coded = self._coded(encoder, waiting.entry)
+                if waiting.given_up:
+                    encoder.begin_anew()
             except ModuleNotFoundError:
                 waiting.problem = 'PyAV is not installed: pip install "inhand[h264]"'
             except (MessageError, ValueError, MemoryError) as error:
@@ -126,6 +129,8 @@ class ColourCoding:
 
     def __init__(self, troubles: Troubles, clock: Callable[[], float]) -> None:
         self._troubles, self._clock = troubles, clock
+        with suppress(ModuleNotFoundError):  # then each frame's problem says so
+            load_pyav()
         self._coders: dict[str, _Coder] = {}
 
     @property

@@ -26,12 +26,17 @@ class ColourQuality:
 QUALITY = ColourQuality()
 
 
+def load_pyav() -> Any:
+    """Load PyAV; raises ModuleNotFoundError where it is not installed."""
+    return importlib.import_module("av")
+
+
 class ColourEncoder:
     """Codes the pictures of one camera, each upon the one before; raises ModuleNotFoundError where
     PyAV is not installed."""
 
     def __init__(self) -> None:
-        self._av: Any = importlib.import_module("av")
+        self._av: Any = load_pyav()
         self._codec: Any = None
         self._shape: tuple[int, int] | None = None
         self._number = 0

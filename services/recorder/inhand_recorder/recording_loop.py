@@ -5,6 +5,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon
@@ -19,7 +20,6 @@ from msgspec.structs import replace
 
 from inhand_recorder.announcing import Announcer
 from inhand_recorder.clock import ClockWatch
-from inhand_recorder.colour_coding import ColourCoding
 from inhand_recorder.commands import CommandDesk
 from inhand_recorder.drop_causes import DropCauses
 from inhand_recorder.event_clips import EventClips
@@ -29,6 +29,9 @@ from inhand_recorder.provenance import Provenance
 from inhand_recorder.recording_file import Entry
 from inhand_recorder.retention import Retention
 from inhand_recorder.stamps import entry_apart, entry_of
+
+if TYPE_CHECKING:
+    from inhand_recorder.colour_coding import ColourCoding
 
 HAND_OVER_PERIOD_S = 0.1
 """A crash of this process loses this much, and what came meanwhile: a quarter of a second at the
@@ -56,7 +59,7 @@ class RecorderParts:
     announcer: Announcer
     provenance: Provenance
     clips: EventClips | None = None
-    colour: ColourCoding | None = None
+    colour: "ColourCoding | None" = None
 
 
 class RecordingLoop:

@@ -9,7 +9,6 @@ from inhand_runtime.settings import Settings
 from inhand_schemas.topics import EVENT, RGBD, TOPICS
 
 from inhand_recorder.announcing import Announcer
-from inhand_recorder.colour_coding import ColourCoding
 from inhand_recorder.commands import CommandDesk
 from inhand_recorder.event_clips import event_clips
 from inhand_recorder.journal import Journal
@@ -45,7 +44,12 @@ def _parts(daemon: Daemon, settings: Settings[RecorderSettings]) -> RecorderPart
     provenance = Provenance(settings)
     announcer = Announcer(daemon.publisher(EVENT, daemon.instance).put)
     retention = Retention(chosen.folder, chosen.quotas, announcer.deleted)
-    colour = ColourCoding(daemon.health, time.monotonic) if chosen.colour == "h264" else None
+    colour = None
+    if chosen.colour == "h264":
+        # It loads NumPy, which no other recorder needs.
+        from inhand_recorder.colour_coding import ColourCoding
+
+        colour = ColourCoding(daemon.health, time.monotonic)
     files = FileHandling(
         records=lambda: {**provenance.records(), **(colour.records() if colour else {})},
         meshes=provenance.meshes,

@@ -12,10 +12,8 @@ from threading import Lock
 from typing import Any
 
 import msgspec
-import numpy as np
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import ColourImage
-from numpy.typing import NDArray
 from xxhash import xxh3_64_intdigest
 
 from inhand_runtime.recording.layout import RecordingError
@@ -108,11 +106,11 @@ class ColourDecoder:
             *before, last = (one.image for one in reversed(chain))
             for one in before:
                 self._decode(one)
-            pixels: NDArray[np.uint8] = self._decode(last).to_ndarray(format="rgb24")
+            pixels = self._decode(last).to_ndarray(format="rgb24").tobytes()
         except BaseException:
             self._codec = self._digest = self._image = None
             raise
-        return ColourImage("rgb8", last.width, last.height, pixels.tobytes())
+        return ColourImage("rgb8", last.width, last.height, pixels)
 
     def _decode(self, image: ColourImage) -> Any:
         """Decode the next picture, and return PyAV's frame."""

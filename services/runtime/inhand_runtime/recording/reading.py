@@ -51,11 +51,11 @@ def read_recording(
         chosen = choose_channels(summary.channels.values(), streams)
         if captured_from_ns is not None and _is_ours(path, reader) and summary.chunk_indexes:
             with explaining_damage(path):
-                times = CaptureTimes(file, summary, chosen)
-                if not (chunks := times.chunks_from(captured_from_ns)):
+                captured = CaptureTimes(file, summary, chosen)
+                if not (chunks := captured.chunks_from(captured_from_ns)):
                     return
                 if any(topic is RGBD for topic, _ in chosen.values()):
-                    chunks = times.chunks_from(captured_from_ns - LONGEST_CHAIN_NS)
+                    chunks = captured.chunks_from(captured_from_ns - LONGEST_CHAIN_NS)
             # The reader keeps this summary, and reads the chunks that it names.
             summary.chunk_indexes = chunks
         chains = ColourChains()
