@@ -76,7 +76,7 @@ def test_any_picture_is_the_same_as_from_the_beginning(
 
 
 def test_a_replay_from_the_middle_shows_and_sends_what_any_daemon_reads(
-    coded: Path, pictures: list[NDArray[np.uint8]]
+    coded: Path, pictures: list[NDArray[np.uint8]], caplog: pytest.LogCaptureFixture
 ) -> None:
     source = ReplaySource({"file": str(coded), "rate": 0, "start": 55 * FRAME_NS / 1e9})
     played = [one for one in source.captures(lambda: True) if one is not None]
@@ -86,6 +86,7 @@ def test_a_replay_from_the_middle_shows_and_sends_what_any_daemon_reads(
         colour = one.pixels().colour
         assert isinstance(colour, np.ndarray)
         np.testing.assert_array_equal(colour, pictures[number])
+    assert caplog.messages == []
 
 
 def test_what_builds_on_a_lost_frame_is_refused_until_one_begins_anew(
