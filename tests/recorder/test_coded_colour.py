@@ -8,23 +8,26 @@ from pathlib import Path
 import inhand_recorder
 import numpy as np
 import pytest
-from coded_rig import CodedRig, frame, recoded, record
+from coded_rig import CodedRig, frame, picture, recoded, record
 from inhand_capture.sources.replay import ReplaySource
+from inhand_recorder.colour_encoder import ColourEncoder
 from inhand_recorder.conversion import Selection, convert_recording
 from inhand_recorder.recorded import RecordedImages
 from inhand_recorder.recovery import recover_recording
 from inhand_recorder.verification import verify_recording
-from inhand_runtime.pixels import decode_colour
+from inhand_runtime.pixels import decode_colour, encode_colour
 from inhand_runtime.recording import (
     RecordedMessage,
     RecordingError,
     RecordingWriter,
     read_recording,
 )
+from inhand_runtime.recording.coded_colour import CodedPicture, ColourDecoder
 from inhand_runtime.recording.copying import copy_message
 from inhand_runtime.recording.message_index import open_index
 from inhand_runtime.source import SourceError
 from inhand_schemas.errors import MessageError
+from inhand_schemas.messages import ColourImage
 from inhand_schemas.topics import RGBD
 from numpy.typing import NDArray
 from small_rig import DELAY_NS, FRAME_NS, START_NS, write_rig
@@ -148,8 +151,8 @@ def test_what_is_recovered_of_a_cut_off_file_is_read(
     recover_recording(part, tmp_path / "saved.mcap")
     saved = frames_of(tmp_path / "saved.mcap")
     assert len(saved) > 10
-    for one, picture in zip(saved, pictures, strict=False):
-        np.testing.assert_array_equal(decode_colour(one.frame().colour), picture)
+    for one, shown in zip(saved, pictures, strict=False):
+        np.testing.assert_array_equal(decode_colour(one.frame().colour), shown)
     assert verify_recording(tmp_path / "saved.mcap") == []
 
 
@@ -183,6 +186,13 @@ def test_data_that_is_no_h264_is_damaged(coded: Path, tmp_path: Path) -> None:
             read[number].frame()
     assert read[30].frame()
     assert read[62].frame()
+
+
+def test_a_picture_that_is_larger_than_its_message_says_is_refused_undecoded() -> None:
+    large = ColourEncoder().encode(encode_colour(picture(0, 640, 480)), 0)
+    of_message = ColourImage("h264", 64, 48, large.data)
+    with pytest.raises(MessageError, match="Invalid data"):
+        CodedPicture(of_message, lambda: None, ColourDecoder()).decoded()
 
 
 def test_a_chain_without_a_beginning_takes_no_memory(coded: Path, tmp_path: Path) -> None:

@@ -22,6 +22,8 @@ LONGEST_CHAIN = 240
 """Pictures until one begins anew, at the most."""
 LONGEST_CHAIN_NS = 1_000_000_000
 """Time of capture until one begins anew, at the most."""
+MACROBLOCK = 16
+"""H.264 codes squares of so many pixels, of which a picture may use the last ones in part."""
 _DIGEST_BITS = (1 << 63) - 1
 
 
@@ -119,6 +121,9 @@ class ColourDecoder:
             self._codec = av.CodecContext.create("h264", "r")
             # One thread: others would hand out pictures later.
             self._codec.thread_count = 1
+            # What is damaged may say that it is as large as nobody has memory for.
+            most = (image.width + MACROBLOCK) * (image.height + MACROBLOCK)
+            self._codec.options = {"max_pixels": str(most)}
         try:
             frames = self._codec.decode(av.Packet(image.data))
         except av.FFmpegError as error:
