@@ -151,6 +151,8 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
                 ufunc = _vectorised(function, layout, types, caches)
             return np.errstate(invalid="ignore", divide="ignore")(ufunc)
 
+        _LOOPS.append(made)
+
         @wraps(function)
         def silent(*arrays: Any, **options: Any) -> Any:
             return made()(*arrays, **options)
@@ -159,6 +161,16 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
 
     return compiled
 
+
+def make_loops() -> None:
+    """Compile, or load, all that is ``vectorised`` in the modules that were imported: for who works
+    live, and cannot wait at a first call."""
+    for made in _LOOPS:
+        made()
+
+
+_LOOPS: list[Callable[[], Any]] = []
+"""What gives the loop over arrays of each function, and makes it the first time."""
 
 Caches = tuple[KernelCache, LoopCache]
 """Where one function and its loop over arrays are kept."""
