@@ -17,6 +17,7 @@ from rich.table import Table
 from inhand.results import listing
 
 UNCERTAIN = "uncertain, not counted"
+A_MINUTE_S = 60.0
 UNITS = {
     "ml": "ml",
     "deg": "°",
@@ -177,12 +178,14 @@ def place_text(place: LastPlace, settings: KeepingSettings) -> str:
 def amount_text(name: str, amount: Amount) -> str:
     """Write an amount with its deviation and unit: ``volume 210 ± 20 ml``."""
     what, unit = _name_and_unit(name)
+    if unit == " s" and amount.value >= A_MINUTE_S:
+        return f"{what} {duration_text(amount.value)} ± {duration_text(amount.deviation)}"
     return f"{what} {_number(amount.value)} ± {_number(amount.deviation)}{unit}"
 
 
 def duration_text(seconds: float) -> str:
     """Write a duration in the units that people read."""
-    if seconds < 60.0:
+    if seconds < A_MINUTE_S:
         return f"{seconds:.1f} s"
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)

@@ -2,9 +2,10 @@
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import date
+from time import time_ns
 from typing import Any, Literal
 from zoneinfo import ZoneInfo
 
@@ -30,8 +31,8 @@ Kept = Literal["numbers", "poses"]
 DIGITS = 6
 """Number of digits of evidence and poses that are kept: micrometres of a metre."""
 
-LATE_S = 3600.0
-"""Seconds by which outcomes of one object come out of order at most."""
+AHEAD_S = 60.0
+"""Seconds by which the clock of a camera is ahead of this machine's at most."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,8 @@ class Saver:
 
     database: Database
     keeping: Keeping
+    clock: Callable[[], int] = time_ns
+    """The time of now, in nanoseconds since the epoch."""
     _heard: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -96,7 +99,7 @@ class Saver:
                     rows.append(row)
                     added.append(outcome)
             _add_to_totals(session, rows)
-            _take_places(session, rows)
+            _take_places(session, rows, self.clock())
             if not forgotten:
                 _write_journal(session, journal or {})
         self._heard = heard
@@ -185,16 +188,19 @@ def _of_key(key: Key) -> dict[str, Any]:
     return dict(zip(("day", "kind", "object", "person", "counted"), key, strict=True))
 
 
-def _take_places(session: Session, rows: Sequence[OutcomeRow]) -> None:
-    """Take note of where things were seen last, in the order in which outcomes came."""
+def _take_places(session: Session, rows: Sequence[OutcomeRow], now_ns: int) -> None:
+    """Take note of where things were seen last.
+
+    What is said to be yet to come, by a clock that was wrong, gives way to all that comes after it.
+    """
+    to_come_ns = now_ns + round(AHEAD_S * NS_PER_S)
     places: dict[str, PlaceRow | None] = {}
     for row in rows:
         if row.object not in places:
             places[row.object] = session.get(PlaceRow, row.object)
         place = places[row.object]
-        later_s = 0.0 if place is None else (place.time_ns - row.end_ns) / NS_PER_S
-        # What is later by far was said by a clock that was wrong.
-        if row.counted and row.pose is not None and not 0.0 < later_s < LATE_S:
+        later = place is not None and row.end_ns < place.time_ns <= to_come_ns
+        if row.counted and row.pose is not None and not later:
             places[row.object] = place_of(row, row.pose)
     for place in places.values():
         if place is not None:
