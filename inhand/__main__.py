@@ -20,6 +20,7 @@ DAEMONS = {
     "tracker": "follow the objects in people's hands",
     "recorder": "write everything that a rig publishes into recordings",
     "studio": "show a rig in the browser, teach it objects, and look at recordings",
+    "outcomes": "say what was achieved with the objects, keep it, and tell the smart home",
     "hub": "let a site's hosts meet, each as its role allows: init, add, renew, revoke",
 }
 """Verbs whose module has ``main(arguments) -> int``: the service parses for itself."""

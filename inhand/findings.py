@@ -14,7 +14,14 @@ from pathlib import Path
 import psutil
 from inhand_runtime.settings import ZenohSettings
 
-MEMORY_OF = {"capture": 300e6, "tracker": 250e6, "recorder": 60e6, "studio": 300e6, "hub": 60e6}
+MEMORY_OF = {
+    "capture": 300e6,
+    "tracker": 250e6,
+    "recorder": 60e6,
+    "studio": 300e6,
+    "outcomes": 120e6,
+    "hub": 60e6,
+}
 """Bytes that an instance of each service takes (docs/reliability.md, "What a rig takes")."""
 LEAST_DISK_BYTES = 20e9
 """Free bytes of a disk that a recorder fills within an hour (docs/tutorial.md)."""

@@ -28,6 +28,7 @@ TABLES = {
     "tracker": '[tracker.{name}]\ncamera = "{camera}"\nmodels = {models}',
     "recorder": '[recorder.{name}]\nfolder = "recordings"',
     "studio": "[studio.{name}]",
+    "outcomes": "[outcomes.{name}]",
     "viewer": "",
 }
 """The table that a member's settings need of its own; names and objects are those of its rules."""

@@ -8,7 +8,7 @@ from typing import Any
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import RigFile
 
-STOP_ORDER = ("studio", "capture", "tracker", "recorder", "hub")
+STOP_ORDER = ("studio", "capture", "tracker", "outcomes", "recorder", "hub")
 """Services in the order in which they stop, so that what is under way reaches the last."""
 
 

@@ -9,6 +9,7 @@ _PLACES = {
     "tracker": ("inhand_tracker.settings", "TrackerSettings"),
     "recorder": ("inhand_recorder.settings", "RecorderSettings"),
     "studio": ("inhand_studio.settings", "StudioSettings"),
+    "outcomes": ("inhand_outcomes.settings", "OutcomesSettings"),
     "hub": ("inhand_hub.settings", "HubSettings"),
 }
 

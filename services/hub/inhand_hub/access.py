@@ -29,7 +29,7 @@ from inhand_schemas.topics import (
 from msgspec import Meta, Struct
 
 CommonName = Annotated[str, Meta(pattern=r"^[a-z0-9_.]+(?![\s\S])", max_length=64)]
-RoleName = Literal["camera", "tracker", "recorder", "studio", "viewer"]
+RoleName = Literal["camera", "tracker", "recorder", "studio", "outcomes", "viewer"]
 Flow = Literal["ingress", "egress"]
 Operation = Literal[
     "put",
@@ -66,6 +66,7 @@ ROLES: dict[RoleName, Role] = {
     "tracker": Role("tracker", (POSE,), (INFO, RGBD, SKELETONS), answers=_of("tracker")),
     "recorder": Role("recorder", (EVENT,), EVERYTHING_ELSE, answers=_of("recorder")),
     "studio": Role("studio", reads=EVERYTHING_ELSE, asks=PROCEDURES),
+    "outcomes": Role("outcomes", (EVENT,), (INFO, RGBD, SKELETONS, POSE)),
     "viewer": Role(None, reads=(PREVIEW, POSE, SKELETONS, INFO)),
 }
 

@@ -1,10 +1,248 @@
-"""What happens to any thing: taken up, put down, dropped."""
+"""What happens to any thing: taken up, put down, dropped, gone with who holds it."""
 
-from inhand_outcomes.achievement import Achievement
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+
+import numpy as np
+from inhand_schemas.joints import Joint
+from scipy.special import ndtr
+
+from inhand_outcomes.achievement import Achievement, Amount
+from inhand_outcomes.arrays import Array, Flags, Indices
+from inhand_outcomes.hands import hand_distances
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
+TAKEN_UP, PUT_DOWN, DROPPED, LEFT_IN_USE = "taken_up", "put_down", "dropped", "left_in_use"
+UNKNOWN, HELD, LYING = 0, 1, 2
 
-def handling(track: Track, thing: Thing) -> list[Achievement]:
-    """Find where a thing was taken up, put down or dropped."""
-    return []
+
+@dataclass(frozen=True)
+class HandlingParameters:
+    """When a thing is in somebody's hands, and when it lies."""
+
+    step_s: float = 0.1
+    """Seconds between the frames that are looked at: nobody takes a thing up faster."""
+    near_m: float = 0.13
+    """Distance of a hand's joint from a thing's surface up to which it may hold it, metres: half a
+    hand, and the error of both."""
+    far_m: float = 0.20
+    """Distance from which on no hand holds it, metres."""
+    away_m: float = 0.25
+    """Distance that both hands must reach while a thing lies, metres: a held one may be measured
+    as beyond ``far_m`` for moments."""
+    passed_m: float = 0.17
+    """Change of a hand's distance while the thing stays where it is, by which that hand does not
+    hold it, metres."""
+    on_head_m: float = 0.22
+    """Distance from the head's joint up to which a thing is worn, not put down, metres."""
+    on_foot_m: float = 0.13
+    """The same from an ankle's or a foot's joint."""
+    still_s: float = 0.7
+    """Seconds for which a thing must stay where it is to lie there."""
+    still_m: float = 0.04
+    """Distance by which it may wander meanwhile, metres: the wander of a tracked pose."""
+    least_seen: float = 0.7
+    """Share of the frames of that time in which it must be seen."""
+    moved_m: float = 0.06
+    """Distance from where it lay by which a thing was moved, metres."""
+    fallen_m: float = 0.35
+    """Distance between a hand and the place where a thing came to lie, and height by which it fell,
+    beyond which nobody put it there, metres."""
+    longest_fall_s: float = 1.5
+    """Seconds between a hand and the floor at the most."""
+
+
+DEFAULT_HANDLING = HandlingParameters()
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Frames ``first`` to ``last`` of a track in which a thing is held, or lies."""
+
+    state: int
+    first: int
+    last: int
+
+
+def handling(
+    track: Track,
+    thing: Thing,
+    *,
+    ended: bool = False,
+    parameters: HandlingParameters = DEFAULT_HANDLING,
+) -> list[Achievement]:
+    """Find where a thing was taken up, put down or dropped, in order of time.
+
+    At the end of a track that ``ended`` in somebody's hands, it was left in use: they went out of
+    view with it.
+    """
+    looked = track[_steps(track.times, parameters.step_s)]
+    if not looked.seen.any():
+        return []
+    stretches = _used(looked, _stretches(_states(looked, thing, parameters)), parameters)
+    achievements = []
+    for before, after in pairwise(stretches):
+        if (before.state, after.state) == (LYING, HELD):
+            achievements += _taken_up(looked, before, after, parameters)
+        elif (before.state, after.state) == (HELD, LYING):
+            achievements += _put_down(looked, before, after, parameters)
+    if ended and stretches and stretches[-1].state == HELD:
+        achievements.append(_left(looked, stretches[-1]))
+    return achievements
+
+
+def _steps(times: Array, step_s: float) -> Flags:
+    """Frames (T,) that are a step apart."""
+    numbers = np.floor(times / step_s)
+    return np.concatenate([[True], np.diff(numbers) > 0])
+
+
+def _states(track: Track, thing: Thing, parameters: HandlingParameters) -> Array:
+    """What happens to the thing (T,): UNKNOWN, HELD or LYING."""
+    hands = hand_distances(track, thing)
+    if np.isnan(track.joints).all():  # nobody is there who could hold it
+        hands = np.full_like(hands, np.inf)
+    states = np.full(len(track), UNKNOWN)
+    with np.errstate(invalid="ignore"):
+        states[track.seen & (hands < parameters.near_m).any(axis=1)] = HELD
+    for stay in _stays(track, parameters):
+        nearest, farthest = hands[stay].min(axis=0), hands[stay].max(axis=0)
+        free = (nearest > parameters.far_m) & (farthest > parameters.away_m)
+        free |= farthest - nearest > parameters.passed_m
+        if free.all():
+            states[stay][track.seen[stay] & (hands[stay] > parameters.near_m).all(axis=1)] = LYING
+    states[_worn(track, parameters)] = UNKNOWN
+    return states
+
+
+def _worn(track: Track, parameters: HandlingParameters) -> Flags:
+    """Frames (T,) in which the thing is on a head or a foot."""
+    feet = (Joint.ANKLE_LEFT, Joint.FOOT_LEFT, Joint.ANKLE_RIGHT, Joint.FOOT_RIGHT)
+    to_head = np.linalg.norm(track.positions - track.joint(Joint.HEAD), axis=1)
+    to_feet = np.linalg.norm(track.positions[:, None] - track.joints[:, feet], axis=2)
+    worn = (to_head < parameters.on_head_m) | (to_feet < parameters.on_foot_m).any(axis=1)
+    return np.asarray(worn)
+
+
+def _stays(track: Track, parameters: HandlingParameters) -> list[slice]:
+    """Stretches of ``still_s`` or longer in which the thing stays where it is."""
+    still = np.zeros(len(track), bool)
+    ends = np.searchsorted(track.times, track.times + parameters.still_s)
+    for first, end in enumerate(ends):
+        there = slice(first, end + 1)
+        seen = track.seen[there]
+        places = track.positions[there][seen]
+        if end >= len(track) or seen.mean() < parameters.least_seen:
+            continue
+        wander = np.linalg.norm(places - np.median(places, axis=0), axis=1)
+        if wander.max() < parameters.still_m:
+            still[there] = True
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
+    return [slice(int(first), int(end)) for first, end in edges.reshape(-1, 2)]
+
+
+def _used(track: Track, stretches: list[Stretch], parameters: HandlingParameters) -> list[Stretch]:
+    """The stretches without those in which a thing that lies was touched, and not moved."""
+    used: list[Stretch] = []
+    for number, stretch in enumerate(stretches):
+        lay = bool(used) and used[-1].state == LYING
+        if stretch.state == HELD and lay and number + 1 < len(stretches):
+            moved, _ = _moved(track, used[-1], stretch)
+            if moved < parameters.moved_m:
+                continue
+        if stretch.state == LYING and lay:
+            stretch = Stretch(LYING, used.pop().first, stretch.last)
+        used.append(stretch)
+    return used
+
+
+def _stretches(states: Array) -> list[Stretch]:
+    """Stretches of one state, over what is unknown between them."""
+    known = [(int(state), index) for index, state in enumerate(states) if state != UNKNOWN]
+    groups = (
+        (state, [index for _, index in group])
+        for state, group in groupby(known, key=lambda one: one[0])
+    )
+    return [Stretch(state, indices[0], indices[-1]) for state, indices in groups]
+
+
+def _place(track: Track, stretch: Stretch) -> tuple[Array, Array]:
+    """Where a thing lies (3,): the median, and its deviation."""
+    frames = _shown(track, stretch)
+    deviations = np.sqrt(np.diagonal(track.covariances[frames, :3, :3], axis1=1, axis2=2))
+    # Errors of neighbouring frames are alike: many frames are no better than a typical one.
+    return np.median(track.positions[frames], axis=0), np.median(deviations, axis=0)
+
+
+def _moved(track: Track, lying: Stretch, held: Stretch) -> tuple[float, float]:
+    """How far from where it lay a thing got while it was held, and the deviation of that."""
+    place, deviation = _place(track, lying)
+    frames = _shown(track, held)
+    distances = np.linalg.norm(track.positions[frames] - place, axis=1)
+    own = track.point_deviations(np.zeros(3))[frames[distances.argmax()]]
+    return float(distances.max()), float(np.hypot(np.linalg.norm(deviation) / 3**0.5, own))
+
+
+def _shown(track: Track, stretch: Stretch) -> Indices:
+    """The frames of a stretch that show the thing."""
+    frames = np.arange(stretch.first, stretch.last + 1)
+    return frames[track.seen[frames]]
+
+
+def _taken_up(
+    track: Track, lying: Stretch, held: Stretch, parameters: HandlingParameters
+) -> list[Achievement]:
+    moved, deviation = _moved(track, lying, held)
+    probability = float(ndtr((moved - parameters.moved_m) / deviation))
+    start = float(track.times[lying.last])
+    evidence = {"moved_m": float(moved), **_seen(track, lying, held)}
+    return [_achievement(TAKEN_UP, start, float(track.times[held.first]), probability, evidence)]
+
+
+def _put_down(
+    track: Track, held: Stretch, lying: Stretch, parameters: HandlingParameters
+) -> list[Achievement]:
+    moved, deviation = _moved(track, lying, held)
+    place, spread = _place(track, lying)
+    probability = float(ndtr((moved - parameters.moved_m) / deviation))
+    times = track.times
+    around = np.abs(times - times[lying.first]) <= parameters.longest_fall_s
+    hands = track.joints[around][:, (Joint.HAND_LEFT, Joint.HAND_RIGHT)]
+    distances = np.linalg.norm(hands - place, axis=-1)
+    reached = float(np.nanmin(distances)) if np.isfinite(distances).any() else np.nan
+    fall = float(track.positions[held.last, 2] - place[2])
+    dropped = reached > parameters.fallen_m and fall > parameters.fallen_m
+    amounts = {
+        f"place_{axis}_m": Amount(float(value), float(error))
+        for axis, value, error in zip("xyz", place, spread, strict=True)
+    }
+    evidence = {"moved_m": float(moved), "fall_m": fall, **_seen(track, held, lying)}
+    if np.isfinite(reached):
+        evidence["hand_to_place_m"] = reached
+    kind = DROPPED if dropped else PUT_DOWN
+    start, end = float(times[held.last]), float(times[lying.first])
+    return [_achievement(kind, start, end, probability, evidence, amounts)]
+
+
+def _left(track: Track, held: Stretch) -> Achievement:
+    """Say that the thing was last seen in somebody's hands."""
+    at = float(track.times[held.last])
+    share = float(track.seen[held.first : held.last + 1].mean())
+    return _achievement(LEFT_IN_USE, at, at, share, {"seen_share": share})
+
+
+def _seen(track: Track, *stretches: Stretch) -> dict[str, float]:
+    frames = np.concatenate([np.arange(one.first, one.last + 1) for one in stretches])
+    return {"seen_share": float(track.seen[frames].mean())}
+
+
+def _achievement(
+    kind: str,
+    start_s: float,
+    end_s: float,
+    probability: float,
+    evidence: dict[str, float],
+    amounts: dict[str, Amount] | None = None,
+) -> Achievement:
+    return Achievement(kind, start_s, end_s, probability, amounts or {}, evidence)

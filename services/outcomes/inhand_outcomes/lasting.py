@@ -16,7 +16,7 @@ class LastingOutcomes:
     settle_ns: float
     piece_ns: float
     counted_ns: int = 0
-    _carried: dict[str, Outcome] = field(default_factory=dict)
+    carried: dict[str, Outcome] = field(default_factory=dict)
     """What is counted, by kind."""
 
     def follow(self, found: Sequence[Outcome], last_ns: int, *, ended: bool) -> list[Outcome]:
@@ -26,7 +26,7 @@ class LastingOutcomes:
         under_way: set[str] = set()
         for outcome in found:
             whole = outcome
-            carried = self._carried.pop(outcome.kind, None)
+            carried = self.carried.pop(outcome.kind, None)
             if carried is not None and outcome.start_ns - carried.end_ns <= self.settle_ns:
                 whole = carried.with_more(outcome)
             elif carried is not None:
@@ -37,12 +37,12 @@ class LastingOutcomes:
                 continue
             under_way.add(outcome.kind)
             if outcome.end_ns - outcome.start_ns >= self.piece_ns:
-                self._carried[outcome.kind] = whole
+                self.carried[outcome.kind] = whole
                 self.counted_ns = max(self.counted_ns, outcome.end_ns)
             elif whole is not outcome and carried is not None:
-                self._carried[outcome.kind] = carried
-        for kind, carried in list(self._carried.items()):
+                self.carried[outcome.kind] = carried
+        for kind, carried in list(self.carried.items()):
             quiet = last_ns - carried.end_ns > self.settle_ns and kind not in under_way
             if ended or quiet:
-                done.append(self._carried.pop(kind))
+                done.append(self.carried.pop(kind))
         return done

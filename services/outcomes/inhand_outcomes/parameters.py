@@ -19,6 +19,9 @@ class GatheringParameters:
     settle_s: float = 1.5
     """Seconds after its end at which an achievement is final: what comes later no longer changes
     it."""
+    handed_within_m: float = 0.5
+    """Distance between the last place in one person's hands and the first in another's up to which
+    one handed it to the other, metres."""
     piece_s: float = 20.0
     """Seconds of what goes on after which they are counted, so that windows stay short."""
     frames_that_wait: int = 64

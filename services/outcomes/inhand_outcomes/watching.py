@@ -1,13 +1,14 @@
 """From poses and skeletons to settled outcomes: what a daemon does, without its session."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+import numpy as np
 from inhand_schemas.messages import CameraInfo, ObjectPose, Pose, Skeletons
 
 from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.gathering import NS_PER_S, Gathering, Holding, Sighting, Sightings
-from inhand_outcomes.handling import handling
+from inhand_outcomes.handling import LEFT_IN_USE, handling
 from inhand_outcomes.lasting import LastingOutcomes
 from inhand_outcomes.outcome import Outcome, outcome_id
 from inhand_outcomes.parameters import DEFAULT_GATHERING, GatheringParameters
@@ -16,9 +17,11 @@ from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 from inhand_outcomes.uses import USES
 
+HANDED_OVER = "handed_over"
+
 
 @dataclass
-class _Followed:
+class Followed:
     """One object in one person's hands: what came of it, and what was said of it."""
 
     gathering: Gathering
@@ -46,7 +49,7 @@ class Watcher:
         self._place = place
         self._parameters = parameters
         self._sightings = Sightings(parameters)
-        self._followed: dict[Holding, _Followed] = {}
+        self.followed: dict[Holding, Followed] = {}
 
     def hear_info(self, camera: str, info: CameraInfo) -> None:
         """Take note of where a camera stands."""
@@ -63,15 +66,14 @@ class Watcher:
             return []
         holding, sighting = found
         outcomes: list[Outcome] = []
-        followed = self._followed.get(holding)
+        followed = self.followed.get(holding)
         if followed is not None and not followed.gathering.continues(sighting.time_ns):
             if abs(sighting.time_ns - followed.gathering.last_ns) <= self._gap_ns:
                 return []  # a frame that was counted already
             outcomes = self._measure(holding, followed, ended=True)
             followed = None
         if followed is None:
-            followed = _Followed(Gathering(self._parameters), self._lasting(), sighting.time_ns)
-            self._followed[holding] = followed
+            followed = self.follow(holding, sighting.time_ns)
         followed.gathering.add(sighting)
         if sighting.time_ns - followed.measured_ns >= NS_PER_S:
             followed.measured_ns = sighting.time_ns
@@ -82,37 +84,59 @@ class Watcher:
         """Settle the tracks of which nothing came for long, by the clock of capture times."""
         quiet = [
             (holding, followed)
-            for holding, followed in self._followed.items()
+            for holding, followed in self.followed.items()
             if abs(now_ns - followed.gathering.last_ns) > self._gap_ns
         ]
         return self._end(quiet)
 
+    def forget(self) -> None:
+        """Know nothing of what came until now."""
+        self.followed.clear()
+
     def end_all(self) -> list[Outcome]:
         """Settle all tracks, at the end of what comes."""
-        return self._end(list(self._followed.items()))
+        return self._end(list(self.followed.items()))
 
-    def _lasting(self) -> LastingOutcomes:
+    def follow(self, holding: Holding, time_ns: int) -> Followed:
+        """Follow an object in a person's hands from a capture time on."""
         settle_s, piece_s = self._parameters.settle_s, self._parameters.piece_s
-        return LastingOutcomes(settle_s * NS_PER_S, piece_s * NS_PER_S)
+        lasting = LastingOutcomes(settle_s * NS_PER_S, piece_s * NS_PER_S)
+        self.followed[holding] = Followed(Gathering(self._parameters), lasting, time_ns)
+        return self.followed[holding]
 
     @property
     def _gap_ns(self) -> float:
         return self._parameters.longest_gap_s * NS_PER_S
 
-    def _end(self, ended: Iterable[tuple[Holding, _Followed]]) -> list[Outcome]:
+    def _end(self, ended: Iterable[tuple[Holding, Followed]]) -> list[Outcome]:
         outcomes = []
         for holding, followed in ended:
             outcomes += self._measure(holding, followed, ended=True)
-            del self._followed[holding]
+            del self.followed[holding]
         return outcomes
 
-    def _measure(self, holding: Holding, followed: _Followed, *, ended: bool) -> list[Outcome]:
+    def _taken_over(self, holding: Holding, last: Sighting) -> int | None:
+        """The person in whose hands an object is found where another's track of it has ended."""
+        for other, followed in self.followed.items():
+            if other.object != holding.object or other.person in (None, holding.person):
+                continue
+            first = next(
+                (one for one in followed.gathering.sightings if one.time_ns > last.time_ns), None
+            )
+            if first is None or first.time_ns - last.time_ns > self._gap_ns:
+                continue
+            distance = float(np.linalg.norm(first.pose[:3] - last.pose[:3]))
+            if distance < self._parameters.handed_within_m:
+                return other.person
+        return None
+
+    def _measure(self, holding: Holding, followed: Followed, *, ended: bool) -> list[Outcome]:
         """What is settled now of a track."""
         track = followed.gathering.track(holding.person, self.room)
         first_ns, last_ns = followed.gathering.first_ns, followed.gathering.last_ns
         found = [
             (achievement.lasting, self._outcome(holding, followed.gathering, achievement))
-            for achievement in self._achievements(holding, followed, track)
+            for achievement in self._achievements(holding, followed, track, ended=ended)
         ]
         found.sort(key=lambda one: one[1].end_ns)
         settled_ns = last_ns if ended else last_ns - self._parameters.settle_s * NS_PER_S
@@ -123,16 +147,27 @@ class Watcher:
                 followed.said_until_ns[outcome.kind] = outcome.end_ns
                 outcomes.append(outcome)
         lasting = [outcome for lasts, outcome in found if lasts]
+        outcomes = [self._handed(holding, followed, outcome) for outcome in outcomes]
         return outcomes + followed.lasting.follow(lasting, last_ns, ended=ended)
 
+    def _handed(self, holding: Holding, followed: Followed, outcome: Outcome) -> Outcome:
+        """What was left in use is handed over, where somebody else has it then."""
+        if outcome.kind != LEFT_IN_USE:
+            return outcome
+        receiver = self._taken_over(holding, followed.gathering.sightings[-1])
+        if receiver is None:
+            return outcome
+        evidence = {**outcome.evidence, "receiver": float(receiver)}
+        return replace(outcome, kind=HANDED_OVER, evidence=evidence)
+
     def _achievements(
-        self, holding: Holding, followed: _Followed, track: Track
+        self, holding: Holding, followed: Followed, track: Track, *, ended: bool
     ) -> Iterator[Achievement]:
         """What the measures find in a track, times counted from its first frame."""
         thing = self._things.get(holding.object)
         if thing is None:
             return
-        yield from handling(track, thing)
+        yield from handling(track, thing, ended=ended)
         use = USES.get(thing.use)
         counted_s = (followed.lasting.counted_ns - followed.gathering.first_ns) / NS_PER_S
         uncounted = track[track.times >= counted_s]

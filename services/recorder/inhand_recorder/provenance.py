@@ -6,10 +6,10 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+from inhand_runtime.object_meshes import MeshError, mesh_of_model, model_files
 from inhand_runtime.settings import Settings, load_rig_file
 from inhand_schemas.messages import Health
 
-from inhand_recorder.object_meshes import MeshError, mesh_of_model, model_files
 from inhand_recorder.settings import RecorderSettings
 
 RECORDER_RECORD = "recorder"

@@ -3,6 +3,7 @@
 EXTRAS = {
     "cluster": ("dask", "distributed"),
     "export": ("av", "foxglove", "pyarrow", "rosbags"),
+    "homeassistant": ("aiomqtt",),
     "hub": ("cryptography",),
     "lab": ("faiss", "fast_simplification", "matplotlib", "scipy", "sklearn", "trimesh"),
     "metrics": ("prometheus_client",),

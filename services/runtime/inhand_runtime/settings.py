@@ -28,7 +28,7 @@ from inhand_runtime.settings_environment import texts_read, with_environment
 from inhand_runtime.settings_errors import explain, place, suggestion
 from inhand_runtime.settings_file import read_values
 
-SERVICES = ("capture", "tracker", "recorder", "studio", "hub")
+SERVICES = ("capture", "tracker", "recorder", "studio", "outcomes", "hub")
 
 SETTINGS_VERSION = 1
 """Version of the settings' form that this release reads and means where a file names none."""
@@ -194,9 +194,9 @@ class RigFile(Section):
     capture: Tables = {}
     tracker: Tables = {}
     recorder: Tables = {}
+    outcomes: Tables = {}
     studio: Tables = {}
     hub: Tables = {}
-    outcomes: Tables = {}
 
 
 S = TypeVar("S", bound=Section)

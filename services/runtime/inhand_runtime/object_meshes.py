@@ -1,7 +1,7 @@
 """Meshes of the objects that trackers of this host follow, out of their models.
 
 A model is a zip of NumPy's arrays. What is needed of it is read without NumPy, which a recorder has
-no other use for.
+no other use for; a service that has reads the same bytes as arrays.
 """
 
 import ast
@@ -27,22 +27,33 @@ class MeshError(InhandError):
 
 @dataclass(frozen=True)
 class ObjectMesh:
-    """An object's name and its mesh as a PLY file, in metres."""
+    """An object's name, the interaction that its model was learned from, and its mesh in metres.
+
+    ``vertices`` are rows of three little-endian float64, ``faces`` of three int64.
+    """
 
     name: str
-    ply: bytes
+    interaction: str
+    vertices: bytes
+    faces: bytes
+
+    @property
+    def ply(self) -> bytes:
+        """The mesh as a PLY file."""
+        return _ply(self.vertices, self.faces)
 
 
 def mesh_of_model(path: Path) -> ObjectMesh:
     """Return the object that a model file is of; raises MeshError."""
     try:
         with zipfile.ZipFile(path) as model:
-            name = json.loads(_array(model, "model")[1].decode("utf-32-le").rstrip("\0"))["object"]
+            said = json.loads(_array(model, "model")[1].decode("utf-32-le").rstrip("\0"))
+            name, interaction = said["object"], said["interaction"]
             vertices = _table(model, "shape.vertices", "<f8")
             faces = _table(model, "shape.faces", "<i8")
     except (OSError, zipfile.BadZipFile, ValueError, LookupError, SyntaxError, TypeError) as error:
         raise MeshError(f"no mesh can be read from {path}: {error}") from None
-    return ObjectMesh(str(name), _ply(vertices, faces))
+    return ObjectMesh(str(name), str(interaction), vertices, faces)
 
 
 def model_files(trackers: Mapping[str, Mapping[str, Any]], folder: Path) -> tuple[Path, ...]:

@@ -1,0 +1,139 @@
+"""The daemon of outcomes: what it is made of, and its loop."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from inhand_runtime.daemon import Daemon, running_daemon
+from inhand_runtime.inbox import Received
+from inhand_runtime.session import Publisher
+from inhand_runtime.settings import Settings
+from inhand_schemas.messages import Event
+from inhand_schemas.topics import EVENT, INFO, POSE, SKELETONS, topic_of
+
+from inhand_outcomes.capture_clock import CaptureClock
+from inhand_outcomes.keeping import open_kept
+from inhand_outcomes.memory import Memory
+from inhand_outcomes.outcome import Outcome
+from inhand_outcomes.settings import OutcomesSettings, check
+from inhand_outcomes.store.saving import Saver, read_journal
+from inhand_outcomes.store.waiting import WaitingOutcomes
+from inhand_outcomes.things import load_things, models_of
+from inhand_outcomes.watching import Watcher
+
+IDLE_S = 0.25
+SAVE_PERIOD_S = 2.0
+"""An end at any moment loses what came in this time."""
+QUEUE_SAMPLES = 4096
+
+
+def run(settings: Settings[OutcomesSettings]) -> None:
+    """Measure until SIGTERM or SIGINT.
+
+    Raises SettingsError before anything starts, and InhandError when there is no session.
+    """
+    check(settings)
+    chosen = settings.service
+    models = chosen.models or models_of(settings.origin.path)
+    things, problems = load_things(models, chosen.objects)
+    with running_daemon("outcomes", settings) as daemon:
+        for problem in problems:
+            daemon.health.trouble(f"object {problem}", problem)
+        if not things:
+            daemon.health.trouble("objects", NO_OBJECTS)
+        place = f"{settings.site.realm}/{settings.site.rig}"
+        waiting = WaitingOutcomes(lambda: Saver(open_kept(chosen), chosen.keeping))
+        OutcomesLoop(daemon, Watcher(things, place), waiting).run()
+
+
+NO_OBJECTS = (
+    "no object is measured: name models in the settings of outcomes, or run a tracker by the same "
+    "file"
+)
+
+
+@dataclass
+class OutcomesLoop:
+    """Takes what arrives one by one, and every two seconds keeps and publishes what is settled."""
+
+    daemon: Daemon
+    watcher: Watcher
+    waiting: WaitingOutcomes
+
+    def __post_init__(self) -> None:
+        self._clock = CaptureClock()
+        self._memory = Memory(self.watcher)
+        self._events: Publisher[Event] = self.daemon.publisher(EVENT, self.daemon.instance)
+        self._published = 0
+
+    def run(self) -> None:
+        """Measure until stopped, and settle what is open then."""
+        self._recall()
+        for topic in (INFO, SKELETONS, POSE):
+            self.daemon.subscribe(topic, samples=QUEUE_SAMPLES)
+        self.daemon.health.state = "running"
+        settled: list[Outcome] = []
+        next_save = time.monotonic() + SAVE_PERIOD_S
+        while not self.daemon.stop.is_set():
+            sample = self.daemon.receive(IDLE_S)
+            if sample is not None:
+                settled += self._hear(sample)
+            if time.monotonic() >= next_save:
+                settled += self.watcher.end_quiet(self._clock.now_ns())
+                self._save(settled)
+                settled = []
+                next_save = time.monotonic() + SAVE_PERIOD_S
+        self._save(settled)
+        self.waiting.close()
+
+    def _hear(self, sample: Received) -> list[Outcome]:
+        """Take one message; what is settled by it."""
+        topic, key = topic_of(sample.key)
+        if topic is POSE:
+            pose = self.daemon.decode(POSE, sample)
+            if pose is None:
+                return []
+            self._clock.hear(pose.time_ns)
+            return self.watcher.hear_pose(pose)
+        if topic is SKELETONS:
+            skeletons = self.daemon.decode(SKELETONS, sample)
+            if skeletons is not None:
+                self._clock.hear(skeletons.time_ns)
+                self.watcher.hear_skeletons(key.name, skeletons)
+        if topic is INFO:
+            info = self.daemon.decode(INFO, sample)
+            if info is not None:
+                self.watcher.hear_info(key.name, info)
+        return []
+
+    def _recall(self) -> None:
+        """Go on where the last process of this database ended, if it can be read."""
+        self.waiting.save((), {}, time.monotonic())
+        if self.waiting.saver is not None:
+            self._memory.recall(read_journal(self.waiting.saver.database))
+        self._show()
+
+    def _save(self, settled: Sequence[Outcome]) -> None:
+        """Keep what is settled with the watcher's memory, and publish what is new."""
+        saved = self.waiting.save(settled, self._memory.entries(), time.monotonic())
+        if saved is not None:
+            if saved.forget:
+                self.watcher.forget()
+                self._memory = Memory(self.watcher)
+            for outcome in saved.added:
+                self._publish(outcome.message(self._published))
+        self._show()
+
+    def _publish(self, event: Event) -> None:
+        self._events.put(event)
+        self._published += 1
+
+    def _show(self) -> None:
+        """Say in the health whether outcomes are kept."""
+        health = self.daemon.health
+        if self.waiting.problem is None:
+            health.well("database")
+        else:
+            lost = f"; {self.waiting.lost} outcomes were lost" if self.waiting.lost else ""
+            health.trouble("database", self.waiting.problem + lost)
+        health.state = "running" if self.waiting.problem is None else "degraded"
