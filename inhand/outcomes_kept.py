@@ -33,15 +33,9 @@ from inhand.outcomes_tables import (
     total_row,
     totals_table,
 )
+from inhand.outcomes_words import COMMANDS
 from inhand.results import write_json
 
-COMMANDS = ("today", "history", "where", "forget")
-HELP = {
-    "today": "what was done today, and last",
-    "history": "what was done in the last days",
-    "where": "where an object was seen last",
-    "forget": "remove what a person did, a day, or all that is kept",
-}
 LATEST = 10
 """Number of the last outcomes of a day that are shown."""
 WEEK_DAYS = 7
@@ -87,7 +81,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     verbs = parser.add_subparsers(dest="verb", required=True)
     by_name = {}
-    for verb, text in HELP.items():
+    for verb, text in COMMANDS.items():
         one = verbs.add_parser(verb, help=text, description=f"{text[0].upper()}{text[1:]}.")
         one.add_argument("--config", type=Path, metavar="FILE", help="the rig's settings (TOML)")
         one.add_argument("--name", help="which instance of the file, where it names several")
@@ -147,6 +141,7 @@ def _show_history(kept: Kept, arguments: argparse.Namespace) -> dict[str, Any]:
     else:
         print(f"{first} to {last}: nothing was done")
     if arguments.plot is not None:
+        # Matplotlib takes a second to load.
         from inhand.outcomes_plot import draw_history
 
         draw_history(found, first, last, arguments.plot)
@@ -177,7 +172,8 @@ def _draw_map(kept: Kept, day: date, path: Path) -> None:
     maps = floor_maps(kept.database, day)
     if not maps:
         raise InhandError(f"there is no map of {day}: nothing was swept")
-    from inhand.outcomes_plot import draw_floor_maps
+    # OpenCV draws it, and no other verb of these needs it.
+    from inhand.outcomes_map import draw_floor_maps
 
     draw_floor_maps(maps, path)
     print(f"drawn in {path}")
@@ -189,4 +185,3 @@ _RUN = {
     "where": _show_where,
     "forget": _forget,
 }
-assert tuple(_RUN) == COMMANDS

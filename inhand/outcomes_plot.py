@@ -1,11 +1,9 @@
-"""Pictures of what is kept: days side by side, and what was swept of the floor."""
+"""A picture of what was done on days, side by side."""
 
 from collections.abc import Sequence
 from datetime import date
 from pathlib import Path
 
-import numpy as np
-from inhand_outcomes.store.floor_maps import KeptFloorMap
 from inhand_outcomes.totals import DayTotal, adds_up
 from inhand_runtime.errors import InhandError
 from matplotlib.axes import Axes
@@ -78,27 +76,6 @@ def _draw_panel(panel: Axes, days: Sequence[date], series: Series, title: str, u
     panel.set_title(title, fontsize=10)
     panel.set_ylabel(unit)
     panel.spines[["top", "right"]].set_visible(False)
-
-
-def draw_floor_maps(maps: Sequence[KeptFloorMap], path: Path) -> None:
-    """Draw each map beside the others, metres of the room along both axes; raises InhandError."""
-    side = 5.0
-    figure = Figure(figsize=(side * len(maps), side), layout="constrained")
-    for panel, kept in zip(figure.subplots(1, len(maps), squeeze=False)[0], maps, strict=True):
-        header = kept.header
-        extent = (
-            header.x_m,
-            header.x_m + header.columns * header.cell_m,
-            header.y_m,
-            header.y_m + header.rows * header.cell_m,
-        )
-        image = np.ma.masked_equal(kept.cells, 0)
-        panel.imshow(image, origin="lower", extent=extent, cmap="viridis", interpolation="nearest")
-        panel.set_title(f"{words(kept.object)}, {kept.day}", fontsize=10)
-        panel.set_xlabel("m")
-        panel.set_ylabel("m")
-        panel.set_aspect("equal")
-    _save(figure, path)
 
 
 def _save(figure: Figure, path: Path) -> None:

@@ -5,15 +5,17 @@ import json
 import os
 import subprocess
 import sys
-from datetime import UTC, date, datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from time import time_ns
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
 from inhand_outcomes.achievement import Amount
 from inhand_outcomes.days import local_day
+from inhand_outcomes.floor_picture import PIXELS, SWEPT
 from inhand_outcomes.store.database import Database, open_database
 from inhand_outcomes.store.floor_maps import FloorMapHeader, KeptFloorMap, keep_floor_map
 from inhand_outcomes.store.queries import latest
@@ -21,6 +23,7 @@ from inhand_outcomes.store.saving import Saver
 from inhand_runtime.errors import InhandError, SettingsError
 from kept_outcomes import KEEPING, ZURICH, S, all_totals, new_saver, sip
 
+from inhand.__main__ import main
 from inhand.outcomes_kept import ask
 
 SETTINGS = """
@@ -58,7 +61,8 @@ def config(tmp_path: Path) -> Path:
 def answer(config: Path, *words: str | Path) -> dict[str, Any]:
     """What a verb writes for machines."""
     file = config.with_name("answer.json")
-    assert ask([*map(str, words), "--config", str(config), "--json", str(file)]) == 0
+    command = ["outcomes", *map(str, words), "--config", str(config), "--json", str(file)]
+    assert main(command) == 0
     result: dict[str, Any] = json.loads(file.read_text())
     return result
 
@@ -176,16 +180,20 @@ def test_a_terminal_is_asked_first(config: Path, typed: str, code: int, left: bo
 
 def test_the_map_of_today_is_drawn(config: Path) -> None:
     with pytest.raises(InhandError, match="nothing was swept"):
-        answer(config, "today", "--map", config.with_name("floor.png"))
-    cells = np.zeros((60, 80), np.uint8)
-    cells[20:40, 10:70] = 1
+        ask(["today", "--map", str(config.with_name("floor.png")), "--config", str(config)])
+    database, today = opened(config), local_day(time_ns(), ZURICH)
     header = FloorMapHeader(0.05, -2.0, 0.0, 60, 80)
-    database = opened(config)
-    today: date = local_day(time_ns(), ZURICH)
-    keep_floor_map(database, KeptFloorMap(today, "broom", 0, header, cells))
+    for person, columns in ((0, slice(10, 40)), (1, slice(40, 70))):
+        cells = np.full((60, 80), 1 << 5, np.uint8)  # floor
+        cells[20:40, columns] |= 31  # surely swept
+        keep_floor_map(database, KeptFloorMap(today, "broom", person, header, cells))
     database.close()
     answer(config, "today", "--map", config.with_name("floor.png"))
-    assert config.with_name("floor.png").read_bytes().startswith(PNG)
+    picture = cv2.imread(str(config.with_name("floor.png")))
+    assert picture is not None
+    # Both swept 600 of the cells of 5 cm, which are drawn eight pixels wide.
+    swept = (picture[: 60 * PIXELS] == SWEPT).all(axis=2)
+    assert swept.sum() == 2 * 600 * PIXELS**2
 
 
 def test_where_nothing_was_kept_it_is_said_and_nothing_is_made(tmp_path: Path) -> None:
