@@ -58,7 +58,7 @@ def test_the_outcomes_page_shows_what_is_so_without_a_word() -> None:
     table = tomllib.loads(text)["outcomes"]["home"]
     chosen, defaults = OutcomesSettings.model_validate(table), OutcomesSettings()
     assert len(chosen.rules.goals) == 3
-    for name in table:
+    for name in table.keys() - {"goals"}:
         line = next(line for line in text.splitlines() if line.startswith(f"{name} ="))
         if "(the default)" in line:
             assert getattr(defaults, name) == getattr(chosen, name)

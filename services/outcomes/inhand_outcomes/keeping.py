@@ -136,8 +136,9 @@ def open_kept(settings: KeepingSettings) -> Database:
     file = settings.database_file
     if file is not None:
         try:
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.touch(PRIVATE_FILE, exist_ok=True)
+            if not file.exists():
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.touch(PRIVATE_FILE)
         except OSError as error:
             raise StoreError(f"the database {file} cannot be made: {error.strerror}") from None
         return open_database(file)

@@ -22,7 +22,7 @@ from inhand_outcomes.store.queries import latest
 from kept_outcomes import at, new_saver, sip
 
 FULL_DISK = """
-import sys
+import subprocess, sys
 from pathlib import Path
 sys.path[:0] = sys.argv[2:]
 from kept_outcomes import S, at, new_saver, sip
@@ -37,6 +37,12 @@ try:
 except StoreError as error:
     print(error)
     print(len(latest(saver.database, 10**6)) == 1 + 100 * batch)
+saver.database.close()
+subprocess.run(["mount", "-o", "remount,ro", sys.argv[1]], check=True)
+try:
+    new_saver(Path(sys.argv[1])).save([sip(at("2026-05-06 12:00"))])
+except StoreError as error:
+    print(error)
 """
 OWN_DISK = 'mount -t tmpfs -o size=1m none "$0" && exec "$@"'
 
@@ -154,15 +160,17 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-def test_a_full_disk_keeps_what_it_has_and_says_so(tmp_path: Path) -> None:
+def test_a_full_disk_keeps_what_it_has_and_so_does_one_that_is_read_only(tmp_path: Path) -> None:
     unshared = ("unshare", "--map-root-user", "--mount", "sh", "-c", OWN_DISK, tmp_path)
     if subprocess.run([*unshared, "true"], capture_output=True).returncode:
         pytest.skip("this user may mount nothing, not even in a namespace of its own")
     program = [sys.executable, "-c", FULL_DISK, tmp_path, *sys.path]
     done = subprocess.run([*unshared, *program], capture_output=True, text=True)
-    line, all_there = done.stdout.splitlines()
-    assert "the disk is full: make room" in line
+    assert done.returncode == 0, done.stderr
+    full, all_there, read_only = done.stdout.splitlines()
+    assert "the disk is full: make room" in full
     assert all_there == "True"
+    assert "cannot be written: let this user write the file" in read_only
 
 
 def _sql(file: Path, statement: str) -> list[tuple[object, ...]]:
