@@ -73,11 +73,11 @@ def add_skeletons(
     }
     estimated = {name: CameraSkeletons() for name in estimators}
     with written_or_gone(output) as writer:
-        for message in read_recording(path):
-            if message.topic is SKELETONS and message.name in wanted:
+        for message in read_recording(path, apart=True):
+            if message.topic is SKELETONS and message.name in wanted and not message.apart:
                 continue
             copy_message(writer, message)
-            if message.topic is RGBD and message.name in wanted:
+            if not message.apart and message.topic is RGBD and message.name in wanted:
                 camera = message.name
                 skeletons = _estimate(message, estimators[camera], estimated[camera])
                 if skeletons is not None:
@@ -104,7 +104,10 @@ def true_skeletons(path: Path, output: Path) -> int:
         )
     written = 0
     with written_or_gone(output) as writer:
-        for message in read_recording(path):
+        for message in read_recording(path, apart=True):
+            if message.apart:
+                copy_message(writer, message)
+                continue
             payload = message.payload
             if message.topic is SKELETONS:
                 skeletons: Skeletons = SKELETONS.decode(payload)

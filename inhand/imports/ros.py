@@ -4,25 +4,39 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
-import numpy as np
+import msgspec
 from inhand_runtime.errors import InhandError
+from inhand_runtime.pixels import decode_depth, encode_depth
 from inhand_schemas.keys import require_name
-from inhand_schemas.messages import ColourImage, DepthImage, RgbdFrame
+from inhand_schemas.messages import CameraInfo, ColourImage, DepthImage
 from inhand_schemas.topics import INFO, RGBD
-from rosbags.highlevel import AnyReader, AnyReaderError
+from rosbags.highlevel import AnyReader
 from rosbags.interfaces import Connection
-from rosbags.typesys import Stores, get_typestore
 
-from inhand.imports.foreign import ForeignMessage
-from inhand.imports.pairing import nearest_partners
-from inhand.imports.ros_images import colour_of, depth_of, info_of, is_depth
+from inhand.imports.alignment import DepthAlignment
+from inhand.imports.foreign import ForeignMessage, LeftOut
+from inhand.imports.pairing import FrameAssembler, Stream, Times, frame_rate, paired_frames
+from inhand.imports.realsense import (
+    RealSenseStream,
+    alignment_of,
+    capture_times,
+    depth_units,
+    device_name,
+    lens_of,
+    lens_topic,
+    realsense_streams,
+)
+from inhand.imports.ros_bag import IMAGE, first_message, messages_of, messages_on, read_message
+from inhand.imports.ros_images import DEPTH_SCALE, colour_of, depth_of, info_of, is_depth
+from inhand.progress import progress_bar
 
-IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
+IMAGES = (IMAGE, "sensor_msgs/msg/CompressedImage")
+UNKNOWN = -1
+"""A time of capture that is nowhere."""
+TimesInBag = Mapping[str, Mapping[int, int]]
 LENS = "sensor_msgs/msg/CameraInfo"
 _STAMPS = {True: struct.Struct("<4xiI"), False: struct.Struct("<4xII")}
 """Where a message's header has its time: of ROS 2, and of ROS 1."""
@@ -42,88 +56,57 @@ class RosBag:
     """An open bag with the topics that are read, and how its frames are paired.
 
     ``frames`` has each frame's time of capture by the times of its images, colour and depth, -1
-    where it has none of these. ``unreadable`` counts images that could not be read, and ``reason``
-    says why the first of them could not.
+    where it has none of these. ``info`` is the lens, ``align`` makes depth of another view depth of
+    the colour's; ``device`` is a RealSense's model, whose bags do not say when they received what,
+    and ``taken_ns`` when images were taken by topic and time in the bag, where headers do not.
     """
 
     reader: AnyReader
     topics: RosTopics
-    frames: list[tuple[int, int]]
-    frame_rate: float
-    unreadable: int = 0
-    reason: str = ""
-    _pending: dict[tuple[int, int], dict[str, Any]] = field(default_factory=dict)
+    frames: list[Times]
+    info: CameraInfo
+    align: DepthAlignment | None = None
+    device: str | None = None
+    taken_ns: TimesInBag = field(default_factory=dict)
+    left_out: LeftOut = field(default_factory=LeftOut)
 
     def messages(self, camera: str) -> Iterator[ForeignMessage]:
         """Yield the camera's info and its frames, each when its last image was received."""
         require_name("camera", camera)
-        by_time = {
-            (name, time_ns): frame
-            for frame in self.frames
-            for name, time_ns in zip(("colour", "depth"), frame, strict=True)
-            if time_ns >= 0
-        }
-        names = {self.topics.colour: "colour", self.topics.depth: "depth"}
-        number, begun = 0, False
-        for connection, received_ns, raw in self._raw():
-            if not begun:
-                yield self._info(camera, received_ns)
-                begun = True
-            name = names[connection.topic]
-            frame = by_time.pop((name, _stamp(self.reader, raw, received_ns)), None)
-            if frame is None:
+        assembler, latest_ns = FrameAssembler(self.frames), -1
+        for connection, bag_ns, raw in messages_on(
+            self.reader, self.topics.colour, self.topics.depth
+        ):
+            captured_ns = _captured(self.reader, self.taken_ns, connection.topic, bag_ns, raw)
+            if captured_ns == UNKNOWN:
                 continue
-            images = self._pending.setdefault(frame, {})
-            images[name] = self._image(name, connection, raw)
-            if len(images) < sum(time_ns >= 0 for time_ns in frame):
+            received_ns = max(captured_ns, latest_ns) if self.device else bag_ns
+            if latest_ns < 0:
+                yield ForeignMessage(INFO, camera, self.info, received_ns)
+            latest_ns = received_ns
+            stream: Stream = "colour" if connection.topic == self.topics.colour else "depth"
+            if not assembler.wants(stream, captured_ns):
                 continue
-            del self._pending[frame]
-            message = _frame(number, frame, images.get("colour"), images.get("depth"))
-            if message is not None:
-                yield ForeignMessage(RGBD, camera, message, received_ns)
-                number += 1
-        if number == 0:
-            raise InhandError(f"no frame of it can be read: {self.reason or 'it has none'}")
+            frame = assembler.put(stream, captured_ns, self._image(stream, connection, raw))
+            if frame is not None:
+                yield ForeignMessage(RGBD, camera, frame, received_ns)
+        if not assembler.made:
+            raise InhandError(
+                f"no frame of it can be read: {self.left_out.reason or 'it has none'}"
+            )
 
-    def _raw(self) -> Iterator[tuple[Connection, int, bytes]]:
-        wanted = (self.topics.colour, self.topics.depth)
-        chosen = [one for one in self.reader.connections if one.topic in wanted]
-        yield from self.reader.messages(chosen)
-
-    def _image(self, name: str, connection: Connection, raw: bytes) -> Any:
+    def _image(
+        self, stream: Stream, connection: Connection, raw: bytes
+    ) -> ColourImage | DepthImage | None:
         try:
-            message = self.reader.deserialize(raw, connection.msgtype)
-            return colour_of(message) if name == "colour" else depth_of(message)
-        except (InhandError, AnyReaderError) as error:
-            self.unreadable += 1
-            self.reason = self.reason or f"{connection.topic}: {error}"
+            message = read_message(self.reader, connection, raw)
+            if stream == "colour":
+                return colour_of(message)
+            depth = depth_of(message)
+            return depth if self.align is None else encode_depth(self.align(decode_depth(depth)))
+        except InhandError as error:
+            self.left_out.add(f"{connection.topic}: {error}")
             return None
-
-    def _info(self, camera: str, received_ns: int) -> ForeignMessage:
-        chosen = [one for one in self.reader.connections if one.topic == self.topics.camera_info]
-        for connection, _, raw in self.reader.messages(chosen):
-            message = self.reader.deserialize(raw, connection.msgtype)
-            time_ns = min(max(frame) for frame in self.frames)
-            info = info_of(message, time_ns, self.frame_rate)
-            return ForeignMessage(INFO, camera, info, received_ns)
-        raise InhandError(f"{self.topics.camera_info} has no message")
-
-
-@contextmanager
-def open_bag(path: Path) -> Iterator[AnyReader]:
-    """Open a bag of ROS 1 (a file), of ROS 2 (a folder), or an MCAP file with messages of ROS 2.
-
-    Raises InhandError for what is none.
-    """
-    try:
-        reader = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE))
-        reader.open()
-    except (AnyReaderError, OSError) as error:
-        raise InhandError(f"{path} is no bag of ROS that can be read: {error}") from None
-    try:
-        yield reader
-    finally:
-        reader.close()
 
 
 def plan_import(reader: AnyReader, asked: Mapping[str, str | None]) -> RosBag:
@@ -132,11 +115,57 @@ def plan_import(reader: AnyReader, asked: Mapping[str, str | None]) -> RosBag:
     ``asked`` has a topic for ``colour``, ``depth`` and ``camera_info`` where one is chosen. Raises
     InhandError where one is missing, or there are several and none is chosen.
     """
+    streams = realsense_streams(reader.connections)
+    if streams:
+        return _plan_realsense(reader, streams, asked)
     topics = _topics(reader, asked)
-    frames = _frames(_times(reader, topics.colour), _times(reader, topics.depth))
-    steps = np.diff([max(frame) for frame in frames])
-    rate = float(1e9 / np.median(steps)) if len(steps) and np.median(steps) > 0 else 30.0
-    return RosBag(reader, topics, frames, rate)
+    frames = _paired(reader, topics, {})
+    return RosBag(reader, topics, frames, _lens(reader, topics.camera_info, frames))
+
+
+def _plan_realsense(
+    reader: AnyReader, streams: Sequence[RealSenseStream], asked: Mapping[str, str | None]
+) -> RosBag:
+    by_topic = {stream.topic: stream for stream in streams}
+    chosen = {
+        name: _one(name, [one.topic for one in streams if one.kind == kind], asked[name])
+        for name, kind in (("colour", "Color"), ("depth", "Depth"))
+    }
+    main = by_topic.get(chosen["colour"] or chosen["depth"] or "")
+    if main is None:
+        raise InhandError(f"neither colour nor depth is in it; its topics are: {_listed(reader)}")
+    lens = _one("camera_info", [lens_topic(reader, main)], asked["camera_info"])
+    assert lens is not None  # it is the only one
+    topics = RosTopics(chosen["colour"], chosen["depth"], lens)
+    taken_ns = {topic: capture_times(reader, by_topic[topic]) for topic in chosen.values() if topic}
+    frames = _paired(reader, topics, taken_ns)
+    if not frames:
+        raise InhandError("no image in it says when it was taken")
+    since = min(max(frame) for frame in frames), frame_rate(frames)
+    info, align, units = lens_of(reader, main, *since), None, DEPTH_SCALE
+    if topics.depth is not None:
+        depth = by_topic[topics.depth]
+        units = depth_units(reader, depth)
+        if depth is not main:
+            of_depth = lens_of(reader, depth, *since)
+            align = alignment_of(reader, (depth, of_depth), (main, info), units)
+    device = device_name(reader, main)
+    about = {"depth_scale": units, "description": f"{device}, of a bag"}
+    info = msgspec.structs.replace(info, **about)
+    return RosBag(reader, topics, frames, info, align, device, taken_ns)
+
+
+def _paired(reader: AnyReader, topics: RosTopics, taken_ns: TimesInBag) -> list[Times]:
+    colour, depth = (_times(reader, topic, taken_ns) for topic in (topics.colour, topics.depth))
+    return paired_frames(colour, depth)
+
+
+def _lens(reader: AnyReader, topic: str, frames: Sequence[Times]) -> CameraInfo:
+    """Return the lens; raises InhandError where there is none."""
+    message = first_message(reader, topic)
+    if message is None:
+        raise InhandError(f"{topic} has no message")
+    return info_of(message, min(max(frame) for frame in frames), frame_rate(frames))
 
 
 def _topics(reader: AnyReader, asked: Mapping[str, str | None]) -> RosTopics:
@@ -184,46 +213,31 @@ def _listed(reader: AnyReader) -> str:
 
 def _first(reader: AnyReader, connection: Connection) -> Any:
     """Return the first message of a connection; None without any."""
-    for _, _, raw in reader.messages([connection]):
-        try:
-            return reader.deserialize(raw, connection.msgtype)
-        except AnyReaderError as error:
-            raise InhandError(f"{connection.topic} cannot be read: {error}") from None
+    for _, _, raw in messages_of(reader, [connection]):
+        return read_message(reader, connection, raw)
     return None
 
 
-def _times(reader: AnyReader, topic: str | None) -> list[int]:
+def _times(reader: AnyReader, topic: str | None, taken_ns: TimesInBag) -> list[int]:
     """Return the times of capture of a topic's messages, each once, as they rise."""
-    chosen = [one for one in reader.connections if one.topic == topic]
-    if not chosen:
+    if topic is None:
         return []
-    return sorted({_stamp(reader, raw, at_ns) for _, at_ns, raw in reader.messages(chosen)})
+    times = set()
+    with progress_bar(f"times of {topic}", reader.topics[topic].msgcount) as advance:
+        for _, bag_ns, raw in messages_on(reader, topic):
+            times.add(_captured(reader, taken_ns, topic, bag_ns, raw))
+            advance()
+    return sorted(times - {UNKNOWN})
 
 
-def _stamp(reader: AnyReader, raw: bytes, received_ns: int) -> int:
-    """Return a message's time of capture in nanoseconds; that of its reception without one."""
-    seconds, rest = _STAMPS[reader.is2].unpack_from(raw)
+def _captured(reader: AnyReader, taken_ns: TimesInBag, topic: str, bag_ns: int, raw: bytes) -> int:
+    """Return when an image was taken, in nanoseconds: by its header, or its time in the bag where
+    that says nothing; UNKNOWN where it is to be looked up and is not there."""
+    if taken_ns.get(topic):
+        return taken_ns[topic].get(bag_ns, UNKNOWN)
+    try:
+        seconds, rest = _STAMPS[reader.is2].unpack_from(raw)
+    except struct.error:
+        return bag_ns
     time_ns: int = 1_000_000_000 * seconds + rest
-    return time_ns if time_ns > 0 else received_ns
-
-
-def _frames(colour: list[int], depth: list[int]) -> list[tuple[int, int]]:
-    if not colour:
-        return [(-1, time_ns) for time_ns in depth]
-    return list(zip(colour, nearest_partners(colour, depth), strict=True))
-
-
-def _frame(
-    number: int, times: tuple[int, int], colour: ColourImage | None, depth: DepthImage | None
-) -> RgbdFrame | None:
-    if colour is None and depth is None:
-        return None
-    time_ns = times[0] if times[0] >= 0 else times[1]
-    apart_ns = abs(times[0] - times[1]) if min(times) >= 0 else 0
-    return RgbdFrame(
-        sequence=number,
-        time_ns=time_ns,
-        time_uncertainty_ns=apart_ns,
-        colour=colour,
-        depth=depth,
-    )
+    return time_ns if time_ns > 0 else bag_ns

@@ -18,8 +18,11 @@ _COLOURS = {
     "rgba8": (4, cv2.COLOR_RGBA2RGB),
     "bgra8": (4, cv2.COLOR_BGRA2RGB),
     "mono8": (1, cv2.COLOR_GRAY2RGB),
+    "yuv422": (2, cv2.COLOR_YUV2RGB_UYVY),
+    "yuv422_yuy2": (2, cv2.COLOR_YUV2RGB_YUY2),
+    "YUYV": (2, cv2.COLOR_YUV2RGB_YUY2),
 }
-"""Channels of an encoding, and what makes RGB of it."""
+"""Bytes of a pixel in an encoding, and what makes RGB of it; ``YUYV`` is RealSense's name."""
 _DEPTHS = {"16UC1": "u2", "mono16": "u2", "32FC1": "f4"}
 _COMPRESSED_DEPTH_HEAD = 12
 """Bytes before the PNG of a ``compressedDepth`` image."""

@@ -131,6 +131,25 @@ class RgbdFrame(Message, frozen=True, kw_only=True):
     depth: DepthImage | None = None
 
 
+class ViewedColour(ColourImage, frozen=True):
+    """Colour whose ``data`` is a view of what it was decoded from."""
+
+    data: memoryview  # type: ignore[assignment]
+
+
+class ViewedDepth(DepthImage, frozen=True):
+    """Depth whose ``data`` is a view of what it was decoded from."""
+
+    data: memoryview  # type: ignore[assignment]
+
+
+class ViewedFrame(RgbdFrame, frozen=True, kw_only=True):
+    """A frame that was decoded without a copy of its pictures."""
+
+    colour: ViewedColour | None = None
+    depth: ViewedDepth | None = None
+
+
 class Preview(Message, frozen=True, kw_only=True):
     """A small JPEG for far viewers; ``sequence`` and ``time_ns`` are the source frame's."""
 
@@ -301,7 +320,9 @@ class RecordingState(Struct, frozen=True, kw_only=True):
     The last ``ring_seconds`` are held in ``ring_bytes`` of memory, and ``clip`` is the name of the
     file that is made of them, while one is. All recordings of its folder take ``folder_bytes``,
     ``free_bytes`` of the disk are free, and ``deleted`` is how many recordings its quotas have
-    deleted since it started.
+    deleted since it started. ``unmanaged`` of the recordings, of ``unmanaged_bytes``, no quota
+    deletes, as no recorder of this release or a later one has written them; clips take
+    ``clips_bytes`` beside them all.
     """
 
     paused: bool = False
@@ -313,6 +334,9 @@ class RecordingState(Struct, frozen=True, kw_only=True):
     folder_bytes: Count = 0
     free_bytes: Count = 0
     deleted: Count = 0
+    unmanaged: Count = 0
+    unmanaged_bytes: Count = 0
+    clips_bytes: Count = 0
 
     def __post_init__(self) -> None:
         require_finite("time", (self.ring_seconds,))

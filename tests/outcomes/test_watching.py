@@ -21,7 +21,7 @@ def a_watcher() -> Watcher:
 def watch(watcher: Watcher, frames: Frames) -> list[Outcome]:
     outcomes = []
     for skeletons, pose in frames:
-        watcher.hear_skeletons("front", skeletons)
+        outcomes += watcher.hear_skeletons("front", skeletons)
         outcomes += watcher.hear_pose(pose)
     return outcomes
 
@@ -48,6 +48,20 @@ def test_the_same_act_has_the_same_id_whoever_watches() -> None:
     first, second = (watch(a_watcher(), Carrying().messages()) for _ in range(2))
     assert [one.id for one in first] == [one.id for one in second]
     assert len({one.id for one in first}) == 2
+
+
+@pytest.mark.parametrize("late", [1, 5, 50])
+def test_poses_wait_for_the_people_of_their_frame(late: int) -> None:
+    watcher = a_watcher()
+    frames = list(Carrying().messages())
+    outcomes = []
+    for number, (_, pose) in enumerate(frames):
+        outcomes += watcher.hear_pose(pose)
+        if number >= late:
+            outcomes += watcher.hear_skeletons("front", frames[number - late][0])
+    for skeletons, _ in frames[-late:]:
+        outcomes += watcher.hear_skeletons("front", skeletons)
+    assert kinds(outcomes + watcher.end_all()) == ["taken_up", "put_down"]
 
 
 def test_frames_that_come_twice_count_once() -> None:

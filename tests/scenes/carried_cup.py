@@ -1,7 +1,9 @@
 """Somebody who carries a cup about, as the messages of a tracker and a camera."""
 
+import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from inhand_outcomes.thing import Thing
@@ -94,3 +96,13 @@ def a_pose(
         camera_from_object=Pose((x, y, z), (1.0, 0.0, 0.0, 0.0)),
         covariance=COVARIANCE,
     )
+
+
+def write_model(path: Path, interaction: str = "carryCup") -> Path:
+    """Write as much of a model of the cup as tells its mesh."""
+    said = json.dumps({"object": CUP.name, "interaction": interaction})
+    faces = np.zeros((1, 3), np.int64)
+    arrays = {"model": np.array(said), "shape.vertices": CUP.vertices, "shape.faces": faces}
+    with path.open("wb") as file:
+        np.savez(file, **arrays)
+    return path

@@ -146,6 +146,12 @@ KEEPING = replace(
     PAUSED,
     recording=RECORDING,
 )
+UNMANAGED = replace(
+    PAUSED,
+    recording=RecordingState(
+        folder_bytes=1 << 33, unmanaged=2, unmanaged_bytes=1 << 32, clips_bytes=1 << 31
+    ),
+)
 REFUSED = replace(LATE, topics={"(other keys)": TopicHealth(refused=12)})
 
 PNG = RgbdFrame(
@@ -184,6 +190,7 @@ GOLDEN_MESSAGES: dict[str, Message] = {
     "Health.v1.paused": PAUSED,
     "Health.v1.refused": REFUSED,
     "Health.v1.shutter": SHUT,
+    "Health.v1.unmanaged": UNMANAGED,
     "ObjectPose.v1.truth": TRUTH,
     "RgbdFrame.v1.png": PNG,
     "Skeletons.v1.convention": NAMED,

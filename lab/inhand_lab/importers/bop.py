@@ -7,21 +7,19 @@ The camera is OpenCV's there as here, so a label's rotation is ``cam_R_m2c``, an
 import logging
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
 
-import cv2
 import msgspec
-import numpy as np
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_schemas.messages import CameraInfo, Message, RgbdFrame
-from numpy.typing import NDArray
 
 from inhand_lab.datasets.dataset import Dataset, DatasetEntry, DatasetError
 from inhand_lab.datasets.dataset_writer import DatasetWriter
+from inhand_lab.importers.bop_images import grey_bits, read_bop_pixels
 from inhand_lab.importers.bop_models import find_models_folder, read_bop_shape
 from inhand_lab.importers.bop_scenes import BopCamera, BopFrame, BopScene, read_scenes
-from inhand_lab.importers.images import first_readable, read_image
+from inhand_lab.importers.images import first_readable
 from inhand_lab.importers.messages import imported_label
 from inhand_lab.importers.parameters import DEFAULT_IMPORT
 from inhand_lab.importers.timing import Timing, thin
@@ -40,6 +38,11 @@ class _Take:
     file: str
     camera: BopCamera
     frames: tuple[BopFrame, ...]
+
+    @cached_property
+    def grey_bits(self) -> int:
+        """Number of bits that the colour's pixels use."""
+        return grey_bits(self.frames)
 
 
 def import_bop(
@@ -140,7 +143,7 @@ def _messages(take: _Take, info: CameraInfo, timing: Timing) -> Iterator[Message
     for frame in take.frames:
         time_ns = timing.time_ns(frame.number)
         try:
-            colour, depth = _read_pixels(frame)
+            colour, depth = read_bop_pixels(frame, take.grey_bits)
         except DatasetError as error:
             log.warning("%s; the frame is left out", error)
             continue
@@ -159,7 +162,7 @@ def _messages(take: _Take, info: CameraInfo, timing: Timing) -> Iterator[Message
 
 def _camera_info(take: _Take, timing: Timing) -> CameraInfo:
     camera = take.camera
-    colour, depth = first_readable(take.frames, _read_pixels)
+    colour, depth = first_readable(take.frames, partial(read_bop_pixels, grey_bits=take.grey_bits))
     height, width = next(one.shape[:2] for one in (colour, depth) if one is not None)
     try:
         return CameraInfo(
@@ -179,31 +182,3 @@ def _camera_info(take: _Take, timing: Timing) -> CameraInfo:
         )
     except ValueError as error:
         raise DatasetError(f"{take.scene.folder}: {error}") from None
-
-
-def _read_pixels(frame: BopFrame) -> tuple[NDArray[Any] | None, NDArray[Any] | None]:
-    """Read a frame's colour and depth, of which one may be None; raises DatasetError."""
-    colour = None if frame.colour is None else _read_colour(frame.colour)
-    depth = None if frame.depth is None else _read_depth(frame.depth)
-    if colour is None and depth is None:
-        raise DatasetError(f"image {frame.number} has neither colour nor depth")
-    if colour is not None and depth is not None and depth.shape != colour.shape[:2]:
-        raise DatasetError(
-            f"{frame.depth} is {depth.shape[1]} × {depth.shape[0]}, and {frame.colour} "
-            f"{colour.shape[1]} × {colour.shape[0]}: they should be aligned"
-        )
-    return colour, depth
-
-
-def _read_colour(path: Path) -> NDArray[Any]:
-    """Read RGB (H, W, 3), of a grey image three times the same, as the file has its pixels."""
-    return read_image(path, cv2.IMREAD_COLOR_RGB | cv2.IMREAD_IGNORE_ORIENTATION)
-
-
-def _read_depth(path: Path) -> NDArray[Any]:
-    depth = read_image(path, cv2.IMREAD_UNCHANGED)
-    if depth.dtype != np.uint16 or depth.ndim != 2:
-        raise DatasetError(
-            f"{path} is {depth.dtype} {depth.shape}, and depth is uint16 with one channel"
-        )
-    return depth

@@ -6,6 +6,7 @@ an offset).
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -13,8 +14,12 @@ from typing import Any
 
 import msgspec
 import numpy as np
+from inhand_runtime.errors import InhandError
+from inhand_schemas.errors import KeyFormatError
+from inhand_schemas.keys import require_name
 from inhand_tracker.geometry import rotations
-from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.arrays import Array, Indices
+from inhand_tracker.shape.mesh_file import read_mesh
 from inhand_tracker.shape.shape import ObjectShape, Symmetry
 
 from inhand_lab.datasets.dataset import DatasetError
@@ -31,6 +36,7 @@ class _ContinuousSymmetry(msgspec.Struct, frozen=True):
 
 
 class _ModelInfo(msgspec.Struct, frozen=True):
+    name: str | None = None
     diameter: float | None = None
     symmetries_discrete: tuple[tuple[float, ...], ...] = ()
     symmetries_continuous: tuple[_ContinuousSymmetry, ...] = ()
@@ -76,6 +82,40 @@ def read_bop_shape(models: Path, object_id: int) -> ObjectShape | None:
         marked_vertices=raw.marked_vertices * M_PER_MM,
         symmetries=symmetries,
     )
+
+
+def read_bop_mesh(models: Path, object_id: int) -> tuple[Array, Indices] | None:
+    """Read an object's vertices (V, 3) in metres and faces (F, 3); None where it has no mesh.
+
+    Raises DatasetError for a mesh that cannot be used, whatever its symmetries are.
+    """
+    path = models / f"{bop_object_name(object_id)}.ply"
+    if not path.is_file():
+        return None
+    try:
+        vertices, faces = read_mesh(path)
+    except InhandError as error:
+        raise DatasetError(str(error)) from None
+    info = _read_info(models / INFO_FILE).get(object_id, _ModelInfo())
+    _check_diameter(path, vertices, info.diameter)
+    return vertices * M_PER_MM, faces
+
+
+def read_bop_names(models: Path) -> dict[int, str]:
+    """Return the names of objects, by their numbers: those that our exports write beside the
+    benchmark's own fields, without any that no key can have, or that several have."""
+    infos = _read_info(models / INFO_FILE)
+    names = {number: info.name for number, info in infos.items() if info.name is not None}
+    counts = Counter(names.values())
+    return {number: name for number, name in names.items() if _is_name(name) and counts[name] == 1}
+
+
+def _is_name(text: str) -> bool:
+    try:
+        require_name("object", text)
+    except KeyFormatError:
+        return False
+    return True
 
 
 def discrete_symmetries(matrices: Iterable[Array]) -> tuple[Symmetry, ...]:

@@ -81,11 +81,15 @@ class BopFrame:
 
 @dataclass(frozen=True)
 class BopScene:
-    """A scene as one sensor saw it; ``name`` is ``test_000001``, and the sensor's after it."""
+    """A scene as one sensor saw it; ``name`` is ``test_000001``, and the sensor's after it.
+
+    ``labelled`` says whether it has a file of truth: test scenes of a challenge have none.
+    """
 
     folder: Path
     name: str
     frames: tuple[BopFrame, ...]
+    labelled: bool
 
 
 def read_scenes(source: Path) -> list[BopScene]:
@@ -96,19 +100,14 @@ def read_scenes(source: Path) -> list[BopScene]:
     """
     if not source.is_dir():
         raise DatasetError(f"{source} is no folder: name the folder of a BOP data set")
-    cameras = [
-        path
-        for pattern in ("", "*/", "*/*/")
-        for path in sorted(source.glob(f"{pattern}{CAMERA_FILE}*.json"))
-    ]
     scenes, errors = [], []
-    for path in cameras:
+    for path in find_camera_files(source):
         sensor = path.stem.removeprefix(CAMERA_FILE)
         if not path.with_name(f"{TRUTH}{sensor}.json").is_file():
             log.warning("%s has no %s%s.json: left out", path.parent, TRUTH, sensor)
             continue
         try:
-            scenes.append(_read_scene(path.parent, sensor))
+            scenes.append(read_scene(path))
         except DatasetError as error:
             errors.append(error)
     if errors and not scenes:
@@ -123,11 +122,24 @@ def read_scenes(source: Path) -> list[BopScene]:
     return scenes
 
 
-def _read_scene(folder: Path, sensor: str) -> BopScene:
-    cameras_file = folder / f"{CAMERA_FILE}{sensor}.json"
+def find_camera_files(source: Path) -> list[Path]:
+    """Find the ``scene_camera….json``, one of each scene and sensor, of a data set, of one of its
+    splits, or of one scene."""
+    patterns = (f"{depth}{CAMERA_FILE}*.json" for depth in ("", "*/", "*/*/"))
+    return [path for pattern in patterns for path in sorted(source.glob(pattern))]
+
+
+def read_scene(cameras_file: Path) -> BopScene:
+    """Read a scene by its ``scene_camera….json``, without labels where it has no truth.
+
+    Warns of frames without an image, which are left out; raises DatasetError for damaged files.
+    """
+    folder = cameras_file.parent
+    sensor = cameras_file.stem.removeprefix(CAMERA_FILE)
     truth_file = folder / f"{TRUTH}{sensor}.json"
     cameras = read_bop_json(cameras_file, dict[int, _Camera])
-    truth = read_bop_json(truth_file, dict[int, tuple[_Instance, ...]])
+    labelled = truth_file.is_file()
+    truth = read_bop_json(truth_file, dict[int, tuple[_Instance, ...]]) if labelled else {}
     visible = _visible_fractions(folder / f"{TRUTH_INFO}{sensor}.json", truth)
     if missing := sorted(set(truth) - set(cameras)):
         raise DatasetError(f"{cameras_file} has no image {missing[0]}, and {truth_file.name} has")
@@ -155,7 +167,7 @@ def _read_scene(folder: Path, sensor: str) -> BopScene:
         if files and without:
             log.warning("%s: %d of %d frames have no %s", folder, without, len(frames), what)
     resolved = folder.resolve()
-    return BopScene(folder, f"{resolved.parent.name}_{resolved.name}{sensor}", frames)
+    return BopScene(folder, f"{resolved.parent.name}_{resolved.name}{sensor}", frames, labelled)
 
 
 def _images(folder: Path, names: Sequence[str]) -> dict[int, Path]:

@@ -105,6 +105,10 @@ class Sightings:
         while len(self._people) > self._parameters.frames_that_wait:
             self._people.popitem(last=False)
 
+    def knows(self, camera: str, time_ns: int) -> bool:
+        """Whether the people of a frame have come."""
+        return (camera, time_ns) in self._people
+
     def joints(self, camera: str, person: Person) -> Array:
         """A person's joints (20, 3) in the rig, NaN where missing."""
         joints = np.array(person.joints)

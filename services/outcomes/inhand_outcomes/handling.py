@@ -43,7 +43,7 @@ class HandlingParameters:
     still_m: float = 0.04
     """Distance by which it may wander meanwhile, metres: the wander of a tracked pose."""
     least_seen: float = 0.7
-    """Share of the frames of that time in which it must be seen."""
+    """Share of the frames of that time in which it, and both hands, must be seen."""
     moved_m: float = 0.06
     """Distance from where it lay by which a thing was moved, metres."""
     fallen_m: float = 0.35
@@ -106,12 +106,16 @@ def _states(track: Track, thing: Thing, parameters: HandlingParameters) -> Array
     states = np.full(len(track), UNKNOWN)
     with np.errstate(invalid="ignore"):
         states[track.seen & (hands < parameters.near_m).any(axis=1)] = HELD
-    for stay in _stays(track, parameters):
-        nearest, farthest = hands[stay].min(axis=0), hands[stay].max(axis=0)
-        free = (nearest > parameters.far_m) & (farthest > parameters.away_m)
-        free |= farthest - nearest > parameters.passed_m
-        if free.all():
-            states[stay][track.seen[stay] & (hands[stay] > parameters.near_m).all(axis=1)] = LYING
+        for stay in _stays(track, parameters):
+            known = hands[stay][~np.isnan(hands[stay]).any(axis=1)]
+            if len(known) < parameters.least_seen * len(hands[stay]):
+                continue
+            nearest, farthest = known.min(axis=0), known.max(axis=0)
+            free = (nearest > parameters.far_m) & (farthest > parameters.away_m)
+            free |= farthest - nearest > parameters.passed_m
+            if free.all():
+                lying = track.seen[stay] & (hands[stay] > parameters.near_m).all(axis=1)
+                states[stay][lying] = LYING
     states[_worn(track, parameters)] = UNKNOWN
     return states
 

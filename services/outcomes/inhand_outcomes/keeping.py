@@ -18,6 +18,7 @@ from inhand_outcomes.store.retention import Retention
 from inhand_outcomes.store.saving import Keeping, Kept
 
 POSTGRESQL = "postgresql+psycopg://"
+LOCAL_TIME = Path("/etc/localtime")
 
 
 def _database(text: str, info: ValidationInfo) -> str:
@@ -42,22 +43,31 @@ def _zone(name: str) -> str:
     return name
 
 
+def host_time_zone() -> str:
+    """Return the name of the time zone that this host is set to, UTC where none can be read."""
+    _, _, name = str(LOCAL_TIME.resolve()).partition("/zoneinfo/")
+    try:
+        return _zone(name)
+    except ValueError:
+        return "UTC"
+
+
 class KeepingSettings(Section):
     """What ``[outcomes.NAME]`` says of keeping.
 
     ``database`` is a file of SQLite, or the address of PostgreSQL with its password in
-    ``password_file``. Days are local ones of ``time_zone``. Outcomes are counted from the
-    probability ``sure`` on. Details are kept for ``keep_days``, with the kinds of evidence that
-    ``keep`` names, and the totals of days for ``keep_totals_days``; 0 is for ever. ``people`` are
-    names of the numbers that people have, ``goals`` what is to be reached, and ``quiet`` the hours
-    without reminders.
+    ``password_file``. Days are local ones of ``time_zone``, the host's unless said. Outcomes are
+    counted from the probability ``sure`` on. Details are kept for ``keep_days``, with the kinds of
+    evidence that ``keep`` names, and the totals of days for ``keep_totals_days``; 0 is for ever.
+    ``people`` are names of the numbers that people have, ``goals`` what is to be reached, and
+    ``quiet`` the hours without reminders.
     """
 
     database: Annotated[str, AfterValidator(_database)] = Field(
         default="outcomes.db", validate_default=True
     )
     password_file: FilePath | None = None
-    time_zone: Annotated[str, AfterValidator(_zone)] = "UTC"
+    time_zone: Annotated[str, AfterValidator(_zone)] = Field(default_factory=host_time_zone)
     sure: Annotated[float, Field(ge=0, le=1)] = 0.5
     keep: frozenset[Kept] = frozenset({"numbers", "poses"})
     keep_days: Annotated[int, Field(ge=0)] = 400

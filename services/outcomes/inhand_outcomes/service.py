@@ -3,6 +3,7 @@
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import date
 
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.inbox import Received
@@ -10,12 +11,19 @@ from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
 from inhand_schemas.messages import Event
 from inhand_schemas.topics import EVENT, INFO, POSE, SKELETONS, topic_of
+from msgspec.structs import replace
 
 from inhand_outcomes.capture_clock import CaptureClock
+from inhand_outcomes.days import local_day
 from inhand_outcomes.keeping import open_kept
 from inhand_outcomes.memory import Memory
 from inhand_outcomes.outcome import Outcome
+from inhand_outcomes.rules import Rules
 from inhand_outcomes.settings import OutcomesSettings, check
+from inhand_outcomes.store.database import Database
+from inhand_outcomes.store.failures import StoreError
+from inhand_outcomes.store.goal_marks import events_to_publish, judge_goals, mark_published
+from inhand_outcomes.store.retention import Retention, remove_old
 from inhand_outcomes.store.saving import Saver, read_journal
 from inhand_outcomes.store.waiting import WaitingOutcomes
 from inhand_outcomes.things import load_things, models_of
@@ -43,7 +51,8 @@ def run(settings: Settings[OutcomesSettings]) -> None:
             daemon.health.trouble("objects", NO_OBJECTS)
         place = f"{settings.site.realm}/{settings.site.rig}"
         waiting = WaitingOutcomes(lambda: Saver(open_kept(chosen), chosen.keeping))
-        OutcomesLoop(daemon, Watcher(things, place), waiting).run()
+        watcher = Watcher(things, place)
+        OutcomesLoop(daemon, watcher, waiting, chosen.rules, chosen.retention).run()
 
 
 NO_OBJECTS = (
@@ -59,19 +68,21 @@ class OutcomesLoop:
     daemon: Daemon
     watcher: Watcher
     waiting: WaitingOutcomes
+    rules: Rules
+    retention: Retention
 
     def __post_init__(self) -> None:
         self._clock = CaptureClock()
         self._memory = Memory(self.watcher)
         self._events: Publisher[Event] = self.daemon.publisher(EVENT, self.daemon.instance)
         self._published = 0
+        self._tidied: date | None = None
 
     def run(self) -> None:
-        """Measure until stopped, and settle what is open then."""
+        """Measure until stopped; what is open then is remembered for the next process."""
         self._recall()
         for topic in (INFO, SKELETONS, POSE):
             self.daemon.subscribe(topic, samples=QUEUE_SAMPLES)
-        self.daemon.health.state = "running"
         settled: list[Outcome] = []
         next_save = time.monotonic() + SAVE_PERIOD_S
         while not self.daemon.stop.is_set():
@@ -99,7 +110,7 @@ class OutcomesLoop:
             skeletons = self.daemon.decode(SKELETONS, sample)
             if skeletons is not None:
                 self._clock.hear(skeletons.time_ns)
-                self.watcher.hear_skeletons(key.name, skeletons)
+                return self.watcher.hear_skeletons(key.name, skeletons)
         if topic is INFO:
             info = self.daemon.decode(INFO, sample)
             if info is not None:
@@ -122,7 +133,26 @@ class OutcomesLoop:
                 self._memory = Memory(self.watcher)
             for outcome in saved.added:
                 self._publish(outcome.message(self._published))
+        if self.waiting.saver is not None:
+            try:
+                self._look_after(self.waiting.saver.database)
+            except StoreError as error:
+                self.daemon.health.error(str(error))
         self._show()
+
+    def _look_after(self, database: Database) -> None:
+        """Judge the goals, and once a day remove what is old; raises StoreError."""
+        now_ns = self._clock.now_ns()
+        judge_goals(database, self.rules, now_ns)
+        events = events_to_publish(database)
+        for event in events:
+            self._publish(replace(event, sequence=self._published))
+        if events:
+            mark_published(database, events)
+        today = local_day(now_ns, self.rules.zone)
+        if today != self._tidied:
+            remove_old(database, self.retention, today)
+            self._tidied = today
 
     def _publish(self, event: Event) -> None:
         self._events.put(event)

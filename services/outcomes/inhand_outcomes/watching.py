@@ -16,6 +16,7 @@ from inhand_outcomes.room import LEVEL, Room
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 from inhand_outcomes.uses import USES
+from inhand_outcomes.waiting_poses import WaitingPoses
 
 HANDED_OVER = "handed_over"
 
@@ -49,18 +50,28 @@ class Watcher:
         self._place = place
         self._parameters = parameters
         self._sightings = Sightings(parameters)
+        self._waiting = WaitingPoses(parameters.frames_that_wait)
         self.followed: dict[Holding, Followed] = {}
 
     def hear_info(self, camera: str, info: CameraInfo) -> None:
         """Take note of where a camera stands."""
         self._sightings.hear_info(camera, info)
 
-    def hear_skeletons(self, camera: str, skeletons: Skeletons) -> None:
-        """Take the people of a frame."""
+    def hear_skeletons(self, camera: str, skeletons: Skeletons) -> list[Outcome]:
+        """Take the people of a frame; what is settled by poses that waited for them."""
         self._sightings.hear_skeletons(camera, skeletons)
+        return self._follow_all(self._waiting.take(camera, skeletons.time_ns))
 
     def hear_pose(self, message: ObjectPose) -> list[Outcome]:
         """Take a pose; what is settled by now of its object and person."""
+        if message.person is None or self._sightings.knows(message.camera, message.time_ns):
+            return self._follow(message)
+        return self._follow_all(self._waiting.put(message))
+
+    def _follow_all(self, messages: Iterable[ObjectPose]) -> list[Outcome]:
+        return [outcome for message in messages for outcome in self._follow(message)]
+
+    def _follow(self, message: ObjectPose) -> list[Outcome]:
         found = self._sightings.sighting(message)
         if found is None:
             return []
@@ -82,12 +93,13 @@ class Watcher:
 
     def end_quiet(self, now_ns: int) -> list[Outcome]:
         """Settle the tracks of which nothing came for long, by the clock of capture times."""
+        outcomes = self._follow_all(self._waiting.take_all())
         quiet = [
             (holding, followed)
             for holding, followed in self.followed.items()
             if abs(now_ns - followed.gathering.last_ns) > self._gap_ns
         ]
-        return self._end(quiet)
+        return outcomes + self._end(quiet)
 
     def forget(self) -> None:
         """Know nothing of what came until now."""
@@ -95,7 +107,8 @@ class Watcher:
 
     def end_all(self) -> list[Outcome]:
         """Settle all tracks, at the end of what comes."""
-        return self._end(list(self.followed.items()))
+        outcomes = self._follow_all(self._waiting.take_all())
+        return outcomes + self._end(list(self.followed.items()))
 
     def follow(self, holding: Holding, time_ns: int) -> Followed:
         """Follow an object in a person's hands from a capture time on."""

@@ -8,12 +8,9 @@ from pathlib import Path
 from inhand_runtime.recording import RecordingError, RecordingWriter
 from inhand_runtime.recording.part_file import PART_SUFFIX, no_room
 
+from inhand_recorder.attachments import attach_mesh
 from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
-
-MESH_PLACE = "objects/{}/mesh.ply"
-MESH_TYPE = "model/ply"
-"""The name and the type of the attachment that holds an object's mesh."""
 
 
 @dataclass(frozen=True)
@@ -126,9 +123,7 @@ class RecordingFile:
         """Write what each file of a recorder begins with."""
         self.note_all(handling.records())
         for name, data in handling.meshes().items():
-            self._writer.add_attachment(
-                MESH_PLACE.format(name), MESH_TYPE, data, received_ns=now_ns
-            )
+            attach_mesh(self._writer, name, data, now_ns)
 
     def repeat(self, entry: Entry, received_ns: int) -> None:
         """Add an entry of before this file, as if it were received with the file's first one."""
@@ -154,6 +149,10 @@ class RecordingFile:
         """Bring everything to the disk, and make sure that the file is still there."""
         self._writer.sync()
         self.worth_keeping = True
+        self._require_part()
+        self._in_memory.clear()
+
+    def _require_part(self) -> None:
         try:
             self._part.stat()
         except OSError as error:
@@ -161,13 +160,13 @@ class RecordingFile:
                 f"{self._part} was removed while it was written ({error.strerror}): "
                 "bring its disk or folder back; a new file is begun"
             ) from error
-        self._in_memory.clear()
 
     def finish(
         self, dropped: Mapping[str, int], unwritten: Mapping[str, int] | None = None
     ) -> Path:
         """Write the losses (with the drops of a queue by key, and those for which the disk was to
-        blame) and give the file its name."""
+        blame), bring everything to the disk, and give the file its name."""
+        self._require_part()
         losses = self._losses.losses(dropped, unwritten)
         self._writer.add_metadata(LOSSES_RECORD, format_losses(losses))
         return self._writer.close()

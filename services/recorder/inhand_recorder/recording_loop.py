@@ -226,6 +226,9 @@ class RecordingLoop:
             folder_bytes=retention.folder_bytes,
             free_bytes=retention.free_bytes,
             deleted=retention.deleted,
+            unmanaged=retention.foreign.files,
+            unmanaged_bytes=retention.foreign.bytes,
+            clips_bytes=retention.clips.bytes,
         )
         self._daemon.health.recording = state
         return state

@@ -13,7 +13,7 @@ def entry_of(sample: Received) -> Entry:
     that cannot be read would spoil its recording for whoever replays or trains from it.
     """
     topic, _ = topic_of(sample.key)
-    message = topic.decode(sample.payload, sample.encoding)
+    message = topic.check(sample.payload, sample.encoding)
     return Entry(
         key=sample.key,
         payload=sample.payload,

@@ -152,7 +152,7 @@ class _Messages:
         self._received_ns[key] = message.log_time
         try:
             topic, _ = topic_of(key)
-            topic.decode(message.data)
+            topic.check(message.data)
         except (KeyFormatError, MessageError) as error:
             self.faults.note(message, UNDECODABLE, str(error))
 

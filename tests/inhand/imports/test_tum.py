@@ -1,6 +1,7 @@
 """Folders of the TUM RGB-D benchmark become recordings: our own exports, and the real layout."""
 
 import json
+from importlib.metadata import version
 from pathlib import Path
 
 import cv2
@@ -59,7 +60,9 @@ def test_what_we_exported_comes_back(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert capsys.readouterr().out == f"{back}: 1 info/front, 10 rgbd/front, 10 label/mug\n"
     assert json.loads((tmp_path / "j").read_text())["counts"]["rgbd/front"] == 10
     assert verify_recording(back) == []
-    assert read_metadata(back)["import"] == {"source": "tum", "format": "tum"}
+    about = read_metadata(back)["import"]
+    assert (about["source"], about["format"]) == ("tum", "tum")
+    assert about["version"] == f"inhand {version('inhand')}"
     with inhand_recorder.open(back) as recording:
         info = recording.infos["front"]
         assert (info.fx, info.cy, info.width) == (CAMERA.fx, CAMERA.cy, CAMERA.width)

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 import pytest
 from bop_data import CORNERS, instance, save_bop, save_json, save_models, save_scene
@@ -300,3 +301,12 @@ def test_the_command_says_that_nobody_is_there_and_training_ends_in_one_line(
     assert main(["train", str(tmp_path / "out"), "-o", str(tmp_path / "m")]) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert "holds no skeletons" in line
+
+
+def test_grey_of_twelve_bits_is_as_bright_as_of_eight(tmp_path: Path) -> None:
+    scene = save_scene(tmp_path / "test/000001", {0: [instance()]}, colour="gray/{:06}.png")
+    pixels = np.full((48, 64), 1600, np.uint16)
+    pixels[0] = 4080
+    cv2.imwrite(str(scene / "gray/000000.png"), pixels)
+    _, frame, _ = messages_of(import_bop([tmp_path], tmp_path / "out"))
+    assert np.median(decode_colour(frame.colour)) == pytest.approx(100, abs=1)

@@ -37,7 +37,10 @@ def write_beside(writer: RecordingWriter, key: str, of: RecordedMessage, payload
 
 
 def copy_message(writer: RecordingWriter, message: RecordedMessage) -> None:
-    """Write a message as it was recorded."""
+    """Write a message as it was recorded, one that is apart as such."""
+    if message.apart:
+        writer.write_apart(message.key, message.payload, received_ns=message.received_ns)
+        return
     write_beside(writer, message.key, message, message.payload)
 
 

@@ -16,8 +16,6 @@ MESSAGE_ENCODING = "msgpack"
 APART_ENCODING = "x-undecodable"
 """The message encoding of a channel that holds what could not be read on its key."""
 CHUNK_BYTES = 1024 * 1024
-UNBOUNDED_CHUNK = 1 << 40
-"""The writer's own bound on chunks, which are ended here, after their messages' checksums."""
 MOST_CHANNELS = 0xFFFF
 LATEST_NS = (1 << 64) - 1
 SEQUENCE_MASK = 0xFFFFFFFF
@@ -45,7 +43,8 @@ class RecordingError(InhandError):
 class RecordedMessage:
     """One message of a recording; times are nanoseconds since the epoch.
 
-    ``sequence`` is the message's own, its lowest 32 bits.
+    ``sequence`` is the message's own, its lowest 32 bits. One that is ``apart`` could not be read
+    on its key when it was recorded: it is there to be kept, and ``message`` raises.
     """
 
     key: str
@@ -55,6 +54,7 @@ class RecordedMessage:
     received_ns: int
     captured_ns: int
     sequence: int
+    apart: bool = False
 
     def message(self) -> Message:
         """The payload decoded; raises MessageError."""

@@ -33,6 +33,7 @@ from inhand_runtime.recording.layout import (
 from inhand_runtime.recording.message_reader import MessageReader
 from inhand_runtime.recording.opening import opening
 from inhand_runtime.recording.reading import (
+    apart_channels,
     choose_channels,
     explaining_damage,
     in_order_of_reception,
@@ -43,12 +44,14 @@ _OFFSET_BITS = 40
 
 
 class _Key(NamedTuple):
-    """A key, the numbers of its channels, its topic and the name in it."""
+    """A key, the numbers of its channels, its topic and the name in it, and whether these hold what
+    could not be read on it."""
 
     key: str
     channels: tuple[int, ...]
     topic: AnyTopic
     name: str
+    apart: bool = False
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,7 @@ class RecordingIndex:
             self._table, self.note = _table(path, descriptor, size)
         self._reader = MessageReader(descriptor, size, self._table.chunks)
         self._keys = _keys(self._table)
+        self._apart = _keys_apart(self._table)
 
     def counts(self, stream: str) -> dict[str, int]:
         """Return the numbers of messages of a stream by their names: of cameras, objects, …"""
@@ -89,14 +93,15 @@ class RecordingIndex:
         return {one.key: one.topic for one in self._keys}
 
     @property
-    def apart(self) -> int:
-        """Number of messages that are kept apart, as they could not be read on their keys."""
-        of_apart = [
-            number
-            for number, channel in self._table.channels.items()
-            if channel.message_encoding == APART_ENCODING
-        ]
-        return sum(map(self._table.count, of_apart))
+    def apart(self) -> dict[str, int]:
+        """Numbers of messages that are kept apart, as they could not be read on their keys, by
+        these."""
+        return {one.key: sum(map(self._table.count, one.channels)) for one in self._apart}
+
+    def apart_of(self, key: str) -> "IndexedMessages":
+        """Return the messages that are kept apart of a key; raises RecordingError where the index
+        is damaged."""
+        return self._messages(next((one for one in self._apart if one.key == key), None))
 
     def count(self, key: str) -> int:
         """Return the number of messages of a key."""
@@ -131,7 +136,8 @@ class RecordingIndex:
         with explaining_damage(self.path):
             stamp, payload = self._reader.read(chunk, offset)
         times = stamp.received_ns, stamp.captured_ns
-        return RecordedMessage(key.key, key.topic, key.name, payload, *times, stamp.sequence)
+        named = key.key, key.topic, key.name
+        return RecordedMessage(*named, payload, *times, stamp.sequence, apart=key.apart)
 
     def stamps(self, entries: Entries) -> Stamps:
         """Read the stamps of messages without their payloads; raises RecordingError."""
@@ -252,15 +258,31 @@ def _table(path: Path, descriptor: int, size: int) -> tuple[ChunkTable, str | No
 
 def _keys(table: ChunkTable) -> list[_Key]:
     """Find the keys of Inhand's with all their channels; raises UnknownVersionError."""
-    numbers: dict[str, list[int]] = {}
-    for number, channel in table.channels.items():
-        if channel.message_encoding == MESSAGE_ENCODING:
-            numbers.setdefault(channel.topic, []).append(number)
+    numbers = _numbers(table, MESSAGE_ENCODING)
     chosen = choose_channels(table.channels.values())
     return [
         _Key(key, tuple(numbers[key]), topic, parsed.name)
         for key, (topic, parsed) in chosen.items()
     ]
+
+
+def _keys_apart(table: ChunkTable) -> list[_Key]:
+    """Find the keys of which messages are kept apart."""
+    numbers = _numbers(table, APART_ENCODING)
+    chosen = apart_channels(table.channels.values())
+    return [
+        _Key(key, tuple(numbers[key]), topic, parsed.name, apart=True)
+        for key, (topic, parsed) in chosen.items()
+    ]
+
+
+def _numbers(table: ChunkTable, encoding: str) -> dict[str, list[int]]:
+    """Return the numbers of the channels of an encoding by their keys."""
+    numbers: dict[str, list[int]] = {}
+    for number, channel in table.channels.items():
+        if channel.message_encoding == encoding:
+            numbers.setdefault(channel.topic, []).append(number)
+    return numbers
 
 
 def _joined(parts: list[Entries]) -> Entries:

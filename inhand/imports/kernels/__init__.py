@@ -1,0 +1,1 @@
+"""Compiled code of the imports: arrays in, arrays out."""

@@ -1,0 +1,112 @@
+"""The daemon of outcomes in a rig: what it publishes and keeps, and over which ends."""
+
+import json
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from carried_cup import START_NS, write_model
+from inhand_outcomes.store.database import open_database
+from inhand_outcomes.store.queries import KeptOutcome, latest
+from running_rig import Process, RunningRig, eventually
+
+pytestmark = pytest.mark.long
+SCRIPT = Path(__file__).parents[1] / "scenes" / "carrying_publisher.py"
+
+
+@pytest.fixture
+def rig(tmp_path: Path) -> Iterator[RunningRig]:
+    rig = RunningRig(tmp_path)
+    yield rig
+    rig.close()
+
+
+def start(rig: RunningRig, more: str = "") -> Process:
+    """A daemon that measures the cup, and is up."""
+    model = write_model(rig.folder / "cup.model")
+    rig.configure(f'[outcomes.home]\nmodels = ["{model}"]\ntime_zone = "Europe/Zurich"\n{more}')
+    daemon = rig.inhand("outcomes", "--config", rig.config)
+    daemon.said("is up")
+    return daemon
+
+
+def carry(rig: RunningRig, *arguments: str) -> None:
+    """Publish somebody who carries the cup, to the end."""
+    publisher = rig.python(SCRIPT, "--meeting", rig.meeting, *arguments)
+    assert publisher.wait() == 0, publisher.stderr
+
+
+def kept(rig: RunningRig) -> list[KeptOutcome]:
+    """What the database has, the earliest first."""
+    database = open_database(rig.folder / "outcomes.db")
+    try:
+        return sorted(latest(database, 100), key=lambda one: one.outcome.end_ns)
+    finally:
+        database.close()
+
+
+def kinds(rig: RunningRig) -> list[str]:
+    return [one.outcome.kind for one in kept(rig)]
+
+
+def test_what_is_achieved_is_published_and_kept(rig: RunningRig) -> None:
+    start(rig)
+    echo = rig.inhand("echo", "event", "--json", "--count", "2", "--config", rig.config)
+    carry(rig)
+    assert echo.wait() == 0
+    events = [json.loads(line)["message"] for line in echo.stdout.splitlines()]
+    assert [event["kind"] for event in events] == ["taken_up", "put_down"]
+    assert kinds(rig) == ["taken_up", "put_down"]
+    assert [one.outcome.id for one in kept(rig)] == [event["id"] for event in events]
+    assert events[1]["amounts"].keys() == {"place_x_m", "place_y_m", "place_z_m"}
+
+
+def test_a_killed_daemon_counts_nothing_twice_and_loses_nothing(rig: RunningRig) -> None:
+    daemon = start(rig)
+    carry(rig, "--until", "4.5")
+    eventually("its memory to be written", lambda: journal_until(rig) >= 4.4)
+    daemon.stop(signal.SIGKILL)
+    start(rig)
+    carry(rig, "--from", "3.5", "--times", "1")
+    eventually("both acts", lambda: len(kinds(rig)) == 2)
+    carry(rig, "--from", "5.0")  # a player that goes back
+    carry(rig, "--start-ns", str(START_NS + 60 * 10**9))
+    eventually("the next two", lambda: len(kinds(rig)) >= 4)
+    assert kinds(rig) == ["taken_up", "put_down"] * 2
+
+
+def journal_until(rig: RunningRig) -> float:
+    """Until which second of the publisher the daemon's memory is written."""
+    from inhand_outcomes.memory import Memory
+    from inhand_outcomes.store.saving import read_journal
+    from inhand_outcomes.watching import Watcher
+
+    database = open_database(rig.folder / "outcomes.db")
+    try:
+        watcher = Watcher({}, "inhand/rig")
+        Memory(watcher).recall(read_journal(database))
+    finally:
+        database.close()
+    ends = [one.gathering.last_ns for one in watcher.followed.values()]
+    return (max(ends, default=START_NS) - START_NS) * 1e-9
+
+
+def test_a_goal_that_is_reached_is_said_once(rig: RunningRig) -> None:
+    goal = '[[outcomes.home.goals]]\nname = "tidy"\nkind = "put_down"\nat_least = 2\n'
+    start(rig, goal)
+    echo = rig.inhand("echo", "event", "--json", "--config", rig.config)
+    carry(rig, "--times", "3")
+
+    def said() -> list[str]:
+        return [json.loads(line)["message"]["kind"] for line in echo.stdout.splitlines()]
+
+    eventually("all six acts", lambda: len([one for one in said() if one != "goal_reached"]) == 6)
+    eventually("the goal", lambda: "goal_reached" in said())
+    assert said().count("goal_reached") == 1
+
+
+def test_without_objects_the_daemon_says_so_in_its_health(rig: RunningRig) -> None:
+    rig.configure("[outcomes.home]")
+    rig.inhand("outcomes", "--config", rig.config).said("is up")
+    assert any("no object is measured" in one for one in rig.health("home")["troubles"])
