@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from inhand_outcomes.achievement import Achievement
+from inhand_outcomes.measures.hammering import hammering
 from inhand_outcomes.measures.sweeping import sweeping
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
@@ -25,7 +26,8 @@ class Use:
 
 
 USES: Mapping[str, Use] = {
-    "broom": Use(sweeping, "sweepFloor"),
+    "hammering": Use(hammering, "hammerNail"),
+    "sweeping": Use(sweeping, "sweepFloor"),
 }
 """The uses by name."""
 
