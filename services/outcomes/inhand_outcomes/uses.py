@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.measures.hammering import hammering
+from inhand_outcomes.measures.lifting import lifting
 from inhand_outcomes.measures.sweeping import sweeping
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
@@ -27,6 +28,7 @@ class Use:
 
 USES: Mapping[str, Use] = {
     "hammering": Use(hammering, "hammerNail"),
+    "lifting": Use(lifting, "liftWeights"),
     "sweeping": Use(sweeping, "sweepFloor"),
 }
 """The uses by name."""

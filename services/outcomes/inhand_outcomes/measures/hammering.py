@@ -104,7 +104,7 @@ def hammering(
 
 
 def _chance(falls: Sequence[_Fall], fall: _Fall, parameters: HammeringParameters) -> float:
-    """How surely a fall is a strike: far, fast, turned back, ended at once as its burst, and seen."""
+    """How surely a fall is a strike: far, fast, turned back, ended at once as others are, seen."""
     burst = [one.last for one in falls if abs(one.end_s - fall.end_s) <= parameters.burst_s]
     last, noise = float(np.median(burst)), parameters.last_deviation / np.sqrt(min(len(burst), 4))
     error = max(fall.error_m, 1e-4)
