@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.measures.hammering import hammering
 from inhand_outcomes.measures.lifting import lifting
+from inhand_outcomes.measures.shaking import shaking
 from inhand_outcomes.measures.sweeping import sweeping
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
@@ -29,6 +30,7 @@ class Use:
 USES: Mapping[str, Use] = {
     "hammering": Use(hammering, "hammerNail"),
     "lifting": Use(lifting, "liftWeights"),
+    "shaking": Use(shaking, "shakeVinegar"),
     "sweeping": Use(sweeping, "sweepFloor"),
 }
 """The uses by name."""
