@@ -3,7 +3,7 @@
 import numpy as np
 
 from inhand_lab.achieved.true_achievement import TrueAchievement
-from inhand_lab.motions.hammer_nail import FACE, STROKES
+from inhand_lab.motions.hammer_nail import BACKSWING, FACE, STROKES
 from inhand_lab.world.simulation import Simulation
 
 FURTHEST = 0.3
@@ -11,7 +11,8 @@ FURTHEST = 0.3
 
 
 def true_hammering(simulation: Simulation) -> list[TrueAchievement]:
-    """Each strike, light or hard, at the moment at which the face is lowest about a stroke's end.
+    """Each strike, light or hard, from about the top of the backswing to the moment at which the
+    face is lowest about the stroke's end.
 
     A stage of taps or of strikes has as many as the script says, in equal times.
     """
@@ -31,5 +32,6 @@ def true_hammering(simulation: Simulation) -> list[TrueAchievement]:
             at = float(times[near[np.argmin(face[near, 2])]])
             fastest = float(speed[(times > end - 0.5 * beat) & (times <= end)].max(initial=0.0))
             amounts = {"speed_m_s": fastest, "rate_per_min": 60.0 / beat}
-            strikes.append(TrueAchievement("strike", at, at, amounts))
+            fall = at - (1.0 - BACKSWING) * beat
+            strikes.append(TrueAchievement("strike", fall, at, amounts))
     return strikes

@@ -8,6 +8,7 @@ from inhand_outcomes.measures.hammering import hammering
 from inhand_outcomes.measures.lifting import lifting
 from inhand_outcomes.measures.shaking import shaking
 from inhand_outcomes.measures.sweeping import sweeping
+from inhand_outcomes.measures.swinging import golf, tennis
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -28,10 +29,12 @@ class Use:
 
 
 USES: Mapping[str, Use] = {
+    "golf": Use(golf, "hitGolfBall"),
     "hammering": Use(hammering, "hammerNail"),
     "lifting": Use(lifting, "liftWeights"),
     "shaking": Use(shaking, "shakeVinegar"),
     "sweeping": Use(sweeping, "sweepFloor"),
+    "tennis": Use(tennis, "hitTennisBall"),
 }
 """The uses by name."""
 
