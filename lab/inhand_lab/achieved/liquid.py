@@ -61,8 +61,9 @@ def emptied_ml(
     The first use's amount has a log-normal distribution of that mean and deviation.
     """
     inside = true_inside(simulation.object_model.name)
-    ups = simulation.camera_from_object.rotation.transpose(0, 2, 1) @ (
-        simulation.camera_from_world.rotation[:, 2]
+    ups = (
+        simulation.camera_from_object.rotation.transpose(0, 2, 1)
+        @ (simulation.camera_from_world.rotation[:, 2])
     )
     random = random_stream(
         simulation.seed,

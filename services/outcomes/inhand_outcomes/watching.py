@@ -47,6 +47,8 @@ class Watcher:
         self._parameters = parameters
         self._sightings = Sightings(parameters)
         self._followed: dict[Holding, _Followed] = {}
+        self._told: dict[str, dict[str, Outcome]] = {}
+        """The last settled outcome of each object, by kind."""
 
     def hear_info(self, camera: str, info: CameraInfo) -> None:
         """Take note of where a camera stands."""
@@ -123,7 +125,9 @@ class Watcher:
                 followed.said_until_ns[outcome.kind] = outcome.end_ns
                 outcomes.append(outcome)
         lasting = [outcome for lasts, outcome in found if lasts]
-        return outcomes + followed.lasting.follow(lasting, last_ns, ended=ended)
+        outcomes += followed.lasting.follow(lasting, last_ns, ended=ended)
+        self._told.setdefault(holding.object, {}).update({one.kind: one for one in outcomes})
+        return outcomes
 
     def _achievements(
         self, holding: Holding, followed: _Followed, track: Track
@@ -137,7 +141,24 @@ class Watcher:
         counted_s = (followed.lasting.counted_ns - followed.gathering.first_ns) / NS_PER_S
         uncounted = track[track.times >= counted_s]
         if use is not None and len(uncounted) > 1:
-            yield from use.measure(uncounted, thing)
+            done = use.measure(uncounted, thing)
+            if use.complete is not None:
+                done = use.complete(done, self._earlier(holding, followed.gathering.first_ns))
+            yield from done
+
+    def _earlier(self, holding: Holding, first_ns: int) -> list[Achievement]:
+        """What was settled of an object before, as achievements of a track that began then."""
+        return [
+            Achievement(
+                outcome.kind,
+                (outcome.start_ns - first_ns) / NS_PER_S,
+                (outcome.end_ns - first_ns) / NS_PER_S,
+                outcome.probability,
+                outcome.amounts,
+                outcome.evidence,
+            )
+            for outcome in self._told.get(holding.object, {}).values()
+        ]
 
     def _outcome(self, holding: Holding, gathering: Gathering, achievement: Achievement) -> Outcome:
         start_ns, end_ns = (

@@ -46,14 +46,13 @@ class DrinkingParameters:
     """Deviation of the bell by which tilts are averaged, seconds."""
     longest_gap_s: float = 0.6
     """Seconds unseen, or apart from the mouth by error, that do not end a sip."""
-    sip: Amount = Amount(20.0, 8.0)
-    """Volume of a sip whose beginning is not known, millilitres: 25 in men and 20 in women from a
-    cup (Adnerhill et al., 1989; Lawless et al., 2003), 16 where nobody looked (Bennett et al.,
-    2009)."""
 
 
 DEFAULT_DRINKING = DrinkingParameters()
-SIPS = EmptyingParameters("sip", DEFAULT_DRINKING.sip)
+SIPS = EmptyingParameters("sip", usual=Amount(20.0, 8.0))
+"""Volume of a sip whose beginning is not known, millilitres: 25 in men and 20 in women from a
+    cup (Adnerhill et al., 1989; Lawless et al., 2003), 16 where nobody looked (Bennett et al.,
+    2009)."""
 
 
 def drinking(track: Track, thing: Thing) -> list[Achievement]:
@@ -117,4 +116,3 @@ def _lip(track: Track, rim: Array, radius: float, mouth: Array) -> tuple[Array, 
     nearest = middle + across * (radius / np.maximum(length, 1e-9))
     leaning = np.arctan2(axis[:, 1], axis[:, 0]) - np.arctan2(way[:, 1], way[:, 0])
     return np.linalg.norm(mouth - nearest, axis=1), np.abs(np.angle(np.exp(1j * leaning)))
-

@@ -7,10 +7,9 @@ act that is known of, and after a refill, it held more by an amount that only li
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import hypot
+from math import exp, hypot, pi, sqrt
 
 import numpy as np
-from scipy.special import ndtr
 
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array, Flags
@@ -41,12 +40,15 @@ class EmptyingParameters:
     much the same, so that the difference of two tilts is better than either."""
     alone: float = 0.5
     """Share of the deviation of a tilt that it does not have in common with other tilts."""
-    refill_ml: float = 30.0
-    """Least volume by which a vessel can hold more than was left for it to count as refilled."""
     refill_s: float = 5.0
     """Least time between two acts in which a vessel can be filled, seconds."""
-    refill_sureness: float = 0.9
-    """Probability from which the vessel is taken to have been refilled."""
+    refills: float = 0.15
+    """Share of acts before which the vessel was filled again, of those that come late enough: a mug
+    gives some seven sips."""
+    least_refill: float = 0.3
+    """Probability of a refill below which it is not worth telling."""
+    refill_act_s: float = 0.5
+    """Seconds that a refill is said to take, up to the act that shows it."""
     known_s: float = 3600.0
     """Time for which what was left in a vessel is known, seconds: later it was filled or washed
     out of sight."""
@@ -115,33 +117,57 @@ def with_volumes(
             last = before[-1]
         if last is not None and act.start_s - last.end_s > parameters.known_s:
             last = None
-        refill = None if last is None else _refill(last, act, parameters)
-        if refill is not None:
-            result.append(refill)
-            last = None
-        whole = _with_volume(last, act, parameters)
+        refilled = 0.0 if last is None else refill_probability(last, act, parameters)
+        if last is not None and refilled >= parameters.least_refill:
+            result.append(_refill(last, act, refilled, parameters))
+        whole = _with_volume(last, act, refilled, parameters)
         result.append(whole)
         if whole.probability >= parameters.least_probability:
             last = whole
     return result
 
 
+def refill_probability(
+    last: Achievement, act: Achievement, parameters: EmptyingParameters
+) -> float:
+    """Probability that a vessel was refilled between two acts, by Bayes.
+
+    Without a refill the act takes a usual amount, more or less, so that the vessel can hold less by
+    that than was left in it; after one it can hold anything.
+    """
+    if act.start_s - last.end_s < parameters.refill_s:
+        return 0.0
+    usual = parameters.usual
+    taken = last.evidence[LEFT] - act.evidence[HOLDS]
+    deviation = hypot(act.evidence[HOLDS_DEVIATION], last.evidence[LEFT_DEVIATION], usual.deviation)
+    away = min(taken - usual.value, 0.0) / deviation
+    emptied = exp(-0.5 * away**2) / (sqrt(2.0 * pi) * deviation)
+    filled = 1.0 / max(act.evidence[FULL], 1.0)
+    share = parameters.refills
+    return share * filled / (share * filled + (1.0 - share) * emptied)
+
+
 def _with_volume(
-    last: Achievement | None, act: Achievement, parameters: EmptyingParameters
+    last: Achievement | None, act: Achievement, refilled: float, parameters: EmptyingParameters
 ) -> Achievement:
-    """An act with the volume that it took from what the last one left, if that is known."""
+    """An act with the volume that it took from what the last one left, if that is known.
+
+    Where a refill is likely it is the mean of both.
+    """
     holds, deviation = act.evidence[HOLDS], act.evidence[HOLDS_DEVIATION]
-    share = act.evidence["share_deviation"]
-    if last is None:
-        most = act.evidence[FULL] - holds
-        taken = Amount(min(parameters.usual.value, most), parameters.usual.deviation)
-        left = Amount(holds, deviation)
-    else:
-        before = last.evidence[LEFT]
-        value = min(max(before - holds, 0.0), before)
-        spread = hypot(deviation, last.evidence[LEFT_DEVIATION], share * value)
-        taken = Amount(value, spread)
-        left = Amount(before - value, deviation)
+    most = max(act.evidence[FULL] - holds, 0.0)
+    fresh = Amount(min(parameters.usual.value, most), parameters.usual.deviation)
+    taken, left = fresh, Amount(holds, deviation)
+    if last is not None:
+        before = Amount(last.evidence[LEFT], last.evidence[LEFT_DEVIATION])
+        value = min(max(before.value - holds, 0.0), before.value)
+        spread = hypot(deviation, before.deviation, act.evidence["share_deviation"] * value)
+        rest = before.value - value
+        if holds > before.value:  # then it held more than was thought
+            trust = before.deviation**2 / (before.deviation**2 + deviation**2)
+            rest += trust * (holds - before.value)
+        taken = _mixed(Amount(value, spread), fresh, refilled)
+        left = _mixed(Amount(rest, deviation), left, refilled)
     return replace(
         act,
         amounts={**act.amounts, "volume_ml": taken},
@@ -149,25 +175,35 @@ def _with_volume(
             **act.evidence,
             LEFT: left.value,
             LEFT_DEVIATION: left.deviation,
+            "refilled": refilled,
             "began_known": float(last is not None),
         },
     )
 
 
+def _mixed(first: Amount, second: Amount, share: float) -> Amount:
+    """The mean and the deviation of what is the second with a probability, else the first."""
+    mean = (1.0 - share) * first.value + share * second.value
+    variance = (1.0 - share) * (first.deviation**2 + (first.value - mean) ** 2)
+    variance += share * (second.deviation**2 + (second.value - mean) ** 2)
+    return Amount(mean, sqrt(variance))
+
+
 def _refill(
-    last: Achievement, act: Achievement, parameters: EmptyingParameters
-) -> Achievement | None:
-    """The refill that an act shows, which leaves more than the last one did; None for none."""
-    more = act.evidence[HOLDS] - last.evidence[LEFT]
-    deviation = hypot(act.evidence[HOLDS_DEVIATION], last.evidence[LEFT_DEVIATION])
-    sure = float(ndtr((more - parameters.refill_ml) / deviation)) * act.probability
-    if act.start_s - last.end_s < parameters.refill_s or sure < parameters.refill_sureness:
-        return None
-    filled = Amount(more + parameters.usual.value, hypot(deviation, parameters.usual.deviation))
-    shown = {"more_ml": more, "more_deviation_ml": deviation}
-    amounts = {"volume_ml": filled}
+    last: Achievement, act: Achievement, refilled: float, parameters: EmptyingParameters
+) -> Achievement:
+    """The refill that an act shows: what the vessel held before it more than the last one left."""
+    more = act.evidence[HOLDS] + parameters.usual.value - last.evidence[LEFT]
+    deviation = hypot(
+        act.evidence[HOLDS_DEVIATION], last.evidence[LEFT_DEVIATION], parameters.usual.deviation
+    )
     return Achievement(
-        parameters.refill_kind, act.start_s, act.start_s, sure, amounts=amounts, evidence=shown
+        parameters.refill_kind,
+        max(act.start_s - parameters.refill_act_s, last.end_s),
+        act.start_s,
+        refilled * act.probability,
+        amounts={"volume_ml": Amount(max(more, 0.0), deviation)},
+        evidence={HOLDS: act.evidence[HOLDS], LEFT: last.evidence[LEFT]},
     )
 
 
@@ -188,9 +224,7 @@ def tilts(track: Track) -> tuple[Array, Array, Array]:
     return tilt, np.arctan2(-up[:, 1], -up[:, 0]), np.sqrt(np.maximum(turning, 0.0))
 
 
-def raises(
-    spell: Spell, times: Array, tilt: Array, usable: Flags, again: float
-) -> list[Spell]:
+def raises(spell: Spell, times: Array, tilt: Array, usable: Flags, again: float) -> list[Spell]:
     """A spell cut where its tilt (T,) falls by ``again`` radians and rises by as much."""
     known = [f for f in range(spell.first, spell.last + 1) if usable[f] and np.isfinite(tilt[f])]
     cuts: list[int] = []

@@ -13,15 +13,19 @@ VERTICAL = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True)
 class FaceParameters:
-    """Measures of a head, as shares of the distance from the shoulder centre to its middle.
+    """Measures of a head, as shares of the neck: of the usual distance from the shoulder centre to
+    its middle for the size of the trunk.
 
     They are those of anthropometry (Drillis & Contini, 1966; ANSUR II) over a neck of 0.112
     statures.
     """
 
-    neck_m: tuple[float, float] = (0.12, 0.26)
-    """Least and largest distance from the shoulder centre to the middle of a head, metres: from
-    small children to tall adults; skeletons say others when they err."""
+    neck_of_back: float = 0.112 / 0.384
+    """The neck as a share of the back, from the hip centre by spine and shoulder centre to the
+    middle of the head."""
+    neck_m: tuple[float, float] = (0.12, 0.23)
+    """Least and largest neck, metres: from small children to tall adults; skeletons say others when
+    they err."""
     face_ahead: float = 0.46
     """Mouth and eyes ahead of the middle of the head."""
     mouth_below: float = 0.33
@@ -51,6 +55,8 @@ class Face:
     up: Array
     mouth: Array
     eyes: Array
+    size: float
+    """The neck, metres: by it distances go with the size of the person."""
 
     @property
     def seen(self) -> Flags:
@@ -62,9 +68,17 @@ def find_face(track: Track, parameters: FaceParameters = DEFAULT_FACE) -> Face:
     """The head of a track's person, from head, shoulder centre and shoulders."""
     middle, below = track.joint(Joint.HEAD), track.joint(Joint.SHOULDER_CENTER)
     neck = middle - below
-    lengths = np.linalg.norm(neck, axis=1)
-    known = lengths[np.isfinite(lengths)]
-    usual = float(np.median(known)) if len(known) else 0.0
+    spine = track.joint(Joint.SPINE)
+    back = sum(
+        np.linalg.norm(bone, axis=1)
+        for bone in (neck, below - spine, spine - track.joint(Joint.HIP_CENTER))
+    )
+    backs, necks = (
+        lengths[np.isfinite(lengths)] for lengths in (back, np.linalg.norm(neck, axis=1))
+    )
+    usual = np.median(necks) if len(necks) else 0.0
+    if len(backs):
+        usual = parameters.neck_of_back * np.median(backs)
     size = float(np.clip(usual, *parameters.neck_m))
     up = _unit(_unit(neck) + VERTICAL)
     across = track.joint(Joint.SHOULDER_RIGHT) - track.joint(Joint.SHOULDER_LEFT)
@@ -78,6 +92,7 @@ def find_face(track: Track, parameters: FaceParameters = DEFAULT_FACE) -> Face:
         up,
         mouth=ahead - parameters.mouth_below * size * up,
         eyes=ahead + parameters.eyes_above * size * up,
+        size=size,
     )
 
 

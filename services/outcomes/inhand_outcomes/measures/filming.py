@@ -103,4 +103,6 @@ def filming(track: Track, thing: Thing) -> list[Achievement]:
 def _direction(pointing: Array) -> tuple[float, float]:
     """Mean azimuth, 0 to 360 to the left from y, and elevation of directions (T, 3), degrees."""
     x, y, z = pointing.mean(axis=0)
-    return float(np.degrees(np.arctan2(-x, y)) % 360.0), float(np.degrees(np.arctan2(z, np.hypot(x, y))))
+    return float(np.degrees(np.arctan2(-x, y)) % 360.0), float(
+        np.degrees(np.arctan2(z, np.hypot(x, y)))
+    )

@@ -71,7 +71,9 @@ def playing(track: Track, thing: Thing) -> list[Achievement]:
     ]
 
 
-def mouth_hole(thing: Thing, parameters: PlayingParameters = DEFAULT_PLAYING) -> tuple[Array, Array]:
+def mouth_hole(
+    thing: Thing, parameters: PlayingParameters = DEFAULT_PLAYING
+) -> tuple[Array, Array]:
     """The hole that is blown (3,) and the flute's axis (3,): the part ``mouth hole``, or else a
     place near the end towards -y, or the lower end of a flute that was taught along another axis.
     """

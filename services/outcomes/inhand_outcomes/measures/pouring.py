@@ -41,20 +41,21 @@ class PouringParameters:
     """Seconds unseen that do not end a pour."""
     edge_s: float = 0.1
     """Standard deviation of when it begins and of when it ends, seconds."""
-    pour: Amount = Amount(20.0, 10.0)
-    """Volume of a pour whose beginning is not known, millilitres: a serving of cream is 15 ml, a
-    tablespoon (21 CFR 101.12), and people pour more."""
 
 
 DEFAULT_POURING = PouringParameters()
-POURS = EmptyingParameters("pour", DEFAULT_POURING.pour)
+POURS = EmptyingParameters("pour", usual=Amount(20.0, 10.0))
+"""Volume of a pour whose beginning is not known, millilitres: a serving of cream is 15 ml, a
+    tablespoon (21 CFR 101.12), and people pour more."""
 
 
 def pouring(track: Track, thing: Thing) -> list[Achievement]:
     """Pours with their angles and durations; ``pour_volumes`` tells how much they were."""
     parameters = DEFAULT_POURING
     inside = inside_of(thing)
-    spout = thing.part("spout", "+y") - (middle_of(thing.vertices) if inside is None else inside.rim)
+    spout = thing.part("spout", "+y") - (
+        middle_of(thing.vertices) if inside is None else inside.rim
+    )
     tilt, low, deviation = tilts(track)
     smooth = smoothed(track.times, tilt, track.seen, parameters.smoothing_s)
     aside = np.abs(np.angle(np.exp(1j * (low - np.arctan2(spout[1], spout[0])))))

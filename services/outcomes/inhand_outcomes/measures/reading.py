@@ -6,7 +6,7 @@ import numpy as np
 
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array, Flags
-from inhand_outcomes.measures.face import DEFAULT_FACE, find_face, hand_distances, thin_axis
+from inhand_outcomes.measures.face import find_face, hand_distances, thin_axis
 from inhand_outcomes.measures.spells import find_spells, lasting_spells, smoothed, sureness
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
@@ -16,25 +16,31 @@ from inhand_outcomes.track import Track
 class ReadingParameters:
     """What reading is."""
 
-    facing: float = np.radians(50.0)
+    facing: float = np.radians(55.0)
     """Largest angle, radians, between the lens's axis and the sight from the eyes."""
-    left: float = np.radians(60.0)
-    """The same at which it no longer serves."""
-    distances_m: tuple[float, float] = (0.05, 0.75)
-    """Least and largest distance of the lens from the eyes."""
-    slow_m_s: float = 0.22
-    """Speed of the lens below which something is read: along a line it goes at 0.1 to 0.2 m/s."""
-    swift_m_s: float = 0.32
-    """Speed above which it is being carried."""
+    nearest_m: float = 0.05
+    """Least distance of the lens from the eyes."""
+    furthest: float = 2.9
+    """Largest distance of the lens from the eyes, in necks (``face``): half a metre in adults, who
+    bend over what they read, and lay the glass down further away."""
+    still_served: float = 3.1
+    """The same at which it no longer serves who has been reading."""
+    within_m: float = 0.10
+    """How much further than usually while reading the lens may be when it begins or ends."""
+    slow_m_s: float = 0.12
+    """Speed of the lens with which reading begins and ends: along a line it goes at 0.1 to 0.2 m/s,
+    and it is fetched and laid back at 0.3."""
     hand_m: float = 0.14
     """Distance of a hand from the handle's end at most."""
-    rested_m: float = 0.05
+    rested_m: float = 0.08
     """Distance from where it lay within which it still lies, or lies again."""
     rested_s: float = 0.4
     """Seconds without a hand, and without movement, after which it lay somewhere."""
+    deviation_m: float = 0.02
+    """Standard deviation of the distance beside that of the pose: joints of a head err."""
     smoothing_s: float = 0.15
     """Deviation of the bell by which places are averaged, seconds."""
-    longest_gap_s: float = 1.5
+    longest_gap_s: float = 1.4
     """Seconds of the way to the next line or page, or unseen, that do not end it."""
     least_s: float = 1.0
     """Seconds of the shortest reading."""
@@ -60,17 +66,24 @@ def reading(track: Track, thing: Thing) -> list[Achievement]:
     hands = hand_distances(track, track.points(handle))
     hands = smoothed(track.times, hands, usable & np.isfinite(hands), parameters.smoothing_s)
     speed = speeds(track.times, place)
-    least, largest = parameters.distances_m
+    largest = parameters.still_served * face.size
     with np.errstate(invalid="ignore"):
-        held = (hands < parameters.hand_m) & (distance > least) & (distance < largest)
+        held = (hands < parameters.hand_m) & (distance > parameters.nearest_m)
         free = (hands > parameters.hand_m) & (speed < 0.5 * parameters.slow_m_s)
         held &= ~near_rest(track.times, place, free, parameters)
-        inner = held & (angle < parameters.facing) & (speed < parameters.slow_m_s)
-        outer = held & (angle < parameters.left) & (speed < parameters.swift_m_s)
+        still = held & (angle < parameters.facing) & (speed < parameters.slow_m_s)
+        inner = still & (distance < parameters.furthest * face.size)
+        outer = still & (distance < largest)
     turning = np.maximum(track.turn_deviations(), np.radians(3.0))
-    spread = np.hypot(track.point_deviations(lens), DEFAULT_FACE.deviation_m)
-    margins = np.minimum((parameters.left - angle) / turning, (largest - distance) / spread)
-    spells = find_spells(track.times, inner, outer, usable, parameters.longest_gap_s)
+    spread = np.hypot(track.point_deviations(lens), parameters.deviation_m)
+    margins = np.minimum((parameters.facing - angle) / turning, (largest - distance) / spread)
+    spells = []
+    for spell in find_spells(track.times, inner, outer, usable, parameters.longest_gap_s):
+        during = np.zeros(len(track), bool)
+        during[spell.frames] = outer[spell.frames]
+        with np.errstate(invalid="ignore"):
+            during &= distance < np.nanmedian(distance[during]) + parameters.within_m
+        spells += find_spells(track.times, inner & during, during, usable, parameters.longest_gap_s)
     return [
         Achievement(
             "reading",

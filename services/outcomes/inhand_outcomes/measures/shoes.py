@@ -6,7 +6,7 @@ import numpy as np
 from inhand_schemas.joints import Joint
 
 from inhand_outcomes.achievement import Achievement
-from inhand_outcomes.arrays import Array
+from inhand_outcomes.arrays import Array, Flags
 from inhand_outcomes.measures.face import hand_distances, middle_of
 from inhand_outcomes.measures.spells import find_spells, lasting_spells, smoothed, sureness
 from inhand_outcomes.measures.wearing import hand_at
@@ -31,6 +31,8 @@ class ShoeParameters:
     """Seconds unseen, or off by error, that do not count."""
     least_s: float = 0.9
     """Seconds of the shortest wear."""
+    act_s: float = 0.5
+    """Seconds that putting it on or taking it off is said to take, up to when it is on or off."""
     hand_m: float = 0.25
     """Distance of a hand within which it puts the shoe on or off."""
     hand_s: float = 0.8
@@ -69,11 +71,12 @@ def shoes(track: Track, thing: Thing) -> list[Achievement]:
             if happened:
                 nearest = hand_at(track.times, hands, at, parameters.hand_s)
                 share = 1.0 if nearest < parameters.hand_m else parameters.handless
-                found.append(Achievement(kind, at, at, sure * share, evidence=evidence))
+                start_s = max(at - parameters.act_s, float(track.times[0]))
+                found.append(Achievement(kind, start_s, at, sure * share, evidence=evidence))
     return found
 
 
-def _from_instep(track: Track, place: Array) -> tuple[Array, Array]:
+def _from_instep(track: Track, place: Array) -> tuple[Array, Flags]:
     """Distance (T,) of places (T, 3) from the nearer instep, metres, and whether (T,) one is
     known."""
     distances = [

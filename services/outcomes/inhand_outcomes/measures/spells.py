@@ -1,4 +1,4 @@
-"""Spells: the times during which something holds, by two limits, so that noise does not cut them."""
+"""Spells: times in which something holds, by two limits, so that noise does not cut them."""
 
 from dataclasses import dataclass
 
@@ -95,14 +95,16 @@ def smoothed(times: Array, values: Array, usable: Flags, seconds: float) -> Arra
     Only usable frames count; where none is near, NaN.
     """
     known = np.flatnonzero(usable)
-    result = np.full(values.shape, np.nan)
     if not len(known):
-        return result
+        return np.full(values.shape, np.nan)
     starts = np.searchsorted(times[known], times - 3.0 * seconds)
     ends = np.searchsorted(times[known], times + 3.0 * seconds, side="right")
-    for frame, (start, end) in enumerate(zip(starts, ends, strict=True)):
-        if end > start:
-            near = known[start:end]
-            weights = np.exp(-0.5 * ((times[near] - times[frame]) / seconds) ** 2)
-            result[frame] = np.tensordot(weights / weights.sum(), values[near], 1)
-    return result
+    sums, weights = np.zeros(values.shape), np.zeros(len(times))
+    for offset in range(int((ends - starts).max())):
+        place = starts + offset
+        near = known[np.minimum(place, len(known) - 1)]
+        weight = np.exp(-0.5 * ((times[near] - times) / seconds) ** 2) * (place < ends)
+        weights += weight
+        sums += values[near] * weight.reshape(-1, *(1,) * (values.ndim - 1))
+    weights = np.where(weights > 0.0, weights, np.nan)
+    return np.asarray(sums / weights.reshape(-1, *(1,) * (values.ndim - 1)))

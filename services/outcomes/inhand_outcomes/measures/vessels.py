@@ -6,14 +6,17 @@ it holds what lies below the lowest way out. That is worked out once for each th
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 
-from inhand_outcomes.arrays import Array, Flags
+from inhand_outcomes.arrays import Array, Flags, Indices
 from inhand_outcomes.thing import Thing
 
 ML_PER_M3 = 1e6
+Labels = NDArray[np.integer[Any]]
 LIP = 0.9
 """Cubes, along each axis, by which the way out leads above the lip: one, but for the width of the
 last step of the search for it."""
@@ -96,7 +99,7 @@ def inside_of(thing: Thing) -> Inside | None:
 
 
 def measure_inside(
-    vertices: Array, faces: Array, parameters: VesselParameters = DEFAULT_VESSEL
+    vertices: Array, faces: Indices, parameters: VesselParameters = DEFAULT_VESSEL
 ) -> Inside | None:
     """What a mesh of vertices (V, 3) and faces (F, 3), standing along z, can hold."""
     extents = np.ptp(vertices, axis=0)
@@ -142,7 +145,7 @@ class _Cubes:
     pitch: float
 
     @staticmethod
-    def of(vertices: Array, faces: Array, pitch: float) -> "_Cubes":
+    def of(vertices: Array, faces: Indices, pitch: float) -> "_Cubes":
         """The cubes that a mesh meets, with two empty ones around."""
         origin = vertices.min(axis=0) - 2.0 * pitch
         shape = np.ceil(np.ptp(vertices, axis=0) / pitch).astype(int) + 5
@@ -159,7 +162,7 @@ class _Cubes:
                 surface[tuple(np.rint((points - origin) / pitch).astype(int).T)] = True
         return _Cubes(surface, origin, pitch)
 
-    def places(self, indices: Array) -> Array:
+    def places(self, indices: Indices) -> Array:
         """The middles (N, 3) of cubes, metres."""
         return np.asarray(self.origin + self.pitch * indices)
 
@@ -172,7 +175,7 @@ class _Cubes:
         return np.asarray(along[0][:, None, None] + along[1][:, None] + along[2])
 
 
-def _outside(labels: Array) -> Array:
+def _outside(labels: Labels) -> Labels:
     """The labels that reach the border of the space."""
     borders = [labels.take(end, axis=axis).ravel() for axis in range(3) for end in (0, -1)]
     return np.unique(np.concatenate(borders))

@@ -37,6 +37,8 @@ class WearingParameters:
     """Seconds unseen, or off by error, that do not end it."""
     least_s: float = 0.8
     """Seconds of the shortest wear."""
+    act_s: float = 0.5
+    """Seconds that putting them on or taking them off is said to take, up to when they are."""
     hand_m: float = 0.20
     """Distance of a hand within which it puts them on or takes them off."""
     hand_s: float = 0.6
@@ -96,7 +98,8 @@ def wearing(track: Track, thing: Thing) -> list[Achievement]:
                 nearest = hand_at(track.times, hands, at, parameters.hand_s)
                 share = 1.0 if nearest < parameters.hand_m else parameters.handless
                 evidence = {"hand_m": nearest} if np.isfinite(nearest) else {}
-                found.append(Achievement(kind, at, at, sure * share, evidence=evidence))
+                start_s = max(at - parameters.act_s, float(track.times[0]))
+                found.append(Achievement(kind, start_s, at, sure * share, evidence=evidence))
     return sorted(found, key=lambda one: one.end_s)
 
 
