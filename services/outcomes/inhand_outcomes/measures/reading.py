@@ -1,6 +1,6 @@
 """Reading through a magnifying glass: it is held between the eyes and what they read."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,9 +27,11 @@ class ReadingParameters:
     """The same at which it no longer serves who has been reading."""
     within_m: float = 0.10
     """How much further than usually while reading the lens may be when it begins or ends."""
-    slow_m_s: float = 0.12
+    slow_m_s: float = 0.13
     """Speed of the lens with which reading begins and ends: along a line it goes at 0.1 to 0.2 m/s,
     and it is fetched and laid back at 0.3."""
+    swift_m_s: float = 0.24
+    """Speed of the lens above which it goes to the next line, or elsewhere."""
     hand_m: float = 0.14
     """Distance of a hand from the handle's end at most."""
     rested_m: float = 0.08
@@ -40,7 +42,7 @@ class ReadingParameters:
     """Standard deviation of the distance beside that of the pose: joints of a head err."""
     smoothing_s: float = 0.15
     """Deviation of the bell by which places are averaged, seconds."""
-    longest_gap_s: float = 1.4
+    longest_gap_s: float = 1.1
     """Seconds of the way to the next line or page, or unseen, that do not end it."""
     least_s: float = 1.0
     """Seconds of the shortest reading."""
@@ -71,9 +73,10 @@ def reading(track: Track, thing: Thing) -> list[Achievement]:
         held = (hands < parameters.hand_m) & (distance > parameters.nearest_m)
         free = (hands > parameters.hand_m) & (speed < 0.5 * parameters.slow_m_s)
         held &= ~near_rest(track.times, place, free, parameters)
-        still = held & (angle < parameters.facing) & (speed < parameters.slow_m_s)
-        inner = still & (distance < parameters.furthest * face.size)
-        outer = still & (distance < largest)
+        served = held & (angle < parameters.facing) & (distance < largest)
+        outer = served & (speed < parameters.swift_m_s)
+        inner = served & (speed < parameters.slow_m_s)
+        inner &= distance < parameters.furthest * face.size
     turning = np.maximum(track.turn_deviations(), np.radians(3.0))
     spread = np.hypot(track.point_deviations(lens), parameters.deviation_m)
     margins = np.minimum((parameters.facing - angle) / turning, (largest - distance) / spread)
@@ -83,7 +86,11 @@ def reading(track: Track, thing: Thing) -> list[Achievement]:
         during[spell.frames] = outer[spell.frames]
         with np.errstate(invalid="ignore"):
             during &= distance < np.nanmedian(distance[during]) + parameters.within_m
-        spells += find_spells(track.times, inner & during, during, usable, parameters.longest_gap_s)
+        read = np.flatnonzero(inner & during & usable)
+        if len(read):
+            first, last = int(read[0]), int(read[-1])
+            start_s, end_s = float(track.times[first]), float(track.times[last])
+            spells.append(replace(spell, first=first, last=last, start_s=start_s, end_s=end_s))
     return [
         Achievement(
             "reading",

@@ -10,6 +10,8 @@ from inhand_outcomes.arrays import Array, Flags
 SEEN_ENOUGH = 0.5
 """Share of a spell's frames that must be seen for its probability not to suffer: a hand hides what
 it holds now and then, and what was seen before and after tells of the time between."""
+LEAST_REST_S = 0.3
+"""Seconds that the rest of a spell lasts at least: averages differ at the beginning of a track."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,9 @@ def find_spells(
 
 def lasting_spells(spells: list[Spell], least_s: float) -> list[Spell]:
     """Those that last long enough; what the beginning of a track cuts may be the rest of more."""
-    return [spell for spell in spells if spell.seconds >= least_s or not spell.begun]
+    return [
+        spell for spell in spells if spell.seconds >= (least_s if spell.begun else LEAST_REST_S)
+    ]
 
 
 def sureness(spell: Spell, usable: Flags, margins: Array, best: float = 1.0) -> float:
