@@ -39,6 +39,8 @@ class VesselParameters:
     """Share by which what is held at 45 degrees may differ between directions in a round vessel."""
     least_share: float = 0.08
     """Share of the box around the mesh that an inside has at least; a foot's hollow has less."""
+    least_depth_m: float = 0.015
+    """Least depth of an inside: what is flatter is a plate."""
     wall_m: float = 0.004
     """Wall of a vessel that was taught as a solid: stoneware and glass have 3 to 5 mm."""
     thinnest_m: float = 0.010
@@ -114,6 +116,9 @@ def measure_inside(
         walls, inside = _hollowed(cubes, parameters)
         if inside.sum() < least:
             return None
+    depth = np.ptp(np.flatnonzero(inside.any(axis=(0, 1)))) * pitch
+    if depth < parameters.least_depth_m:
+        return None
     cubes, inside, walls = _cropped(cubes, inside, walls)
     tilts = np.radians(np.arange(0.0, parameters.deepest_deg + 1e-6, parameters.step_deg))
 
