@@ -31,10 +31,10 @@ class DrinkingParameters:
     2 to 3 cm each, and a mug before the chest or looked into from above is 15 cm away."""
     away_m: float = 0.125
     """The same at which it has left."""
-    tilt: float = np.radians(16.0)
+    tilt: float = np.radians(17.0)
     """Tilt of a sip, radians: a mug that is filled to a finger below its rim pours at 15 degrees,
     and one that is carried stays below 10."""
-    level: float = np.radians(12.0)
+    level: float = np.radians(14.0)
     """Tilt at which a sip is over, radians."""
     raise_again: float = np.radians(17.0)
     """How far, radians, a tilt must fall and rise again for another sip at the mouth."""
