@@ -140,10 +140,12 @@ def test_glasses_are_put_on_worn_and_taken_off() -> None:
     assert by_kind["worn"].amounts["duration_s"].value == pytest.approx(3.0, abs=0.5)
 
 
-def test_glasses_in_the_hair_are_not_worn_and_no_ghost_puts_them_on() -> None:
+def test_glasses_in_the_hair_or_at_the_mouth_are_not_worn_and_no_ghost_puts_them_on() -> None:
     times = frame_times(10.0)
     in_hair = visit(times, beside(HEAD, 0.0, 0.08, 0.12), 3.0, 6.0)
     assert wearing(track_of(times, in_hair), GLASSES) == []
+    chewed = turns("z", np.full(len(times), 90.0))
+    assert wearing(track_of(times, visit(times, MOUTH, 3.0, 6.0), chewed), GLASSES) == []
     nobody = np.tile([0.3, 0.0, 0.9], (len(times), 1))
     ghostly = track_of(times, visit(times, beside(EYES, 0.0, 0.02, 0.0), 3.0, 6.0), hands=nobody)
     assert all(one.probability < 0.5 for one in wearing(ghostly, GLASSES) if one.kind != "worn")

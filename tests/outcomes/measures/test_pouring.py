@@ -13,12 +13,14 @@ from standing_person import frame_times, going, track_of, turns
 JUG = Thing("jug", "pouring", MUG.vertices, MUG.faces, {"spout": np.array([0.0, 0.044, 0.1])})
 
 
-def poured(tilts: list[tuple[float, float]], aside_deg: float = 0.0) -> list[Achievement]:
-    """What is found in tilts (time, degrees) towards the spout, turned aside from it."""
+def poured(
+    tilts: list[tuple[float, float]], aside_deg: float = 0.0, speed_m_s: float = 0.0
+) -> list[Achievement]:
+    """What is found in tilts (time, degrees) towards the spout, turned aside from it, carried."""
     times = frame_times(10.0)
     tilted = turns("x", -going(times, *tilts))
     turned = tilted * Rotation.from_euler("z", aside_deg, degrees=True)
-    places = np.tile([0.0, 0.4, 1.1], (len(times), 1))
+    places = np.array([0.0, 0.4, 1.1]) + np.outer(times, [speed_m_s, 0.0, 0.0])
     return pour_volumes(pouring(track_of(times, places, turned), JUG), [])
 
 
@@ -40,6 +42,7 @@ def test_a_pour_has_its_angle_duration_and_volume() -> None:
     assert found[1].amounts["volume_ml"].value == pytest.approx(left[0] - left[1], rel=0.15)
 
 
-def test_a_jug_that_is_carried_aslant_or_tilted_aside_pours_nothing() -> None:
+def test_a_jug_that_is_carried_aslant_or_tilted_aside_or_swung_pours_nothing() -> None:
     assert poured([(1.0, 0.0), (2.0, 18.0), (8.0, 18.0), (9.0, 0.0)]) == []
     assert poured([(1.0, 0.0), (2.0, 50.0), (8.0, 50.0), (9.0, 0.0)], aside_deg=90.0) == []
+    assert poured([(1.0, 0.0), (2.0, 50.0), (8.0, 50.0), (9.0, 0.0)], speed_m_s=0.8) == []

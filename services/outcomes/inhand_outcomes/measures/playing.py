@@ -16,10 +16,10 @@ from inhand_outcomes.track import Track
 class PlayingParameters:
     """What playing is."""
 
-    near_m: float = 0.10
+    near_m: float = 0.12
     """Distance of the mouth hole from the mouth at which it is there: a flute's pose is off by 3 to
     6 cm, for it is thin and shines."""
-    away_m: float = 0.16
+    away_m: float = 0.17
     """The same at which it has left: between two pieces a flute is lowered by more than 20 cm."""
     steep: float = np.radians(55.0)
     """Largest slope of the flute, radians."""

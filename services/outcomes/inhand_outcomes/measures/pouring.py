@@ -15,7 +15,7 @@ from inhand_outcomes.measures.emptying import (
     with_volumes,
 )
 from inhand_outcomes.measures.face import middle_of
-from inhand_outcomes.measures.spells import find_spells, smoothed, sureness
+from inhand_outcomes.measures.spells import find_spells, smoothed, speeds, sureness
 from inhand_outcomes.measures.vessels import inside_of
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
@@ -33,6 +33,10 @@ class PouringParameters:
     """How far, radians, a tilt must fall and rise again for another pour."""
     towards: float = np.radians(60.0)
     """Largest angle, radians, between the tilt and the spout."""
+    swift_m_s: float = 0.4
+    """Speed of the spout above which nobody pours: it is held over what is filled."""
+    calm_s: float = 0.15
+    """Deviation of the bell by which the spout's places are averaged, seconds."""
     least_s: float = 0.3
     """Seconds that a pour takes at least."""
     smoothing_s: float = 0.08
@@ -53,14 +57,15 @@ def pouring(track: Track, thing: Thing) -> list[Achievement]:
     """Pours with their angles and durations; ``pour_volumes`` tells how much they were."""
     parameters = DEFAULT_POURING
     inside = inside_of(thing)
-    spout = thing.part("spout", "+y") - (
-        middle_of(thing.vertices) if inside is None else inside.rim
-    )
+    tip = thing.part("spout", "+y")
+    spout = tip - middle_of(thing.vertices)
     tilt, low, deviation = tilts(track)
     smooth = smoothed(track.times, tilt, track.seen, parameters.smoothing_s)
     aside = np.abs(np.angle(np.exp(1j * (low - np.arctan2(spout[1], spout[0])))))
-    ahead = aside < parameters.towards
+    places = smoothed(track.times, track.points(tip), track.seen, parameters.calm_s)
     with np.errstate(invalid="ignore"):
+        calm = speeds(track.times, places) < parameters.swift_m_s
+        ahead = calm & (aside < parameters.towards)
         inner, outer = (smooth > parameters.tilt) & ahead, (smooth > parameters.level) & ahead
     spread = np.maximum(deviation, np.radians(2.0))
     margins = np.minimum((smooth - parameters.level), parameters.towards - aside) / spread

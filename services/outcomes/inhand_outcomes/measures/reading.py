@@ -7,7 +7,13 @@ import numpy as np
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array, Flags
 from inhand_outcomes.measures.face import find_face, hand_distances, thin_axis
-from inhand_outcomes.measures.spells import find_spells, lasting_spells, smoothed, sureness
+from inhand_outcomes.measures.spells import (
+    find_spells,
+    lasting_spells,
+    smoothed,
+    speeds,
+    sureness,
+)
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -118,13 +124,6 @@ def lens_and_handle(thing: Thing) -> tuple[Array, Array]:
     broad = float(np.sort(high - low)[1])
     lens = np.array([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]), high[2] - 0.5 * broad])
     return thing.parts.get("lens", lens), thing.part("handle", "-z")
-
-
-def speeds(times: Array, places: Array) -> Array:
-    """Speed (T,) of places (T, 3), m/s, by neighbours on both sides; NaN where unknown."""
-    if len(times) < 3:
-        return np.full(len(times), np.nan)
-    return np.asarray(np.linalg.norm(np.gradient(places, times, axis=0), axis=1))
 
 
 def near_rest(times: Array, places: Array, free: Flags, parameters: ReadingParameters) -> Flags:

@@ -112,3 +112,10 @@ def smoothed(times: Array, values: Array, usable: Flags, seconds: float) -> Arra
         sums += values[near] * weight.reshape(-1, *(1,) * (values.ndim - 1))
     weights = np.where(weights > 0.0, weights, np.nan)
     return np.asarray(sums / weights.reshape(-1, *(1,) * (values.ndim - 1)))
+
+
+def speeds(times: Array, places: Array) -> Array:
+    """Speed (T,) of places (T, 3), m/s, by neighbours on both sides; NaN where unknown."""
+    if len(times) < 3:
+        return np.full(len(times), np.nan)
+    return np.asarray(np.linalg.norm(np.gradient(places, times, axis=0), axis=1))

@@ -31,6 +31,9 @@ class WearingParameters:
     """Height of the bridge above the middle of the head at most: above it they are in the hair."""
     below_m: float = 0.085
     """How far it is below at most: below it they hang from a collar."""
+    facing: float = 0.4
+    """Least cosine of the angle between where the glasses and the face look: whoever chews at a
+    temple holds them aside."""
     smoothing_s: float = 0.12
     """Deviation of the bell by which distances are averaged, seconds."""
     longest_gap_s: float = 1.2
@@ -66,6 +69,8 @@ def wearing(track: Track, thing: Thing) -> list[Achievement]:
     with np.errstate(invalid="ignore"):
         above = np.sum(way * face.up, axis=1)
         before = np.sum(way * face.forward, axis=1) > parameters.ahead * distance
+        looking = np.sum(track.directions(np.array([0.0, 1.0, 0.0])) * face.forward, axis=1)
+        before &= smoothed(track.times, looking, usable, parameters.smoothing_s) > parameters.facing
         before &= (above < parameters.above_m) & (above > -parameters.below_m)
         inner = (distance < parameters.near_m) & before
         outer = (distance < parameters.away_m) & before
