@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr
 
 from inhand_outcomes.arrays import Array, Flags
+from inhand_outcomes.normal import normal_share
 
 SEEN_ENOUGH = 0.5
 """Share of a spell's frames that must be seen for its probability not to suffer: a hand hides what
@@ -90,7 +90,7 @@ def sureness(spell: Spell, usable: Flags, margins: Array, best: float = 1.0) -> 
     if not len(values):
         return 0.0
     shown = values[int((1.0 - best) * len(values)) :]
-    return float(np.mean(ndtr(shown))) * min(1.0, float(np.mean(seen)) / SEEN_ENOUGH)
+    return float(np.mean(normal_share(shown))) * min(1.0, float(np.mean(seen)) / SEEN_ENOUGH)
 
 
 def smoothed(times: Array, values: Array, usable: Flags, seconds: float) -> Array:
