@@ -157,8 +157,9 @@ class Watcher:
         settled_ns = last_ns if ended else last_ns - self._parameters.settle_s * NS_PER_S
         outcomes = []
         for lasts, outcome in found:
-            said_until_ns = followed.said_until_ns.get(outcome.kind, first_ns)
-            if not lasts and outcome.start_ns >= said_until_ns and outcome.end_ns <= settled_ns:
+            said_until_ns = followed.said_until_ns.get(outcome.kind, first_ns - 1)
+            is_new = outcome.start_ns >= said_until_ns and outcome.end_ns > said_until_ns
+            if not lasts and is_new and outcome.end_ns <= settled_ns:
                 followed.said_until_ns[outcome.kind] = outcome.end_ns
                 outcomes.append(outcome)
         lasting = [outcome for lasts, outcome in found if lasts]

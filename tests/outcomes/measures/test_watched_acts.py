@@ -6,6 +6,7 @@ from cups import HEIGHT, MUG, RADIUS
 from inhand_outcomes.measures.vessels import inside_of
 from inhand_outcomes.outcome import Outcome
 from inhand_outcomes.room import LEVEL
+from inhand_outcomes.rotations import multiply, of_matrix
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 from inhand_outcomes.watching import Watcher
@@ -25,9 +26,9 @@ PHONE = Thing(
 def watched(track: Track, thing: Thing) -> list[Outcome]:
     """What a watcher says of a track, from its messages in the frame of a level camera."""
     watcher = Watcher({thing.name: thing}, "place")
-    turn = LEVEL.rotation.inv()
-    places, joints = turn.apply(track.positions), track.joints @ turn.as_matrix().T
-    rotations = (turn * track.rotations).as_quat(canonical=True, scalar_first=True)
+    turn = LEVEL.matrix.T
+    places, joints = track.positions @ turn.T, track.joints @ turn.T
+    rotations = multiply(of_matrix(turn), track.poses[:, 3:])
     outcomes = []
     for frame, second in enumerate(track.times):
         time_ns = START_NS + round(second * 1e9)
@@ -39,7 +40,7 @@ def watched(track: Track, thing: Thing) -> list[Outcome]:
             states=tuple("missing" if one else "tracked" for one in missing),
             confidences=tuple(0.0 if one else 0.9 for one in missing),
         )
-        watcher.hear_skeletons(
+        outcomes += watcher.hear_skeletons(
             "front", Skeletons(sequence=frame, time_ns=time_ns, people=(person,))
         )
         (x, y, z), (w, i, j, k) = places[frame].tolist(), rotations[frame].tolist()
