@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.measures.hammering import hammering
 from inhand_outcomes.measures.lifting import lifting
+from inhand_outcomes.measures.painting import painting
 from inhand_outcomes.measures.shaking import shaking
 from inhand_outcomes.measures.sweeping import sweeping
 from inhand_outcomes.measures.swinging import golf, tennis
@@ -32,6 +33,7 @@ USES: Mapping[str, Use] = {
     "golf": Use(golf, "hitGolfBall"),
     "hammering": Use(hammering, "hammerNail"),
     "lifting": Use(lifting, "liftWeights"),
+    "painting": Use(painting, "paintWall"),
     "shaking": Use(shaking, "shakeVinegar"),
     "sweeping": Use(sweeping, "sweepFloor"),
     "tennis": Use(tennis, "hitTennisBall"),
