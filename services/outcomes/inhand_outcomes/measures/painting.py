@@ -15,6 +15,7 @@ from inhand_outcomes.arrays import Array, Indices
 from inhand_outcomes.measures.footprint import Footprint, footprint_of, swept_cells
 from inhand_outcomes.measures.passes import DEFAULT_HALTING, Halting, moving_part, ways_of
 from inhand_outcomes.measures.smoothing import normal_share, smooth
+from inhand_outcomes.measures.turning import end_of_lasting
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -110,13 +111,12 @@ def painting(
         chances = np.array([stroke.probability for stroke in group])
         if chances.sum() < parameters.least_strokes:
             continue
-        last = float(track.times[-1])
         end = group[-1].end_s
         found.append(
             Achievement(
                 "painting",
                 group[0].start_s,
-                last if last - end < parameters.pause_s else end,
+                end_of_lasting(track, end, parameters.pause_s),
                 1.0 - float(np.prod(1.0 - np.sort(chances)[1:])),
                 {
                     "duration_s": Amount(end - group[0].start_s, 0.3),

@@ -16,6 +16,7 @@ from inhand_outcomes.arrays import Array, Indices
 from inhand_outcomes.measures.footprint import Footprint, footprint_of, swept_cells
 from inhand_outcomes.measures.passes import DEFAULT_HALTING, Halting, moving_part, ways_of
 from inhand_outcomes.measures.smoothing import normal_share, smooth
+from inhand_outcomes.measures.turning import end_of_lasting
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -112,7 +113,7 @@ def sweeping(
             Achievement(
                 "sweeping",
                 group[0].start_s,
-                _end(group, track, parameters),
+                end_of_lasting(track, group[-1].end_s, parameters.pause_s),
                 surely,
                 {
                     "duration_s": Amount(seconds, 0.2),
@@ -238,12 +239,6 @@ def _chances(passes: Sequence[Pass], parameters: SweepingParameters) -> list[flo
         )
         chances.append(float(on * reached))
     return chances
-
-
-def _end(group: Sequence[Stroke], track: Track, parameters: SweepingParameters) -> float:
-    """When a sweeping ends: with its last stroke, or not yet where another may still follow."""
-    last = float(track.times[-1])
-    return last if last - group[-1].end_s < parameters.pause_s else group[-1].end_s
 
 
 def _lifted_from(heights: Array, parameters: SweepingParameters) -> float:
