@@ -1,8 +1,9 @@
 """Golf and tennis of real people: one stroke a recording, at the speed that was measured."""
 
 import pytest
-from inhand.outcomes_on_real_data import golf_swings, tennis_strokes
 from real_data import DATA, needs_real_data
+
+from inhand.outcomes_on_real_data import golf_swings, tennis_strokes
 
 
 @needs_real_data
