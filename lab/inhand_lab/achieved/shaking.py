@@ -14,7 +14,8 @@ FINER = 8
 
 
 def true_shaking(simulation: Simulation) -> list[TrueAchievement]:
-    """One shake for each stage of shaking that ends before the recording does.
+    """One shake for each stage of shaking that ends before the recording does, from the beginning
+    of its first stroke to the end of its last.
 
     Strokes are the ways of the bottle's middle along its axis towards its mouth, from one turn to
     the next.
@@ -32,11 +33,14 @@ def true_shaking(simulation: Simulation) -> list[TrueAchievement]:
         inside = (fine >= stage.start - 0.1) & (fine <= stage.end + 0.1)
         way = gone[inside]
         peaks, valleys = find_peaks(way)[0], find_peaks(-way)[0]
-        strokes = 0
-        for peak in peaks:
-            before = valleys[valleys < peak]
-            low = way[before[-1]] if len(before) else way[0]
-            strokes += way[peak] - low >= LEAST_STROKE_M
-        amounts = {"stroke_count": float(strokes), "duration_s": stage.seconds}
-        found.append(TrueAchievement("shake", stage.start, stage.end, amounts))
+        bounds = [
+            (int(before[-1]) if len(before := valleys[valleys < peak]) else 0, int(peak))
+            for peak in peaks
+        ]
+        strokes = [(low, high) for low, high in bounds if way[high] - way[low] >= LEAST_STROKE_M]
+        if not strokes:
+            continue
+        start, end = (float(fine[inside][at]) for at in (strokes[0][0], strokes[-1][1]))
+        amounts = {"stroke_count": float(len(strokes)), "duration_s": end - start}
+        found.append(TrueAchievement("shake", start, end, amounts))
     return found

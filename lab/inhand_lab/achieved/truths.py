@@ -12,6 +12,7 @@ from inhand_lab.achieved.at_head import (
 from inhand_lab.achieved.drinking import true_sips
 from inhand_lab.achieved.hammering import true_hammering
 from inhand_lab.achieved.lifting import true_lifting
+from inhand_lab.achieved.painting import true_painting
 from inhand_lab.achieved.pouring import true_pours
 from inhand_lab.achieved.shaking import true_shaking
 from inhand_lab.achieved.shoes import true_shoes
@@ -28,6 +29,7 @@ TRUTHS: Mapping[str, Callable[[Simulation], list[TrueAchievement]]] = {
     "hitTennisBall": true_tennis,
     "liftWeights": true_lifting,
     "magnifyText": true_reading,
+    "paintWall": true_painting,
     "playFlute": true_playing,
     "pourCream": true_pours,
     "putOnGlasses": true_wearing,

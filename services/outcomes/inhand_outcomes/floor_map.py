@@ -90,19 +90,20 @@ class FloorMap:
 
     def is_under(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
         """Cells (X, Y) with furniture above them that one can sweep beneath."""
-        return self._filled(self.seen_under(parameters))
+        return self._filled(self.seen_under(parameters), self.things == 0)
 
     def is_floor(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
         """Cells (X, Y) of open floor."""
-        return self._filled(self.seen_floor(parameters))
+        unknown = (self.floor == 0) & (self.things == 0)
+        return self._filled(self.seen_floor(parameters), unknown) & ~self.is_under(parameters)
 
-    def _filled(self, flags: Flags) -> Flags:
-        """The flags (X, Y) with cells between the pixels of a slanting view, of which nothing is
-        known, where three neighbours have the flag."""
+    def _filled(self, flags: Flags, free: Flags) -> Flags:
+        """The flags (X, Y) with ``free`` cells, between the pixels of a slanting view, where three
+        neighbours have the flag."""
         padded = np.pad(flags, 1).astype(np.int32)
         rows = padded[:-2] + padded[1:-1] + padded[2:]
         near = rows[:, :-2] + rows[:, 1:-1] + rows[:, 2:]
-        return flags | ((self.floor == 0) & (self.things == 0) & (near >= 3))
+        return flags | (free & (near >= 3))
 
     def is_missed(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
         """Cells (X, Y) that can be swept and were not."""

@@ -8,6 +8,7 @@ from inhand_outcomes.measures.drinking import drinking, sip_volumes
 from inhand_outcomes.measures.filming import filming
 from inhand_outcomes.measures.hammering import hammering
 from inhand_outcomes.measures.lifting import lifting
+from inhand_outcomes.measures.painting import painting
 from inhand_outcomes.measures.phoning import phoning
 from inhand_outcomes.measures.playing import playing
 from inhand_outcomes.measures.pouring import pour_volumes, pouring
@@ -48,6 +49,7 @@ USES: Mapping[str, Use] = {
     "golf": Use(golf, "hitGolfBall"),
     "hammering": Use(hammering, "hammerNail"),
     "lifting": Use(lifting, "liftWeights"),
+    "painting": Use(painting, "paintWall"),
     "shaking": Use(shaking, "shakeVinegar"),
     "sweeping": Use(sweeping, "sweepFloor"),
     "tennis": Use(tennis, "hitTennisBall"),

@@ -49,11 +49,11 @@ class HammeringParameters:
     """Time between the strikes of one burst, at most: the rate is that within bursts."""
     least_speed_m_s: float = 0.35
     """Speed of the face below which a movement is not looked at."""
-    strike_m_s: float = 0.90
+    strike_m_s: float = 0.95
     """Speed of the face from which a movement ahead of ``strike_m`` is a strike: a hammer that
     falls from 5 cm has 1 m/s; one that is put to a nail, or hovers between strikes, has 0.5 to
     0.8 m/s. Shorter ones must be as much faster."""
-    strike_m: float = 0.12
+    strike_m: float = 0.14
     """Way of the face of such a movement."""
     strike_deviation: float = 0.10
     """Deviation of the logarithm of speed times way by which strikes are told."""
@@ -175,7 +175,7 @@ def _fall(
     over = peak + int(np.flatnonzero(back >= 0.8 * parameters.back_m)[0])
     return _Fall(
         start_s=float(at[start]),
-        end_s=float(at[peak]),
+        end_s=float(at[end]),
         over_s=float(at[over]),
         way_m=way,
         back_m=float(back.max()),

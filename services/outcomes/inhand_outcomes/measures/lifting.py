@@ -33,6 +33,8 @@ class LiftingParameters:
     whole: float = 0.79
     """Share of a movement's time in which it is faster: that of movements of least jerk (Flash and
     Hogan, 1985)."""
+    widened_s: float = 0.04
+    """Time by which smoothing begins a movement too early, and ends it too late."""
     longest_s: float = 12.0
     """Time of a repetition, at most: what is held up longer is stored, or hangs."""
     smoothing_m: float = 0.005
@@ -100,7 +102,9 @@ def lifting(
                     "down_s": Amount(down_s, 0.1 + 0.05 * down_s),
                     "duration_s": Amount(ended - begun, 0.15),
                     "tilt_deg": Amount(float(np.degrees(tilt)), float(np.degrees(turned))),
-                    "difference_m": Amount(ends_apart_m * np.sin(tilt), ends_apart_m * turned),
+                    "difference_m": Amount(
+                        ends_apart_m * float(np.sin(tilt)), ends_apart_m * turned
+                    ),
                 },
                 {"from_shoulders_m": float(ranges[1]), "seen": seen},
             )
@@ -182,5 +186,5 @@ def _movement(
     before, after = np.flatnonzero(slow[:fastest]), np.flatnonzero(slow[fastest:])
     begins = first + (int(before[-1]) if len(before) else 0)
     ends = min(first + fastest + int(after[0]), last) if len(after) else last
-    drawn = 0.5 * (1.0 / parameters.whole - 1.0) * (at[ends] - at[begins])
+    drawn = 0.5 * (1.0 / parameters.whole - 1.0) * (at[ends] - at[begins]) - parameters.widened_s
     return float(at[begins] - drawn), float(at[ends] + drawn)

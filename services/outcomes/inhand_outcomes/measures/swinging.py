@@ -52,7 +52,7 @@ class SwingingParameters:
     back_s: float = 2.0
     back_share: float = 0.3
     """The same of what follows a stroke: the way back from where it ended."""
-    ended: float = 0.35
+    ended: float = 0.45
     """Share of the highest speed below which a stroke begins and ends."""
     plane: float = 0.45
     """Share of it above which the head's way is in the plane of the stroke."""

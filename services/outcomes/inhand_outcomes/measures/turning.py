@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inhand_outcomes.arrays import Array, Flags
+from inhand_outcomes.track import Track
 
 
 @dataclass(frozen=True)
@@ -49,3 +50,23 @@ def share_seen(times: Array, seen: Flags, start_s: float, end_s: float) -> float
     """Share of the frames from ``start_s`` to ``end_s`` that were seen, 0 where there is none."""
     inside = (times >= start_s) & (times <= end_s)
     return float(np.mean(seen[inside])) if inside.any() else 0.0
+
+
+LIES_S, LIES_M = 1.0, 0.02
+"""Time for which a thing is still, and by which it moves at most, once it lies somewhere: in a hand
+that pauses it sways more, beside what the tracker errs."""
+
+
+def end_of_lasting(track: Track, end_s: float, pause_s: float) -> float:
+    """Return when an activity ends whose last act ended at ``end_s``: then, or not before the
+    track does where another act may follow within ``pause_s`` and the thing does not lie still."""
+    last = float(track.times[-1])
+    if last - end_s >= pause_s:
+        return end_s
+    lately = track[track.times >= last - LIES_S]
+    lies = (
+        last - end_s > LIES_S
+        and len(lately) > 3
+        and float(np.ptp(lately.positions, axis=0).max()) < LIES_M
+    )
+    return end_s if lies else last
