@@ -8,7 +8,7 @@ from typing import Any
 
 from inhand_schemas.messages import Pose
 from sqlalchemy import func, select
-from sqlalchemy.orm import InstrumentedAttribute, Session
+from sqlalchemy.orm import Session
 
 from inhand_outcomes.achievement import Amount
 from inhand_outcomes.outcome import Outcome
@@ -45,52 +45,35 @@ def totals(database: Database, first: date, last: date) -> list[DayTotal]:
         return read_totals(session, first, last)
 
 
-def _key_columns(
-    table: type[TotalRow] | type[TotalAmountRow],
-) -> tuple[InstrumentedAttribute[Any], ...]:
-    return table.day, table.kind, table.object, table.person, table.counted
-
-
 def read_totals(
     session: Session, first: date, last: date, kinds: Iterable[str] | None = None
 ) -> list[DayTotal]:
     """Return the totals of local days within a transaction, of all kinds or only some."""
     total, amount = TotalRow, TotalAmountRow
-    of_totals = select(*_key_columns(total), total.times, total.seconds).where(
-        total.day.between(first, last)
-    )
-    of_amounts = select(
-        *_key_columns(amount),
-        amount.name,
-        amount.times,
-        amount.sum,
-        amount.variance,
-        amount.largest,
-    ).where(amount.day.between(first, last))
+    of_totals = select(total.__table__).where(total.day.between(first, last))
+    of_amounts = select(amount.__table__).where(amount.day.between(first, last))
     if kinds is not None:
         chosen = list(kinds)
         of_totals = of_totals.where(total.kind.in_(chosen))
         of_amounts = of_amounts.where(amount.kind.in_(chosen))
     amounts: dict[tuple[Any, ...], dict[str, AmountTotal]] = defaultdict(dict)
     for row in session.execute(of_amounts.order_by(amount.name)):
-        columns: list[Any] = list(row)
-        *key, name, times, value, variance, largest = columns
-        amounts[tuple(key)][name] = AmountTotal(times, value, variance, largest)
+        key = (row.day, row.kind, row.object, row.person, row.counted)
+        amounts[key][row.name] = AmountTotal(row.times, row.sum, row.variance, row.largest)
     order = (total.day, total.object, total.kind, total.person, total.counted.desc())
+    of_totals = of_totals.order_by(*order)
     return [
         DayTotal(
-            day,
-            kind,
-            object_name,
-            person_of(person),
-            counted,
-            times,
-            seconds,
-            amounts.get((day, kind, object_name, person, counted), {}),
+            row.day,
+            row.kind,
+            row.object,
+            person_of(row.person),
+            row.counted,
+            row.times,
+            row.seconds,
+            amounts.get((row.day, row.kind, row.object, row.person, row.counted), {}),
         )
-        for day, kind, object_name, person, counted, times, seconds in session.execute(
-            of_totals.order_by(*order)
-        )
+        for row in session.execute(of_totals)
     ]
 
 
