@@ -23,7 +23,7 @@ from inhand_schemas.conventions import SIMULATED
 from inhand_schemas.errors import MessageError
 from inhand_schemas.fields import JointState, Vector3
 from inhand_schemas.keys import parse_key
-from inhand_schemas.messages import CameraInfo, ObjectPose, Person, RgbdFrame, Skeletons
+from inhand_schemas.messages import CameraInfo, ObjectPose, Person, Skeletons
 from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS
 from msgspec import structs
 
@@ -178,7 +178,7 @@ def _estimate(
     """Estimate the skeletons of one recorded frame, and count; None where it has none to give."""
     counts.frames += 1
     try:
-        frame: RgbdFrame = RGBD.decode(message.payload)
+        frame = message.frame()
         colour = None if frame.colour is None else decode_colour(frame.colour)
         depth = None if frame.depth is None else decode_depth(frame.depth)
         people = estimator.estimate(colour, depth, frame.time_ns)

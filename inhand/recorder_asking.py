@@ -105,4 +105,8 @@ def reply_text(reply: RecorderReply) -> str:
         )
     if state.clips_bytes:
         text += f"; clips take {sized(state.clips_bytes)}"
+    if state.colour:
+        kept = {fate: count for fate, count in state.colour.items() if fate != "coded"}
+        text += f"; colour as H.264 of {counted(state.colour.get('coded', 0), 'frame')}"
+        text += "".join(f", as it came of {count:,} ({fate})" for fate, count in kept.items())
     return text if reply.finished is None else f"{text}; {reply.finished} is whole"

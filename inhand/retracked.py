@@ -171,8 +171,7 @@ class _Tracked:
         number = self._frame_numbers.get((message.captured_ns, message.sequence))
         if number is None or not self._needs:
             return None
-        frame: RgbdFrame = RGBD.decode(self._frames[number].payload)
-        return frame
+        return self._frames[number].frame()
 
     def _named(self, pose: ObjectPose) -> ObjectPose:
         self.result.states.setdefault(pose.object, Counter())[pose.state] += 1

@@ -16,6 +16,7 @@ from inhand_recorder.recording_files import find_files
 from inhand_recorder.recording_reader import Recording
 from inhand_recorder.redaction import REDACTION_RECORD
 from inhand_runtime.recording import RecordedMessage, RecordingError
+from inhand_runtime.recording.copying import as_jpeg
 from inhand_runtime.recording.layout import LATEST_NS
 from inhand_schemas.errors import MessageError
 from inhand_schemas.keys import parse_key
@@ -196,7 +197,9 @@ class RedactedRecording(Recording):
                 self.damaged[self._names[message.key]] += 1
             if outcome.is_damaged or outcome.is_left_out:
                 continue
-            yield message if outcome.payload is None else replace(message, payload=outcome.payload)
+            if outcome.payload is not None:
+                message = replace(message, payload=outcome.payload, coded=None)
+            yield message
 
     def messages_apart(
         self, keys: Iterable[str], *, start_ns: int = 0, end_ns: int = LATEST_NS
@@ -230,7 +233,9 @@ class RedactedRecording(Recording):
         return _Outcome(_identity(message), counted, is_left_out=True)
 
     def _frame(self, message: RecordedMessage) -> _Outcome:
-        frame: RgbdFrame = RGBD.decode(message.payload)
+        # What is coded upon a picture that shows more would be unreadable here, or show it.
+        standing = as_jpeg(message)
+        frame = standing.frame()
         hidden = self._hiding[message.key].hidden_in(frame)
         redacted = hide_in_frame(frame, hidden)
         counted = ["frames"]
@@ -238,7 +243,9 @@ class RedactedRecording(Recording):
             counted.append("frames all hidden")
         elif redacted is None:
             counted.append("frames with nothing hidden")
-        payload = None if redacted is None else RGBD.encode(redacted)
+        payload = None if standing is message else standing.payload
+        if redacted is not None:
+            payload = RGBD.encode(redacted)
         return _Outcome(_identity(message), tuple(counted), payload=payload)
 
     def _preview(self, message: RecordedMessage) -> _Outcome:

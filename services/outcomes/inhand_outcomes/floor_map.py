@@ -79,15 +79,22 @@ class FloorMap:
         """Cells (X, Y) that were swept."""
         return self.swept >= parameters.swept
 
+    def seen_under(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
+        """Cells (X, Y) with furniture above them, as was seen, that one can sweep beneath."""
+        above = (self.things >= parameters.looks) & (self.highest < parameters.wall_m)
+        return above & ((self.lowest > parameters.beneath_m) | (self.floor >= parameters.looks))
+
+    def seen_floor(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
+        """Cells (X, Y) of open floor, as was seen."""
+        return (self.floor >= parameters.looks) & (self.things < parameters.looks)
+
     def is_under(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
         """Cells (X, Y) with furniture above them that one can sweep beneath."""
-        above = (self.things >= parameters.looks) & (self.highest < parameters.wall_m)
-        free = (self.lowest > parameters.beneath_m) | (self.floor >= parameters.looks)
-        return self._filled(above & free)
+        return self._filled(self.seen_under(parameters))
 
     def is_floor(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
         """Cells (X, Y) of open floor."""
-        return self._filled((self.floor >= parameters.looks) & (self.things < parameters.looks))
+        return self._filled(self.seen_floor(parameters))
 
     def _filled(self, flags: Flags) -> Flags:
         """The flags (X, Y) with cells between the pixels of a slanting view, of which nothing is
@@ -200,8 +207,8 @@ def cells_to_keep(
     """
     kinds = np.zeros(floor_map.size, np.uint8)
     kinds[floor_map.things >= parameters.looks] = 3
-    kinds[floor_map.is_under(parameters)] = 2
-    kinds[floor_map.is_floor(parameters)] = 1
+    kinds[floor_map.seen_under(parameters)] = 2
+    kinds[floor_map.seen_floor(parameters)] = 1
     return np.asarray((np.rint(31.0 * floor_map.swept).astype(np.uint8) | kinds << 5).T)
 
 

@@ -1,7 +1,7 @@
 """The last seconds of each object in each person's hands, put together from messages."""
 
 from collections import OrderedDict, deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,11 +111,7 @@ class Sightings:
 
     def joints(self, camera: str, person: Person) -> Array:
         """A person's joints (20, 3) in the rig, NaN where missing."""
-        joints = np.array(person.joints)
-        joints[[state == "missing" for state in person.states]] = np.nan
-        rig_from_camera = self._rig_from_camera.get(camera, STILL)
-        turn = Rotation.from_quat(rig_from_camera.rotation, scalar_first=True)
-        return np.asarray(turn.apply(joints) + rig_from_camera.translation)
+        return joints_of(person, self._rig_from_camera.get(camera))
 
     def sighting(self, message: ObjectPose) -> tuple[Holding, Sighting] | None:
         """Whose track a pose belongs to, and what it says; None before the object was ever seen.
@@ -150,8 +146,12 @@ class Sightings:
             joints = self.joints(message.camera, person)
         return holding, Sighting(message.time_ns, message.sequence, pose, covariance, seen, joints)
 
-    def all_joints(self) -> Iterator[Array]:
-        """Joints (20, 3) in the rig of everybody in the frames that wait."""
-        for (camera, _), people in self._people.items():
-            for person in people.values():
-                yield self.joints(camera, person)
+
+def joints_of(person: Person, rig_from_camera: Pose | None = None) -> Array:
+    """A person's joints (20, 3), NaN where missing, in the rig, or else as the camera has them."""
+    joints = np.array(person.joints)
+    joints[[state == "missing" for state in person.states]] = np.nan
+    if rig_from_camera is None:
+        return joints
+    turn = Rotation.from_quat(rig_from_camera.rotation, scalar_first=True)
+    return np.asarray(turn.apply(joints) + rig_from_camera.translation)

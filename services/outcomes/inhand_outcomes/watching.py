@@ -52,6 +52,8 @@ class Watcher:
         self._sightings = Sightings(parameters)
         self._waiting = WaitingPoses(parameters.frames_that_wait)
         self.followed: dict[Holding, Followed] = {}
+        self.told: dict[str, dict[str, Outcome]] = {}
+        """The last settled outcome of each object, by kind."""
 
     def hear_info(self, camera: str, info: CameraInfo) -> None:
         """Take note of where a camera stands."""
@@ -161,7 +163,9 @@ class Watcher:
                 outcomes.append(outcome)
         lasting = [outcome for lasts, outcome in found if lasts]
         outcomes = [self._handed(holding, followed, outcome) for outcome in outcomes]
-        return outcomes + followed.lasting.follow(lasting, last_ns, ended=ended)
+        outcomes += followed.lasting.follow(lasting, last_ns, ended=ended)
+        self.told.setdefault(holding.object, {}).update({one.kind: one for one in outcomes})
+        return outcomes
 
     def _handed(self, holding: Holding, followed: Followed, outcome: Outcome) -> Outcome:
         """What was left in use is handed over, where somebody else has it then."""
@@ -185,7 +189,24 @@ class Watcher:
         counted_s = (followed.lasting.counted_ns - followed.gathering.first_ns) / NS_PER_S
         uncounted = track[track.times >= counted_s]
         if use is not None and len(uncounted) > 1:
-            yield from use.measure(uncounted, thing)
+            done = use.measure(uncounted, thing)
+            if use.complete is not None:
+                done = use.complete(done, self._earlier(holding, followed.gathering.first_ns))
+            yield from done
+
+    def _earlier(self, holding: Holding, first_ns: int) -> list[Achievement]:
+        """What was settled of an object before, as achievements of a track that began then."""
+        return [
+            Achievement(
+                outcome.kind,
+                (outcome.start_ns - first_ns) / NS_PER_S,
+                (outcome.end_ns - first_ns) / NS_PER_S,
+                outcome.probability,
+                outcome.amounts,
+                outcome.evidence,
+            )
+            for outcome in self.told.get(holding.object, {}).values()
+        ]
 
     def _outcome(self, holding: Holding, gathering: Gathering, achievement: Achievement) -> Outcome:
         start_ns, end_ns = (

@@ -7,7 +7,7 @@ from heapq import merge
 from pathlib import Path
 
 from inhand_runtime.recording import RecordedMessage, RecordingError, RecordingWriter
-from inhand_runtime.recording.copying import copy_message
+from inhand_runtime.recording.copying import StandingAlone, copy_message
 from inhand_runtime.recording.layout import LATEST_NS
 
 from inhand_recorder.attachments import attach
@@ -135,13 +135,14 @@ class _Outputs:
         if self._writer is not None and self._is_over(message.received_ns):
             self.finish()
         writer = self._writer or self._open(message)
-        copy_message(writer, message)
         if message.apart:
+            copy_message(writer, message)
             self.apart += 1
             self._end_ns = max(self._end_ns, message.received_ns)
             return
         if message.topic.delivery.kept:
             self.remember(message)
+        copy_message(writer, self._standing.standing(message))
         self._count(message, message.received_ns)
 
     def discard(self) -> None:
@@ -174,6 +175,7 @@ class _Outputs:
 
     def _begin(self) -> None:
         self._counter, self._messages = LossCounter(), 0
+        self._standing = StandingAlone()
 
     def _is_over(self, received_ns: int) -> bool:
         return 0 < self._split_ns <= received_ns - self._start_ns

@@ -14,11 +14,23 @@ from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
 
 
 @dataclass(frozen=True)
+class CodedEntry:
+    """A frame with its colour as H.264: a payload with the digest of the picture, and of the one
+    that it ``builds_on``; ``missed`` is to be called where that is not in the file."""
+
+    payload: bytes
+    digest: int
+    builds_on: int | None
+    missed: Callable[[], None]
+
+
+@dataclass(frozen=True)
 class Entry:
     """One encoded message; times are nanoseconds since the epoch.
 
     A ``kept`` one (calibration, say) belongs at the start of every later file. One that cannot be
-    decoded is kept ``apart`` from what readers find under its key.
+    decoded is kept ``apart`` from what readers find under its key. A frame may be ``coded`` beside,
+    which is written in place of ``payload`` where the file has what it builds on.
     """
 
     key: str
@@ -28,6 +40,7 @@ class Entry:
     sequence: int
     kept: bool = False
     apart: bool = False
+    coded: CodedEntry | None = None
 
 
 @dataclass(frozen=True)
@@ -79,6 +92,7 @@ class RecordingFile:
         self._losses = LossCounter(former)
         self._in_memory: list[Entry] = []
         self._noted: dict[str, dict[str, str]] = {}
+        self._pictures: dict[str, int] = {}
         self.worth_keeping = False
         try:
             self._writer = RecordingWriter(path, make_room=make_room)
@@ -198,8 +212,19 @@ class RecordingFile:
         self._losses.count(entry.key, entry.sequence)
         self._writer.write(
             entry.key,
-            entry.payload,
+            self._payload(entry),
             received_ns=entry.received_ns,
             captured_ns=entry.captured_ns,
             sequence=entry.sequence,
         )
+
+    def _payload(self, entry: Entry) -> bytes:
+        """Return what is written of an entry, so that the file can be read by itself."""
+        coded = entry.coded
+        if coded is None:
+            return entry.payload
+        if coded.builds_on not in (None, self._pictures.get(entry.key)):
+            coded.missed()
+            return entry.payload
+        self._pictures[entry.key] = coded.digest
+        return coded.payload

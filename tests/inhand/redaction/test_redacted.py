@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import simplejpeg
+from coded_rig import recoded
 from inhand_capture.estimation.found_person import FoundPerson
 from inhand_capture.faces.finder import FaceFinder
 from inhand_recorder.attachments import read_attachments
@@ -85,6 +86,16 @@ def test_no_pixel_of_a_person_is_left_and_all_else_is_as_it_was(tmp_path: Path) 
     assert [identity(one) for one in read_recording(output)] == [
         identity(one) for one in read_recording(path)
     ]
+
+
+def test_of_h264_no_picture_stays_that_shows_or_builds_on_a_person(tmp_path: Path) -> None:
+    path = recoded(write_walk(tmp_path / "jpeg.mcap", PAST), tmp_path / "walk.mcap")
+    done, output = redact(path, "people", PAST)
+    assert done.counts == {"frames": 7, "previews": 7}
+    assert examine_recording(output).problems == ()
+    for x, (colour, _) in zip(PAST, frames_of(output), strict=True):
+        assert colour[person_at(x)].max() < BLACK
+        assert colour.max() < PERSON - 50
 
 
 def test_faces_are_hidden_and_hands_are_not(tmp_path: Path) -> None:

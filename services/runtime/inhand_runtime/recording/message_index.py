@@ -8,20 +8,26 @@ import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
 from typing import NamedTuple, overload
 
 import numpy as np
-from inhand_schemas.topics import AnyTopic
+from inhand_schemas.topics import RGBD, AnyTopic
 from mcap.data_stream import ReadDataStream
 from mcap.records import Header
 from mcap.writer import MCAP0_MAGIC
 
 from inhand_runtime.recording.chunk_table import HEADER, ChunkTable, Entries, IndexedTable, Integers
 from inhand_runtime.recording.chunk_walk import WalkedTable
+from inhand_runtime.recording.coded_colour import (
+    LONGEST_CHAIN,
+    CodedPicture,
+    ColourDecoder,
+    coded_image,
+)
 from inhand_runtime.recording.layout import (
     APART_ENCODING,
     MESSAGE_ENCODING,
@@ -162,6 +168,7 @@ class IndexedMessages(Sequence[RecordedMessage]):
 
     def __init__(self, index: RecordingIndex, key: _Key | None, entries: Entries) -> None:
         self._index, self._key, self._entries = index, key, entries
+        self._decoder = ColourDecoder()
         self.received_ns = entries.received_ns
 
     def __len__(self) -> int:
@@ -177,8 +184,32 @@ class IndexedMessages(Sequence[RecordedMessage]):
             return [self[one] for one in range(*number.indices(len(self)))]
         if self._key is None or not -len(self) <= number < len(self):
             raise IndexError(f"there are {len(self)} messages, and none of number {number}")
+        message = self._read(self._key, number)
+        if message.topic is not RGBD:
+            return message
+        return replace(message, coded=self._coded(message, number))
+
+    def _read(self, key: _Key, number: int) -> RecordedMessage:
         entry = int(self._entries.chunks[number]), int(self._entries.offsets[number])
-        return self._index.read(self._key, *entry)
+        return self._index.read(key, *entry)
+
+    def _coded(self, message: RecordedMessage, number: int) -> CodedPicture | None:
+        """Return the colour of a message where that is H.264."""
+        number %= len(self)
+        image = coded_image(message.payload)
+        if image is None:
+            return None
+        return CodedPicture(image, lambda: self._coded_before(number), self._decoder)
+
+    def _coded_before(self, number: int) -> CodedPicture | None:
+        """Read the last colour before a message that is H.264; None where that is far away."""
+        if self._key is None:
+            return None
+        for one in range(number - 1, max(-1, number - 1 - LONGEST_CHAIN), -1):
+            coded = self._coded(self._read(self._key, one), one)
+            if coded is not None:
+                return coded
+        return None
 
     @cached_property
     def places(self) -> Integers:

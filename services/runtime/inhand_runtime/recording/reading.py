@@ -10,7 +10,7 @@ from typing import IO, TypeVar
 
 from inhand_schemas.errors import KeyFormatError, UnknownVersionError
 from inhand_schemas.keys import ParsedKey
-from inhand_schemas.topics import AnyTopic, topic_of
+from inhand_schemas.topics import RGBD, AnyTopic, topic_of
 from mcap.reader import SeekingReader
 from mcap.records import Channel
 from mcap.records import Message as MessageRecord
@@ -18,6 +18,7 @@ from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
+from inhand_runtime.recording.coded_colour import LONGEST_CHAIN_NS, ColourChains
 from inhand_runtime.recording.layout import (
     APART_ENCODING,
     DAMAGE,
@@ -47,25 +48,31 @@ def read_recording(
 
     ``streams`` chooses; keys that are not Inhand's are passed over. In files of ours most of what
     stands before the first message that was captured at or after ``captured_from_ns`` is not read,
-    and so not yielded; nothing after it is left out. With ``apart``, for copies, what could not be
-    read on its key when it was recorded is yielded as well. Raises RecordingError for a file that
-    is missing, foreign, cut off or damaged, and UnknownVersionError.
+    and so not yielded; nothing after it is left out, nor what colour after it builds on. With
+    ``apart``, for copies, what could not be read on its key when it was recorded is yielded as
+    well. Raises RecordingError for a file that is missing, foreign, cut off or damaged, and
+    UnknownVersionError.
     """
     with _open(path) as (file, reader):
         summary = _summary(path, reader)
         chosen = choose_channels(summary.channels.values(), streams)
         if captured_from_ns is not None and _is_ours(path, reader) and summary.chunk_indexes:
             with explaining_damage(path):
-                chunks = CaptureTimes(file, summary, chosen).chunks_from(captured_from_ns)
-            if not chunks:
-                return
+                captured = CaptureTimes(file, summary, chosen)
+                if not (chunks := captured.chunks_from(captured_from_ns)):
+                    return
+                if any(topic is RGBD for topic, _ in chosen.values()):
+                    chunks = captured.chunks_from(captured_from_ns - LONGEST_CHAIN_NS)
             # The reader keeps this summary, and reads the chunks that it names.
             summary.chunk_indexes = chunks
         if apart:
             chosen = apart_channels(summary.channels.values(), streams) | chosen
         encodings = (MESSAGE_ENCODING, APART_ENCODING) if apart else (MESSAGE_ENCODING,)
+        chains = ColourChains()
         for channel, message in _records(path, reader, chosen, encodings):
             topic, parsed = chosen[channel.topic]
+            is_apart = channel.message_encoding == APART_ENCODING
+            coded = topic is RGBD and not is_apart
             yield RecordedMessage(
                 channel.topic,
                 topic,
@@ -74,7 +81,8 @@ def read_recording(
                 message.log_time,
                 message.publish_time,
                 message.sequence,
-                apart=channel.message_encoding == APART_ENCODING,
+                apart=is_apart,
+                coded=chains.next_picture(channel.topic, message.data) if coded else None,
             )
 
 
