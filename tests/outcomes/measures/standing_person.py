@@ -25,6 +25,11 @@ PLACES = {
 }
 
 
+def rotations_of(track: Track) -> Rotation:
+    """The object's T rotations."""
+    return Rotation.from_quat(track.poses[:, 3:], scalar_first=True)
+
+
 def frame_times(seconds: float, rate: float = 20.0) -> Array:
     """Times (T,) of a camera's frames."""
     return np.arange(round(seconds * rate)) / rate
@@ -79,7 +84,7 @@ def elsewhere(track: Track, seconds: float, heading: float, kept: Flags) -> Trac
     turn = Rotation.from_euler("z", heading)
     matrix = turn.as_matrix()
     both = np.kron(np.eye(2), matrix)
-    rotations = (turn * track.rotations).as_quat(canonical=True, scalar_first=True)
+    rotations = (turn * rotations_of(track)).as_quat(canonical=True, scalar_first=True)
     return Track(
         track.times + seconds,
         np.hstack([track.positions @ matrix.T, rotations]),

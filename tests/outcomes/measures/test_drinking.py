@@ -9,7 +9,7 @@ from inhand_outcomes.arrays import Array
 from inhand_outcomes.measures.drinking import drinking, sip_volumes
 from inhand_outcomes.measures.vessels import inside_of
 from inhand_outcomes.track import Track
-from standing_person import MOUTH, elsewhere, frame_times, going, track_of, turns
+from standing_person import MOUTH, elsewhere, frame_times, going, rotations_of, track_of, turns
 
 CHEST = np.array([0.1, 0.35, 1.2])
 
@@ -66,7 +66,7 @@ def test_a_mug_that_is_not_drunk_from_gives_no_sip(at_mouth: float, tilt_deg: fl
 
 def test_what_was_not_seen_or_is_cut_by_the_window_is_no_sip() -> None:
     track = sips(frame_times(6.0), [1.0], [45.0])
-    hidden = track_of(track.times, track.positions, track.rotations, seen=track.times < 1.0)
+    hidden = track_of(track.times, track.positions, rotations_of(track), seen=track.times < 1.0)
     assert drinking(hidden, MUG) == []
     assert drinking(track[track.times < 2.5], MUG) == []
     assert drinking(track[track.times > 2.0], MUG) == []

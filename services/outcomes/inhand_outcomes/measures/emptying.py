@@ -214,7 +214,7 @@ def _overlap(one: Achievement, other: Achievement) -> bool:
 def tilts(track: Track) -> tuple[Array, Array, Array]:
     """How far (T,) the object's z axis is from the vertical, in which direction of the object from
     x to y it is low (T,), and the tilt's standard deviation (T,), all radians."""
-    matrices = track.rotations.as_matrix()
+    matrices = track.matrices
     up = matrices[:, 2, :]
     tilt = np.arccos(np.clip(up[:, 2], -1.0, 1.0))
     level = np.cross(matrices[:, :, 2], [0.0, 0.0, 1.0])

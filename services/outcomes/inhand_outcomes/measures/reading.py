@@ -87,7 +87,9 @@ def reading(track: Track, thing: Thing) -> list[Achievement]:
     spread = np.hypot(track.point_deviations(lens), parameters.deviation_m)
     margins = np.minimum((parameters.facing - angle) / turning, (largest - distance) / spread)
     spells = []
-    for spell in find_spells(track.times, inner, outer, usable, parameters.longest_gap_s):
+    for spell in find_spells(
+        track.times, inner, outer, usable, parameters.longest_gap_s, parameters.longest_gap_s
+    ):
         during = np.zeros(len(track), bool)
         during[spell.frames] = outer[spell.frames]
         with np.errstate(invalid="ignore"):

@@ -3,13 +3,15 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr
 
 from inhand_outcomes.arrays import Array, Flags
+from inhand_outcomes.normal import normal_share
 
 SEEN_ENOUGH = 0.5
 """Share of a spell's frames that must be seen for its probability not to suffer: a hand hides what
 it holds now and then, and what was seen before and after tells of the time between."""
+LONGEST_AWAY_S = 0.5
+"""Seconds for which a tracker that errs may say otherwise within a spell."""
 LEAST_REST_S = 0.3
 """Seconds that the rest of a spell lasts at least: averages differ at the beginning of a track."""
 
@@ -40,12 +42,18 @@ class Spell:
 
 
 def find_spells(
-    times: Array, inner: Flags, outer: Flags, usable: Flags, longest_gap_s: float
+    times: Array,
+    inner: Flags,
+    outer: Flags,
+    usable: Flags,
+    longest_gap_s: float,
+    longest_away_s: float = LONGEST_AWAY_S,
 ) -> list[Spell]:
     """Spells in which the looser condition ``outer`` (T,) holds, and somewhere the stricter one.
 
-    Frames that are not ``usable`` say nothing; nor is what lasts no longer than ``longest_gap_s``
-    in between believed. A spell begins and ends halfway between two frames that differ.
+    Frames that are not ``usable`` say nothing, for up to ``longest_gap_s``; nor is what they say in
+    between believed if it lasts no longer than ``longest_away_s``. A spell begins and ends halfway
+    between two frames that differ.
     """
     known = np.flatnonzero(usable)
     if not len(known):
@@ -53,7 +61,13 @@ def find_spells(
     inside = known[outer[known]]
     if not len(inside):
         return []
-    cuts = np.flatnonzero(np.diff(times[inside]) > longest_gap_s)
+    away = known[~outer[known]]
+    first_away = np.searchsorted(away, inside[:-1])
+    last_away = np.searchsorted(away, inside[1:]) - 1
+    spans = np.zeros(len(inside) - 1)
+    between = last_away >= first_away
+    spans[between] = times[away[last_away[between]]] - times[away[first_away[between]]]
+    cuts = np.flatnonzero((np.diff(times[inside]) > longest_gap_s) | (spans > longest_away_s))
     firsts = inside[np.concatenate([[0], cuts + 1])]
     lasts = inside[np.concatenate([cuts, [len(inside) - 1]])]
     spells = []
@@ -90,7 +104,7 @@ def sureness(spell: Spell, usable: Flags, margins: Array, best: float = 1.0) -> 
     if not len(values):
         return 0.0
     shown = values[int((1.0 - best) * len(values)) :]
-    return float(np.mean(ndtr(shown))) * min(1.0, float(np.mean(seen)) / SEEN_ENOUGH)
+    return float(np.mean(normal_share(shown))) * min(1.0, float(np.mean(seen)) / SEEN_ENOUGH)
 
 
 def smoothed(times: Array, values: Array, usable: Flags, seconds: float) -> Array:
