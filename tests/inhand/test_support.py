@@ -42,7 +42,7 @@ people = {{ 0 = "{SECRETS["person"]}" }}
 person = "{SECRETS["person"]}"
 [recorder.disk]
 folder = "recordings"
-colour = "{SECRETS["unknown"]}"
+tint = "{SECRETS["unknown"]}"
 """
 
 

@@ -115,9 +115,9 @@ def test_what_is_kept_can_be_looked_at_and_forgotten_while_the_daemon_runs(rig: 
     assert json.loads((rig.folder / "answer.json").read_text())["kind"] == "put_down"
     assert rig.done("outcomes", "forget", "--all", "--yes", *ask).popen.returncode == 0
     assert json.loads((rig.folder / "answer.json").read_text())["removed"]["outcomes"] == 2
-    carry(rig, "--start-ns", str(START_NS + 60 * 10**9))
-    eventually("the next acts", lambda: len(kinds(rig)) >= 2)
-    assert kinds(rig) == ["taken_up", "put_down"]
+    # What the daemon sees before it hears of it is forgotten as well: the first may be.
+    carry(rig, "--start-ns", str(START_NS + 60 * 10**9), "--times", "2")
+    eventually("the next acts", lambda: kinds(rig)[-2:] == ["taken_up", "put_down"])
 
 
 def test_without_objects_the_daemon_says_so_in_its_health(rig: RunningRig) -> None:

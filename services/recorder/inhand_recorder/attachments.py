@@ -13,7 +13,6 @@ from mcap.records import Attachment, Header, Metadata
 from mcap.writer import MCAP0_MAGIC
 
 from inhand_recorder.records import attachment_is_sound, length_at, record_at
-from inhand_recorder.scanning import opened
 
 _MESH_NAME = "objects/{}/mesh.ply"
 _MESH_TYPE = "model/ply"
@@ -32,6 +31,8 @@ def read_attachments(path: Path) -> list[Attachment]:
         raise RecordingError(f"{path} has no index: `inhand recording recover {path}` writes one")
     if not summary.attachment_indexes:
         return []
+    from inhand_recorder.scanning import opened  # for whoever reads: it needs NumPy
+
     with opened(path) as data, explaining_damage(path):
         offsets = [one.offset for one in summary.attachment_indexes]
         found = [record_at(data, offset) for offset in offsets if attachment_is_sound(data, offset)]
@@ -42,6 +43,8 @@ def first_attachments(path: Path) -> list[Attachment]:
     """Read what is attached at the begin of a recording in any state, as a recorder attaches
     meshes, without what a checksum contradicts; raises RecordingError."""
     found = []
+    from inhand_recorder.scanning import opened
+
     with opened(path) as data:
         offset = len(MCAP0_MAGIC)
         while isinstance(record := record_at(data, offset), Header | Metadata | Attachment):

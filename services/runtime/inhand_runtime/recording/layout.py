@@ -21,6 +21,10 @@ SCHEMA_ENCODING = "jsonschema"
 MESSAGE_ENCODING = "msgpack"
 APART_ENCODING = "x-undecodable"
 """The message encoding of a channel that holds what could not be read on its key."""
+HEADER = struct.Struct("<BQ")
+"""What each record begins with: its opcode, and the length of what follows."""
+MESSAGE_HEAD = struct.Struct("<BQHIQQ")
+"""A message's header, channel, number, and times of reception and of capture."""
 CHUNK_BYTES = 1024 * 1024
 MOST_CHANNELS = 0xFFFF
 LATEST_NS = (1 << 64) - 1

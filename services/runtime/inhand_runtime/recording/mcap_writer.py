@@ -30,8 +30,7 @@ from mcap.records import (
 from mcap.writer import MCAP0_MAGIC
 from zlib_ng.zlib_ng import crc32, crc32_combine
 
-from inhand_runtime.recording.chunk_table import HEADER
-from inhand_runtime.recording.chunk_walk import MESSAGE_HEAD
+from inhand_runtime.recording.layout import HEADER, MESSAGE_HEAD
 from inhand_runtime.recording.part_file import PartFile
 
 LIBRARY = "inhand"

@@ -20,7 +20,7 @@ from mcap.data_stream import ReadDataStream
 from mcap.records import Header
 from mcap.writer import MCAP0_MAGIC
 
-from inhand_runtime.recording.chunk_table import HEADER, ChunkTable, Entries, IndexedTable, Integers
+from inhand_runtime.recording.chunk_table import ChunkTable, Entries, IndexedTable, Integers
 from inhand_runtime.recording.chunk_walk import WalkedTable
 from inhand_runtime.recording.coded_colour import (
     LONGEST_CHAIN,
@@ -30,13 +30,14 @@ from inhand_runtime.recording.coded_colour import (
 )
 from inhand_runtime.recording.layout import (
     APART_ENCODING,
+    HEADER,
     MESSAGE_ENCODING,
     PROFILE,
     SEQUENCE_MASK,
     RecordedMessage,
     RecordingError,
 )
-from inhand_runtime.recording.message_reader import MessageReader
+from inhand_runtime.recording.message_reader import MISPLACED, MessageReader
 from inhand_runtime.recording.opening import opening
 from inhand_runtime.recording.reading import (
     apart_channels,
@@ -141,6 +142,8 @@ class RecordingIndex:
         """Read one message; raises RecordingError where a checksum contradicts it."""
         with explaining_damage(self.path):
             stamp, payload = self._reader.read(chunk, offset)
+        if stamp.channel not in key.channels:
+            raise RecordingError(f"{self.path}: {MISPLACED}")
         times = stamp.received_ns, stamp.captured_ns
         named = key.key, key.topic, key.name
         return RecordedMessage(*named, payload, *times, stamp.sequence, apart=key.apart)
@@ -191,7 +194,10 @@ class IndexedMessages(Sequence[RecordedMessage]):
 
     def _read(self, key: _Key, number: int) -> RecordedMessage:
         entry = int(self._entries.chunks[number]), int(self._entries.offsets[number])
-        return self._index.read(key, *entry)
+        message = self._index.read(key, *entry)
+        if message.received_ns != int(self.received_ns[number]):
+            raise RecordingError(f"{self._index.path}: {MISPLACED}")
+        return message
 
     def _coded(self, message: RecordedMessage, number: int) -> CodedPicture | None:
         """Return the colour of a message where that is H.264."""
