@@ -31,6 +31,7 @@ from rich.table import Table
 TAUGHT_BY = 5150
 """Seed of the people who teach the models."""
 TEACHERS = 3
+TAUGHT_FRAMES = 300
 FRAMES = 360
 SUFFIX = "_retrack"
 SURE = 0.5
@@ -170,7 +171,7 @@ def _places(simulation: Simulation, outcomes: Sequence[Outcome]) -> Iterator[Han
 def _models(folder: Path) -> dict[str, Path]:
     """The models by interaction, learned where they are missing."""
     taught = folder / f"people_{TAUGHT_BY}"
-    _simulate(taught, TAUGHT_BY, TEACHERS)
+    _simulate(taught, TAUGHT_BY, TEACHERS, TAUGHT_FRAMES)
     models = {}
     for interaction, done in INTERACTIONS.items():
         name = done.object_model().name
@@ -183,7 +184,7 @@ def _models(folder: Path) -> dict[str, Path]:
 def _tracked(folder: Path, seed: int, participants: int, models: Mapping[str, Path]) -> Path:
     """The folder of the tracked recordings of a seed's people."""
     people, tracked = folder / f"people_{seed}", folder / f"tracked_{seed}"
-    _simulate(people, seed, participants)
+    _simulate(people, seed, participants, FRAMES)
     for interaction, model in models.items():
         paths = [
             people / "recordings" / f"{interaction}_p{number:02}.mcap"
@@ -194,9 +195,10 @@ def _tracked(folder: Path, seed: int, participants: int, models: Mapping[str, Pa
     return tracked
 
 
-def _simulate(out: Path, seed: int, participants: int) -> None:
+def _simulate(out: Path, seed: int, participants: int, frames: int) -> None:
     if not (out / "dataset.toml").exists():
-        wanted = ("--participants", str(participants), "--seed", str(seed), "--frames", str(FRAMES))
+        numbers = {"participants": participants, "seed": seed, "frames": frames}
+        wanted = (part for name, one in numbers.items() for part in (f"--{name}", str(one)))
         _inhand("simulate", out, *wanted)
 
 
