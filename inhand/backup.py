@@ -1,4 +1,5 @@
-"""``inhand backup``: put a site's settings, models, objects and certificates into one file.
+"""``inhand backup``: put a site's settings, models, objects, certificates and what is kept of
+outcomes into one file.
 
 Recordings are not in it. Private keys are: keep the file as you keep them.
 """
@@ -9,7 +10,7 @@ import grp
 import hashlib
 import pwd
 import stat
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import msgspec
@@ -29,6 +30,7 @@ from inhand.backup_file import (
     place_of,
     write_backup,
 )
+from inhand.database_copies import copied_databases
 from inhand.site_files import NOTHING, SiteFiles, plain, site_files
 
 
@@ -59,10 +61,17 @@ def run(arguments: argparse.Namespace) -> int:
         with contextlib.ExitStack() as locks:
             for administered in site.administered():
                 locks.enter_context(locked_folder(administered))
-            files, folders = _listed(site, folder)
+            beside = arguments.output.absolute().parent
+            copies = locks.enter_context(copied_databases(site.databases, beside))
+            files, folders = _listed(site, folder, copies)
             names = [config.name for config in configs]
             manifest = new_manifest(folder, names, files, folders)
-            write_backup(arguments.output, manifest, lambda place: path_of(place, folder))
+
+            def source_of(place: str) -> Path:
+                path = path_of(place, folder)
+                return copies.get(path, path)
+
+            write_backup(arguments.output, manifest, source_of)
     except OSError as error:
         raise InhandError(f"cannot read {error.filename}: {error.strerror}") from None
     size = sum(one.size for one in files)
@@ -71,23 +80,28 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"  {one.place}")
     for path in sorted(site.given):
         print(f"NOT in it: {path}, which systemd gives: keep /etc/credstore besides")
+    for address in sorted(site.served):
+        print(f"NOT in it: {address}: have its server back it up")
     print("Recordings are not in it. Private keys may be: only you can read it; keep it so.")
     return DONE
 
 
-def _listed(site: SiteFiles, folder: Path) -> tuple[list[StoredFile], list[Stored]]:
-    """What is to be stored, by place; raises SettingsError for what settings name in vain."""
+def _listed(
+    site: SiteFiles, folder: Path, copies: Mapping[Path, Path]
+) -> tuple[list[StoredFile], list[Stored]]:
+    """What is to be stored, by place, of databases the copies; raises SettingsError for what
+    settings name in vain."""
     if missing := sorted(str(path) for path in site.files if not path.is_file()):
         raise SettingsError(
             f"{missing[0]}, which the settings name, is no file: a backup without it would not "
             "start; make it, or take it out of the settings"
         )
-    files, folders = set(site.files), site.administered()
+    files, folders = {*site.files, *copies}, site.administered()
     for top in site.folders:
         for path in _below(top):
             (folders if path.is_dir() else files).add(path)
     return (
-        [_stored_file(path, folder) for path in sorted(files)],
+        [_stored_file(path, folder, copies.get(path, path)) for path in sorted(files)],
         [_stored(path, folder) for path in sorted(folders)],
     )
 
@@ -111,9 +125,9 @@ def _stored(path: Path, folder: Path) -> Stored:
     )
 
 
-def _stored_file(path: Path, folder: Path) -> StoredFile:
+def _stored_file(path: Path, folder: Path, source: Path) -> StoredFile:
     size, summed = 0, hashlib.sha256()
-    with path.open("rb") as file:
+    with source.open("rb") as file:
         while data := file.read(PIECE_BYTES):
             size += len(data)
             summed.update(data)

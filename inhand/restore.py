@@ -13,6 +13,7 @@ from inhand_runtime.settings_file import values_in
 from inhand_runtime.wording import counted
 
 from inhand.backup_file import SETTINGS, Manifest, contents, path_of, read_manifest
+from inhand.database_copies import require_unused
 from inhand.placement import Placement
 from inhand.site_files import NOTHING, SiteFiles, plain, site_files
 
@@ -39,8 +40,11 @@ def run(arguments: argparse.Namespace) -> int:
     """Put everything back; raises InhandError or SettingsError, and then nothing has changed."""
     manifest = read_manifest(arguments.source)
     folder = plain(Path(manifest.folder) if arguments.folder is None else arguments.folder)
-    _require_fitting(manifest, _named(arguments.source, manifest, folder), folder)
+    site = _named(arguments.source, manifest, folder)
+    _require_fitting(manifest, site, folder)
     places = {one.place: path_of(one.place, folder) for one in manifest.files}
+    for path in sorted(site.databases & set(places.values())):
+        require_unused(path)
     _require_free(places, overwrite=arguments.overwrite)
     try:
         with Placement() as placement:

@@ -20,20 +20,28 @@ ADMINISTERED = ("authority", "members", "hubs")
 @dataclass(frozen=True)
 class SiteFiles:
     """Absolute places of single files, and of folders with all that is in them; keys and passwords
-    that systemd gives, as they are named."""
+    that systemd gives, as they are named; databases, which may not be there yet, and the addresses
+    of those that a server has."""
 
-    files: frozenset[Path]
-    folders: frozenset[Path]
-    given: frozenset[Path]
+    files: frozenset[Path] = frozenset()
+    folders: frozenset[Path] = frozenset()
+    given: frozenset[Path] = frozenset()
+    databases: frozenset[Path] = frozenset()
+    served: frozenset[str] = frozenset()
 
     def __or__(self, other: "SiteFiles") -> "SiteFiles":
         return SiteFiles(
-            self.files | other.files, self.folders | other.folders, self.given | other.given
+            self.files | other.files,
+            self.folders | other.folders,
+            self.given | other.given,
+            self.databases | other.databases,
+            self.served | other.served,
         )
 
     def has(self, path: Path) -> bool:
         """Whether a file is one of these."""
-        return path in self.files or any(path.is_relative_to(one) for one in self.folders)
+        alone = path in self.files or path in self.databases
+        return alone or any(path.is_relative_to(one) for one in self.folders)
 
     def has_folder(self, path: Path) -> bool:
         """Whether a folder is one of these, or in or above one."""
@@ -44,7 +52,7 @@ class SiteFiles:
         return {one.parent for one in self.folders if one.name == ADMINISTERED[0] and one.is_dir()}
 
 
-NOTHING = SiteFiles(frozenset(), frozenset(), frozenset())
+NOTHING = SiteFiles()
 
 
 def site_files(values: Mapping[str, Any], config: Path) -> SiteFiles:
@@ -58,14 +66,26 @@ def site_files(values: Mapping[str, Any], config: Path) -> SiteFiles:
     named: list[Path | None] = [config, zenoh.certificate, zenoh.key, zenoh.authority]
     named.append(zenoh.password)
     folders: list[Path] = []
+    databases: set[Path] = set()
+    served: set[str] = set()
     for service in SERVICES:
         for name, table in getattr(rig_file, service).items():
             settings = _checked(table, settings_model(service), config, (service, name))
             named += _files(settings)
             folders += _folders(settings)
+            if service == "outcomes" and settings.database_file is None:
+                served.add(settings.database)
+            elif service == "outcomes":
+                databases.add(plain(settings.database_file))
     given = {one for one in named if one is not None and is_credential(one)}
     files = {plain(one) for one in named if one is not None and one not in given}
-    return SiteFiles(frozenset(files), frozenset(map(plain, folders)), frozenset(given))
+    return SiteFiles(
+        frozenset(files),
+        frozenset(map(plain, folders)),
+        frozenset(given),
+        frozenset(databases),
+        frozenset(served),
+    )
 
 
 def plain(path: Path) -> Path:

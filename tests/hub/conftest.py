@@ -11,7 +11,7 @@ from wire import Wire
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[HubSite]:
-    """A hub with two cameras, a tracker of the mug, a recorder, a studio and a viewer."""
+    """A hub with two cameras, a tracker of the mug, a recorder, a studio, a viewer and outcomes."""
     folder = tmp_path_factory.mktemp("hub")
     with contextlib.closing(RunningRig(folder)) as rig:
         yield start_hub(rig, made_site(folder / "site"))

@@ -124,6 +124,7 @@ READS = {
     "tracker": {"health", "info", "rgbd", "skeletons"},
     "recorder": set(TOPICS),
     "studio": set(TOPICS),
+    "outcomes": {"health", "info", "pose", "rgbd", "skeletons"},
     "viewer": {"health", "info", "pose", "preview", "skeletons"},
 }
 

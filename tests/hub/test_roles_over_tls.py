@@ -20,6 +20,7 @@ from inhand_runtime.session import tokens, watch_tokens
 from inhand_schemas.keys import Site
 from inhand_schemas.procedures import PAUSE, PROCEDURES, RELOAD, SHUTTER
 from inhand_schemas.topics import (
+    EVENT,
     HEALTH,
     INFO,
     POSE,
@@ -41,21 +42,23 @@ PERMITTED = {
     "disk": {"event/disk", "health/disk"},
     "desk": {"health/desk"},
     "anna": set[str](),
+    "home": {"event/home", "health/home"},
 }
 """Who may publish what, of all streams under all names of ``NAMES``."""
-NAMES = ("front", "back", "mug", "disk", "desk", "anna", "hub", "other")
+NAMES = ("front", "back", "mug", "disk", "desk", "anna", "home", "hub", "other")
 WILDCARDS = ("**", "home/**", "home/@v1/**", "home/@v1/kitchen/**", "home/@v1/*/*/*", "*/@v1/*/**")
 
 
 @pytest.mark.parametrize(
     ("publisher", "topic", "name", "readers"),
     [
-        ("front", INFO, "front", {"mug", "disk", "desk", "anna"}),
-        ("front", RGBD, "front", {"mug", "disk", "desk"}),
-        ("front", SKELETONS, "front", {"mug", "disk", "desk", "anna"}),
+        ("front", INFO, "front", {"mug", "disk", "desk", "anna", "home"}),
+        ("front", RGBD, "front", {"mug", "disk", "desk", "home"}),
+        ("front", SKELETONS, "front", {"mug", "disk", "desk", "anna", "home"}),
         ("front", PREVIEW, "front", {"disk", "desk", "anna"}),
-        ("front", HEALTH, "front", {"back", "mug", "disk", "desk", "anna"}),
-        ("mug", POSE, "mug", {"disk", "desk", "anna"}),
+        ("front", HEALTH, "front", {"back", "mug", "disk", "desk", "anna", "home"}),
+        ("mug", POSE, "mug", {"disk", "desk", "anna", "home"}),
+        ("home", EVENT, "home", {"disk", "desk"}),
     ],
     ids=lambda value: getattr(value, "stream", None),
 )

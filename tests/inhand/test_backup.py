@@ -4,16 +4,21 @@ import io
 import json
 import shutil
 import tarfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 import pytest
 from hub_site import REALM, RIG, HubSite, free_address, made_site
+from inhand_outcomes.store.models import OutcomeRow
+from inhand_outcomes.store.queries import latest
+from inhand_outcomes.store.saving import Saver
 from inhand_schemas.keys import Site
 from inhand_schemas.topics import POSE
+from kept_outcomes import S, at, new_saver, sip
 from running_rig import ROOT, RunningRig, eventually
+from sqlalchemy import delete
 
 from inhand.__main__ import main
 
@@ -302,3 +307,74 @@ def test_a_site_of_absolute_paths_is_not_restored_to_another_folder(
     shutil.rmtree(tmp_path / "a")
     assert main(["restore", str(backup)]) == 0
     assert (tmp_path / "a/secret/word").exists()
+
+
+def _kept(config: Path) -> list[str]:
+    """The kinds of the outcomes that a site's database has."""
+    saver = new_saver(config.parent)
+    try:
+        return [one.outcome.kind for one in latest(saver.database, 10)]
+    finally:
+        saver.database.close()
+
+
+NOON_NS = at("2026-03-01 12:00")
+
+
+@pytest.fixture
+def keeping(tmp_path: Path) -> Iterator[tuple[Path, Saver]]:
+    """The settings of a site with outcomes, and a daemon's hold of their database."""
+    config = _small_site(tmp_path / "a", **{"rig.toml": "[outcomes.home]"})
+    saver = new_saver(config.parent)
+    saver.save([sip(NOON_NS)])
+    yield config, saver
+    saver.database.close()
+
+
+def test_outcomes_are_backed_up_while_a_daemon_writes_them(
+    tmp_path: Path, keeping: tuple[Path, Saver]
+) -> None:
+    config, saver = keeping
+    with saver.database.writing() as session:
+        session.execute(delete(OutcomeRow))
+        backup = _backup(config, tmp_path / "site.tar.gz")
+    assert {path.name for path in tmp_path.iterdir()} == {"a", "site.tar.gz"}
+    assert main(["restore", str(backup), "--to", str(tmp_path / "b")]) == 0
+    assert _kept(tmp_path / "b/rig.toml") == ["sip"]
+    assert _kept(config) == []
+
+
+def test_outcomes_do_not_come_back_under_a_daemon_that_runs(
+    tmp_path: Path, keeping: tuple[Path, Saver], capsys: pytest.CaptureFixture[str]
+) -> None:
+    config, saver = keeping
+    backup = _backup(config, tmp_path / "site.tar.gz")
+    saver.save([sip(NOON_NS + 60 * S, kind="refill")])
+    assert main(["restore", str(backup), "--overwrite"]) == 1
+    assert "outcomes.db-wal belongs to the database that is there" in capsys.readouterr().err
+    assert len(_kept(config)) == 2
+    saver.database.close()
+    assert main(["restore", str(backup), "--overwrite"]) == 0
+    assert _kept(config) == ["sip"]
+
+
+def test_a_damaged_database_is_no_part_of_a_backup(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    config = _small_site(tmp_path / "a", **{"rig.toml": "[outcomes.home]"})
+    config.with_name("outcomes.db").write_bytes(b"SQLite format 3\0" + bytes(4000))
+    output = tmp_path / "site.tar.gz"
+    assert main(["backup", str(output), "--config", str(config)]) == 1
+    assert "the database" in capsys.readouterr().err
+    assert not output.exists()
+
+
+def test_a_database_that_is_not_there_yet_or_is_a_server_s_is_no_part_of_a_backup(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    address = "postgresql+psycopg://inhand@db.local/home"
+    tables = f'[outcomes.new]\n[outcomes.home]\ndatabase = "{address}"'
+    backup = _backup(_small_site(tmp_path / "a", **{"rig.toml": tables}), tmp_path / "site.tar.gz")
+    assert f"NOT in it: {address}: have its server back it up" in capsys.readouterr().out
+    assert main(["restore", str(backup), "--to", str(tmp_path / "b")]) == 0
+    assert not (tmp_path / "b/outcomes.db").exists()

@@ -1,9 +1,10 @@
 """Says how soon each daemon of a rig is up, and how much memory and processor it takes.
 
-``python tests/scenes/footprint.py``: a simulated camera, a tracker and a recorder run as processes.
-Each is started twice: the first start may compile, the second is what is measured. Memory is what
-is resident after a while of work, and of that what the process has for itself (``own_mb``): the
-rest are pages of libraries, which processes share. Processor time is that of the while.
+``python tests/scenes/footprint.py``: a simulated camera, a tracker, outcomes and a recorder run as
+processes. Each is started twice: the first start may compile, the second is what is measured.
+Memory is what is resident after a while of work, and of that what the process has for itself
+(``own_mb``): the rest are pages of libraries, which processes share. Processor time is that of the
+while.
 """
 
 import argparse
@@ -38,6 +39,7 @@ def _prepare(rig: RunningRig, folder: Path) -> None:
     rig.configure(
         '[capture.capture]\nsource = "simulator"\noptions = { participant = 5 }\n'
         f'[tracker.tracker]\ncamera = "capture"\nmodel = "{model}"\n'
+        f'[outcomes.outcomes]\ndatabase = "{folder}/outcomes.db"\n'
         f'[recorder.recorder]\nfolder = "{folder}/disk"'
     )
 
@@ -45,7 +47,7 @@ def _prepare(rig: RunningRig, folder: Path) -> None:
 def _run(rig: RunningRig, seconds: float) -> dict[str, dict[str, float]]:
     processes: dict[str, Process] = {}
     up: dict[str, float] = {}
-    for name in ("recorder", "tracker", "capture"):
+    for name in ("recorder", "outcomes", "tracker", "capture"):
         began = time.monotonic()
         processes[name] = rig.inhand(name, "--config", rig.config)
         processes[name].said("is up")

@@ -28,6 +28,7 @@ PEOPLE: dict[str, RoleName] = {
     "disk": "recorder",
     "desk": "studio",
     "anna": "viewer",
+    "home": "outcomes",
 }
 """Who belongs to the rig, by name, with the role."""
 
