@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from inhand_capture.settings import CaptureSettings
 from inhand_outcomes.settings import OutcomesSettings
+from inhand_outcomes.uses import USES
 from inhand_recorder.settings import RecorderSettings
 from inhand_tracker.settings import TrackerSettings
 from running_rig import ROOT, RunningRig
@@ -54,7 +55,8 @@ def test_the_tutorials_rig_is_valid_and_follows_whom_the_model_does_not_know() -
 
 
 def test_the_outcomes_page_shows_what_is_so_without_a_word() -> None:
-    (text,) = blocks("outcomes.md", "toml")
+    measured, text = blocks("outcomes.md", "toml")
+    OutcomesSettings.model_validate(tomllib.loads(measured)["outcomes"]["kitchen"])
     table = tomllib.loads(text)["outcomes"]["home"]
     chosen, defaults = OutcomesSettings.model_validate(table), OutcomesSettings()
     assert len(chosen.rules.goals) == 3
@@ -62,6 +64,12 @@ def test_the_outcomes_page_shows_what_is_so_without_a_word() -> None:
         line = next(line for line in text.splitlines() if line.startswith(f"{name} ="))
         if "(the default)" in line:
             assert getattr(defaults, name) == getattr(chosen, name)
+
+
+def test_the_outcomes_page_names_the_uses_that_there_are_with_what_teaches_them() -> None:
+    page = (ROOT / "docs/outcomes.md").read_text()
+    named = re.findall(r"^\| `(\w+)` \((\w+)\) \|", page, re.MULTILINE)
+    assert dict(named) == {name: use.interaction for name, use in USES.items()}
 
 
 def test_the_commands_of_the_hub_s_page_do_what_it_shows(

@@ -1,5 +1,7 @@
 """Calls, takes, playing, wearing and reading of somebody who stands: how long, and what is none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,9 +9,10 @@ from hypothesis import strategies as st
 from inhand_outcomes.arrays import Array
 from inhand_outcomes.measures.filming import filming
 from inhand_outcomes.measures.phoning import phoning
-from inhand_outcomes.measures.playing import playing
+from inhand_outcomes.measures.playing import mouth_hole, playing
 from inhand_outcomes.measures.reading import reading
 from inhand_outcomes.measures.wearing import wearing
+from inhand_outcomes.settings import ObjectUse
 from inhand_outcomes.thing import Thing
 from scipy.spatial.transform import Rotation
 from standing_person import (
@@ -126,6 +129,13 @@ def test_a_flute_is_played_while_its_hole_is_at_the_lips() -> None:
         )
         == []
     )
+
+
+def test_where_a_flute_is_blown_is_as_the_settings_say() -> None:
+    said = ObjectUse.model_validate({"parts": {"mouth_hole": [0.0, 0.2, 0.01]}})
+    parts = {name: np.array(point) for name, point in said.parts.items()}
+    hole, _ = mouth_hole(replace(FLUTE, parts=parts))
+    assert hole.tolist() == [0.0, 0.2, 0.01]
 
 
 def test_glasses_are_put_on_worn_and_taken_off() -> None:

@@ -74,7 +74,7 @@ def playing(track: Track, thing: Thing) -> list[Achievement]:
 def mouth_hole(
     thing: Thing, parameters: PlayingParameters = DEFAULT_PLAYING
 ) -> tuple[Array, Array]:
-    """The hole that is blown (3,) and the flute's axis (3,): the part ``mouth hole``, or else a
+    """The hole that is blown (3,) and the flute's axis (3,): the part ``mouth_hole``, or else a
     place near the end towards -y, or the lower end of a flute that was taught along another axis.
     """
     longest = int(np.argmax(np.ptp(thing.vertices, axis=0)))
@@ -82,4 +82,4 @@ def mouth_hole(
     low, high = thing.vertices.min(axis=0), thing.vertices.max(axis=0)
     usual = 0.5 * (low + high)
     usual[longest] = low[longest] + parameters.hole * (high - low)[longest]
-    return thing.parts.get("mouth hole", usual), axis
+    return thing.parts.get("mouth_hole", usual), axis
