@@ -149,3 +149,10 @@ def test_the_memory_holds_no_more_than_the_window() -> None:
 def test_a_journal_that_is_none_is_refused() -> None:
     with pytest.raises(ValueError, match="no journal"):
         Memory(a_watcher()).recall({"state": b"what"})
+
+
+def test_nothing_of_what_was_forgotten_says_how_much_is_left_in_a_vessel() -> None:
+    watcher = a_watcher()
+    assert watch(watcher, Carrying().messages()) != []
+    watcher.forget()
+    assert (watcher.followed, watcher.told) == ({}, {})

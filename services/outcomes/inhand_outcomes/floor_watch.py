@@ -78,9 +78,11 @@ class FloorWatch:
     def hear_frame(self, camera: str, frame: RgbdFrame) -> None:
         """Look at a frame's depth, if it is time to; raises MessageError for damaged depth."""
         info = self._infos.get(camera)
-        if info is None or frame.depth is None or not self.wants_frame(frame.time_ns):
+        if info is None or not self.wants_frame(frame.time_ns):
             return
         self._looked_ns = frame.time_ns
+        if frame.depth is None:
+            return
         floor = find_floor(decode_depth(frame.depth), info, self._people.get(camera, ()))
         if floor is None:
             return

@@ -106,6 +106,7 @@ class Watcher:
     def forget(self) -> None:
         """Know nothing of what came until now."""
         self.followed.clear()
+        self.told.clear()
 
     def end_all(self) -> list[Outcome]:
         """Settle all tracks, at the end of what comes."""
