@@ -309,12 +309,13 @@ def _outcomes(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, 
         counts_table,
         places_table,
         steps,
+        swept_table,
     )
 
     seeds, participants = arguments.seeds, arguments.participants
     with progress_bar("comparing", steps(seeds, participants)) as advance:
         check = check_outcomes(arguments.source, seeds, participants, advance)
-    tables = (counts_table(check), amounts_table(check), places_table(check))
+    tables = (counts_table(check), amounts_table(check), places_table(check), swept_table(check))
     return Group(*tables), asdict(check)
 
 

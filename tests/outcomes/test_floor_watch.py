@@ -10,8 +10,12 @@ INFO = CameraInfo(
 )
 
 
+def no_look(*_: object) -> None:
+    raise AssertionError("there is nothing to see")
+
+
 def test_frames_without_depth_are_asked_for_no_more_often_than_others() -> None:
-    floors = FloorWatch()
+    floors = FloorWatch(no_look)
     floors.hear_info("front", INFO)
     assert floors.wants_frame(START_NS)
     floors.hear_frame("front", RgbdFrame(sequence=1, time_ns=START_NS))
@@ -22,6 +26,6 @@ def test_frames_without_depth_are_asked_for_no_more_often_than_others() -> None:
 
 
 def test_a_frame_of_a_camera_that_is_not_known_is_no_look() -> None:
-    floors = FloorWatch()
+    floors = FloorWatch(no_look)
     floors.hear_frame("front", RgbdFrame(sequence=1, time_ns=START_NS))
     assert floors.wants_frame(START_NS)

@@ -1,17 +1,20 @@
 """Looks for the floor, and so for up, now and then: in depth images, or else in people."""
 
 from collections import deque
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from inhand_runtime.pixels import decode_depth
 from inhand_schemas.messages import CameraInfo, Person, RgbdFrame, Skeletons
+from numpy.typing import NDArray
 
 from inhand_outcomes.arrays import Array
 from inhand_outcomes.floor import Floor, find_floor, together
 from inhand_outcomes.floor_of_people import find_floor_of_people
 from inhand_outcomes.gathering import NS_PER_S, joints_of
 from inhand_outcomes.room import Room
+from inhand_outcomes.rotations import matrices
 
 
 @dataclass(frozen=True)
@@ -36,14 +39,24 @@ class FloorWatchParameters:
 
 DEFAULT_FLOOR_WATCH = FloorWatchParameters()
 
+OnDepth = Callable[[NDArray[np.uint16], CameraInfo, Room, Sequence[Array]], None]
+"""What is told of each depth image with a floor: depth (H, W), its camera, the room, and the joints
+(20, 3) in the rig of the people in it."""
+
 
 class FloorWatch:
     """The floor of a rig by its cameras; times are those of captures.
 
     ``room`` is None until a floor was found. Depth comes before what people's bodies say.
+    ``on_depth`` is told of each depth image in which the floor was found.
     """
 
-    def __init__(self, parameters: FloorWatchParameters = DEFAULT_FLOOR_WATCH) -> None:
+    def __init__(
+        self,
+        on_depth: OnDepth,
+        parameters: FloorWatchParameters = DEFAULT_FLOOR_WATCH,
+    ) -> None:
+        self._on_depth = on_depth
         self.room: Room | None = None
         self._parameters = parameters
         self._infos: dict[str, CameraInfo] = {}
@@ -83,7 +96,8 @@ class FloorWatch:
         self._looked_ns = frame.time_ns
         if frame.depth is None:
             return
-        floor = find_floor(decode_depth(frame.depth), info, self._people.get(camera, ()))
+        depth, people = decode_depth(frame.depth), self._people.get(camera, ())
+        floor = find_floor(depth, info, people)
         if floor is None:
             return
         self._floors.append(floor.in_rig(info.rig_from_camera))
@@ -94,6 +108,12 @@ class FloorWatch:
             self._floors.append(newest)
             found = newest
         self.room = found.room
+        self._on_depth(depth, info, self.room, [self._in_rig(info, one) for one in people])
+
+    @staticmethod
+    def _in_rig(info: CameraInfo, joints: Array) -> Array:
+        pose = info.rig_from_camera
+        return joints @ matrices(pose.rotation).T + np.array(pose.translation)
 
     def _keep_body(self, camera: str, time_ns: int, person: Person) -> None:
         if self._bodies:

@@ -24,6 +24,7 @@ from inhand_outcomes.rules import Rules
 from inhand_outcomes.settings import OutcomesSettings, check
 from inhand_outcomes.store.database import Database
 from inhand_outcomes.store.failures import StoreError
+from inhand_outcomes.store.floor_maps import floor_maps, keep_floor_map
 from inhand_outcomes.store.goal_marks import events_to_publish, judge_goals, mark_published
 from inhand_outcomes.store.retention import Retention, remove_old
 from inhand_outcomes.store.saving import Saver, read_journal
@@ -75,7 +76,7 @@ class OutcomesLoop:
 
     def __post_init__(self) -> None:
         self._clock = CaptureClock()
-        self._floors = FloorWatch()
+        self._floors = FloorWatch(self.watcher.floors.see)
         self._frames: Arrivals | None = None
         self._memory = Memory(self.watcher)
         self._events: Publisher[Event] = self.daemon.publisher(EVENT, self.daemon.instance)
@@ -179,6 +180,10 @@ class OutcomesLoop:
         if events:
             mark_published(database, events)
         today = local_day(now_ns, self.rules.zone)
+        for kept in self.watcher.floors.to_keep():
+            keep_floor_map(database, kept)
+        if today != self.watcher.floors.day:
+            self.watcher.floors.begin(today, floor_maps(database, today))
         if today != self._tidied:
             remove_old(database, self.retention, today)
             self._tidied = today

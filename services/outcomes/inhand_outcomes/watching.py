@@ -13,12 +13,15 @@ from inhand_outcomes.lasting import LastingOutcomes
 from inhand_outcomes.outcome import Outcome, outcome_id
 from inhand_outcomes.parameters import DEFAULT_GATHERING, GatheringParameters
 from inhand_outcomes.room import LEVEL, Room
+from inhand_outcomes.swept_floors import SweptFloors
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 from inhand_outcomes.uses import USES
 from inhand_outcomes.waiting_poses import WaitingPoses
 
 HANDED_OVER = "handed_over"
+SWEEPING = "sweeping"
+"""The use of which a map of the floor is kept."""
 
 
 @dataclass
@@ -46,6 +49,7 @@ class Watcher:
         parameters: GatheringParameters = DEFAULT_GATHERING,
     ) -> None:
         self.room: Room = LEVEL
+        self.floors = SweptFloors()
         self._things = things
         self._place = place
         self._parameters = parameters
@@ -107,6 +111,7 @@ class Watcher:
         """Know nothing of what came until now."""
         self.followed.clear()
         self.told.clear()
+        self.floors.forget()
 
     def end_all(self) -> list[Outcome]:
         """Settle all tracks, at the end of what comes."""
@@ -194,6 +199,9 @@ class Watcher:
             done = use.measure(uncounted, thing)
             if use.complete is not None:
                 done = use.complete(done, self._earlier(holding, followed.gathering.first_ns))
+            if thing.use == SWEEPING:
+                for one in done:
+                    self.floors.sweep(holding, uncounted, thing, one.start_s, one.end_s)
             yield from done
 
     def _earlier(self, holding: Holding, first_ns: int) -> list[Achievement]:
