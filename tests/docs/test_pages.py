@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from inhand_capture.settings import CaptureSettings
+from inhand_outcomes.settings import OutcomesSettings
 from inhand_recorder.settings import RecorderSettings
 from inhand_tracker.settings import TrackerSettings
 from running_rig import ROOT, RunningRig
@@ -50,6 +51,17 @@ def test_the_tutorials_rig_is_valid_and_follows_whom_the_model_does_not_know() -
     CaptureSettings(**rig["capture"]["front"])
     TrackerSettings(**rig["tracker"]["mug"])
     RecorderSettings(**rig["recorder"]["disk"])
+
+
+def test_the_outcomes_page_shows_what_is_so_without_a_word() -> None:
+    (text,) = blocks("outcomes.md", "toml")
+    table = tomllib.loads(text)["outcomes"]["home"]
+    chosen, defaults = OutcomesSettings.model_validate(table), OutcomesSettings()
+    assert len(chosen.rules.goals) == 3
+    for name in table.keys() - {"goals"}:
+        line = next(line for line in text.splitlines() if line.startswith(f"{name} ="))
+        if "(the default)" in line:
+            assert getattr(defaults, name) == getattr(chosen, name)
 
 
 def test_the_commands_of_the_hub_s_page_do_what_it_shows(

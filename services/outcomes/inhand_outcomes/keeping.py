@@ -6,12 +6,14 @@ from typing import Annotated, Self
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.private_file import PRIVATE_FILE
 from inhand_runtime.settings import FilePath, Section
 from inhand_runtime.settings_errors import suggestion
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from inhand_outcomes.rules import Goal, PersonsGoal, QuietHours, Rules
 from inhand_outcomes.store.database import Database, open_database
+from inhand_outcomes.store.failures import StoreError
 from inhand_outcomes.store.retention import Retention
 from inhand_outcomes.store.saving import Keeping, Kept
 
@@ -139,10 +141,16 @@ def person_number(text: str, people: Mapping[int, str]) -> int:
 
 
 def open_kept(settings: KeepingSettings) -> Database:
-    """Open the database that the settings name; raises StoreError, and SettingsError where the
-    password cannot be read."""
+    """Open the database that the settings name; a file is made with its folder where there is none,
+    for its owner alone. Raises StoreError, and SettingsError where the password cannot be read."""
     file = settings.database_file
     if file is not None:
+        try:
+            if not file.exists():
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.touch(PRIVATE_FILE)
+        except OSError as error:
+            raise StoreError(f"the database {file} cannot be made: {error.strerror}") from None
         return open_database(file)
     password = None
     if settings.password_file is not None:

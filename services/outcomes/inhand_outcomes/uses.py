@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from inhand_outcomes.achievement import Achievement
+from inhand_outcomes.measures.sweeping import sweeping
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -23,7 +24,9 @@ class Use:
     interaction: str
 
 
-USES: Mapping[str, Use] = {}
+USES: Mapping[str, Use] = {
+    "broom": Use(sweeping, "sweepFloor"),
+}
 """The uses by name."""
 
 

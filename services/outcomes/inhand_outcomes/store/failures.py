@@ -9,6 +9,7 @@ from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 _MENDS = (
     ("disk is full", "the disk is full: make room; what is new waits in memory"),
     ("no space left", "the disk is full: make room; what is new waits in memory"),
+    ("lock timeout", "another process holds it for long: end that, or wait"),
     ("locked", "another process holds it for long: end that, or wait"),
     ("not a database", "the file is no database of SQLite: name another, or move it away"),
     ("malformed", "the file is damaged: move it away, and put back a copy, or begin anew"),

@@ -22,7 +22,7 @@ from inhand_outcomes.store.models import (
     TotalRow,
 )
 from inhand_outcomes.store.retention import deleted
-from inhand_outcomes.store.saving import number_of
+from inhand_outcomes.store.saving import number_of, place_of
 
 
 @dataclass(frozen=True)
@@ -110,17 +110,7 @@ def _forget_places(session: Session, what: Forget) -> int:
             .limit(1)
         )
         if row is not None and row.pose is not None:
-            session.add(
-                PlaceRow(
-                    object=object_name,
-                    time_ns=row.end_ns,
-                    day=row.day,
-                    kind=row.kind,
-                    person=row.person,
-                    pose=row.pose,
-                )
-            )
-            session.flush()
+            session.add(place_of(row, row.pose))
     return gone
 
 

@@ -1,17 +1,18 @@
 """Adds what is settled, each act once, with the day's totals and the daemon's journal."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import date
-from typing import Literal
+from time import time_ns
+from typing import Any, Literal
 from zoneinfo import ZoneInfo
 
 from inhand_schemas.messages import Pose
 from sqlalchemy import delete, func, or_, select
 from sqlalchemy.orm import Session
 
-from inhand_outcomes.achievement import Amount
 from inhand_outcomes.days import NS_PER_S, local_day
 from inhand_outcomes.outcome import Outcome
 from inhand_outcomes.store.database import Database
@@ -30,8 +31,8 @@ Kept = Literal["numbers", "poses"]
 DIGITS = 6
 """Number of digits of evidence and poses that are kept: micrometres of a metre."""
 
-LATE_S = 3600.0
-"""Seconds by which outcomes of one object come out of order at most."""
+AHEAD_S = 60.0
+"""Seconds by which the clock of a camera is ahead of this machine's at most."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,8 @@ class Saver:
 
     database: Database
     keeping: Keeping
+    clock: Callable[[], int] = time_ns
+    """The time of now, in nanoseconds since the epoch."""
     _heard: int = field(init=False)
 
     def __post_init__(self) -> None:
@@ -83,7 +86,7 @@ class Saver:
             forgotten = list(
                 session.scalars(select(ForgottenRow).where(ForgottenRow.number > self._heard))
             )
-            added, known, refused = [], [], []
+            added, known, refused, rows = [], [], [], []
             for outcome in outcomes:
                 day = local_day(outcome.end_ns, self.keeping.zone)
                 if any(_was_forgotten(outcome, day, row) for row in forgotten):
@@ -91,8 +94,12 @@ class Saver:
                 elif _is_known(session, outcome):
                     known.append(outcome)
                 else:
-                    _add(session, outcome, day, self.keeping)
+                    row = _row(outcome, day, self.keeping)
+                    session.add(row)
+                    rows.append(row)
                     added.append(outcome)
+            _add_to_totals(session, rows)
+            _take_places(session, rows, self.clock())
             if not forgotten:
                 _write_journal(session, journal or {})
         self._heard = heard
@@ -140,91 +147,81 @@ def _is_known(session: Session, outcome: Outcome) -> bool:
     )
 
 
-def _add(session: Session, outcome: Outcome, day: date, keeping: Keeping) -> None:
-    amounts = {
-        name: amount
-        for name, amount in outcome.amounts.items()
-        if math.isfinite(amount.value) and math.isfinite(amount.deviation)
-    }
-    counted = outcome.probability >= keeping.sure
-    session.add(_row(outcome, amounts, day, counted=counted, keep=keeping.keep))
-    session.flush()
-    key = (day, outcome.kind, outcome.object, number_of(outcome.person), counted)
-    total = session.get(TotalRow, key) or _new_total(session, key)
-    total.times += 1
-    total.seconds += outcome.seconds
-    for name, amount in amounts.items():
-        of_amount = session.get(TotalAmountRow, (*key, name)) or _new_amount(session, key, name)
-        of_amount.times += 1
-        of_amount.sum += amount.value
-        of_amount.variance += amount.deviation**2
-        of_amount.largest = max(of_amount.largest, amount.value)
-    if counted and outcome.rig_from_object is not None and "poses" in keeping.keep:
-        _take_place(session, outcome, day)
+def _add_to_totals(session: Session, rows: Sequence[OutcomeRow]) -> None:
+    by_key: dict[Key, list[OutcomeRow]] = defaultdict(list)
+    for row in rows:
+        by_key[row.day, row.kind, row.object, row.person, row.counted].append(row)
+    for key, group in by_key.items():
+        total = session.get(TotalRow, key) or _new_total(session, key)
+        total.times += len(group)
+        total.seconds += sum((row.end_ns - row.start_ns) / NS_PER_S for row in group)
+        amounts: dict[str, list[AmountRow]] = defaultdict(list)
+        for row in group:
+            for amount in row.amounts:
+                amounts[amount.name].append(amount)
+        for name, found in amounts.items():
+            of_amount = session.get(TotalAmountRow, (*key, name)) or _new_amount(session, key, name)
+            of_amount.times += len(found)
+            of_amount.sum += sum(one.value for one in found)
+            of_amount.variance += sum(one.deviation**2 for one in found)
+            of_amount.largest = max(of_amount.largest, *(one.value for one in found))
 
 
 Key = tuple[date, str, str, int, bool]
+"""Day, kind, object, person, and whether it counts."""
 
 
 def _new_total(session: Session, key: Key) -> TotalRow:
-    day, kind, object_name, person, counted = key
-    row = TotalRow(
-        day=day,
-        kind=kind,
-        object=object_name,
-        person=person,
-        counted=counted,
-        times=0,
-        seconds=0.0,
-    )
+    row = TotalRow(**_of_key(key), times=0, seconds=0.0)
     session.add(row)
     return row
 
 
 def _new_amount(session: Session, key: Key, name: str) -> TotalAmountRow:
-    day, kind, object_name, person, counted = key
-    row = TotalAmountRow(
-        day=day,
-        kind=kind,
-        object=object_name,
-        person=person,
-        counted=counted,
-        name=name,
-        times=0,
-        sum=0.0,
-        variance=0.0,
-        largest=-math.inf,
-    )
+    start = {"times": 0, "sum": 0.0, "variance": 0.0, "largest": -math.inf}
+    row = TotalAmountRow(**_of_key(key), name=name, **start)
     session.add(row)
     return row
 
 
-def _take_place(session: Session, outcome: Outcome, day: date) -> None:
-    pose = _pose_numbers(outcome.rig_from_object)
-    place = session.get(PlaceRow, outcome.object)
-    later_s = 0.0 if place is None else (place.time_ns - outcome.end_ns) / NS_PER_S
-    # What is later by far was said by a clock that was wrong.
-    if pose is not None and not 0.0 < later_s < LATE_S:
-        session.merge(
-            PlaceRow(
-                object=outcome.object,
-                time_ns=outcome.end_ns,
-                day=day,
-                kind=outcome.kind,
-                person=number_of(outcome.person),
-                pose=pose,
-            )
-        )
+def _of_key(key: Key) -> dict[str, Any]:
+    return dict(zip(("day", "kind", "object", "person", "counted"), key, strict=True))
 
 
-def _row(
-    outcome: Outcome,
-    amounts: Mapping[str, Amount],
-    day: date,
-    *,
-    counted: bool,
-    keep: frozenset[Kept],
-) -> OutcomeRow:
+def _take_places(session: Session, rows: Sequence[OutcomeRow], now_ns: int) -> None:
+    """Take note of where things were seen last.
+
+    What is said to be yet to come, by a clock that was wrong, gives way to all that comes after it.
+    """
+    to_come_ns = now_ns + round(AHEAD_S * NS_PER_S)
+    places: dict[str, PlaceRow | None] = {}
+    for row in rows:
+        if row.object not in places:
+            places[row.object] = session.get(PlaceRow, row.object)
+        place = places[row.object]
+        later = place is not None and row.end_ns < place.time_ns <= to_come_ns
+        if row.counted and row.pose is not None and not later:
+            places[row.object] = place_of(row, row.pose)
+    for place in places.values():
+        if place is not None:
+            session.merge(place)
+
+
+def place_of(row: OutcomeRow, pose: list[float]) -> PlaceRow:
+    """Return where an outcome says that its object was."""
+    return PlaceRow(
+        object=row.object,
+        time_ns=row.end_ns,
+        day=row.day,
+        kind=row.kind,
+        person=row.person,
+        pose=pose,
+    )
+
+
+def _row(outcome: Outcome, day: date, keeping: Keeping) -> OutcomeRow:
+    """An outcome as a row; amounts that are no numbers are left out."""
+    keep = keeping.keep
     evidence = {name: _short(value) for name, value in outcome.evidence.items()}
     return OutcomeRow(
         id=outcome.id,
@@ -235,14 +232,15 @@ def _row(
         end_ns=outcome.end_ns,
         day=day,
         probability=outcome.probability,
-        counted=counted,
+        counted=outcome.probability >= keeping.sure,
         pose=_pose_numbers(outcome.rig_from_object) if "poses" in keep else None,
         evidence=evidence if evidence and "numbers" in keep else None,
         first_sequence=outcome.first_sequence,
         last_sequence=outcome.last_sequence,
         amounts=[
             AmountRow(name=name, value=amount.value, deviation=amount.deviation)
-            for name, amount in amounts.items()
+            for name, amount in outcome.amounts.items()
+            if math.isfinite(amount.value) and math.isfinite(amount.deviation)
         ],
     )
 

@@ -3,8 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from inhand_runtime.errors import InhandError
+
 from inhand_outcomes.outcome import Outcome
-from inhand_outcomes.store.failures import StoreError
 from inhand_outcomes.store.parameters import DEFAULT_WAITING, WaitingParameters
 from inhand_outcomes.store.saving import Saved, Saver
 
@@ -13,7 +14,7 @@ from inhand_outcomes.store.saving import Saved, Saver
 class WaitingOutcomes:
     """Outcomes, and the newest journal, that wait until a database takes them, in order.
 
-    ``opened`` opens the database, or raises StoreError; it is called again after each failure.
+    ``opened`` opens the database, or raises InhandError; it is called again after each failure.
     """
 
     opened: Callable[[], Saver]
@@ -60,7 +61,7 @@ class WaitingOutcomes:
             if self._saver is None:
                 self._saver = self.opened()
             saved = self._saver.save(self._waiting, self._journal)
-        except StoreError as error:
+        except InhandError as error:
             self._fail(str(error), now_s)
             return None
         self._waiting, self._journal = [], {}

@@ -1,0 +1,1 @@
+"""What was truly achieved in a simulated performance, by its stages and its true geometry."""
