@@ -146,6 +146,7 @@ KEEPING = replace(
     PAUSED,
     recording=RECORDING,
 )
+UNMEASURED = replace(LATE, service="outcomes", instance="home", effort=None, paused=True)
 REFUSED = replace(LATE, topics={"(other keys)": TopicHealth(refused=12)})
 
 PNG = RgbdFrame(
@@ -180,6 +181,7 @@ NAMED = Skeletons(sequence=12, time_ns=TIME_NS, people=(PERSON,), convention="az
 GOLDEN_MESSAGES: dict[str, Message] = {
     **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
     "Health.v1.keeping": KEEPING,
+    "Health.v1.unmeasured": UNMEASURED,
     "Health.v1.late": LATE,
     "Health.v1.paused": PAUSED,
     "Health.v1.refused": REFUSED,
