@@ -3,7 +3,8 @@
 PYTHON is the interpreter of an environment of its own with Home Assistant in it, as
 ``pip install homeassistant==2024.3.3 paho-mqtt==1.6.1 'josepy<2'`` (which needs ``--single``) or
 ``pip install homeassistant==2025.10.4 paho-mqtt==2.1.0`` under Python 3.13. A daemon measures
-somebody who carries a cup; mosquitto, Home Assistant and the daemon are each ended and started again.
+somebody who carries a cup; mosquitto, Home Assistant and the daemon are each ended and started
+again.
 """
 
 import argparse
@@ -200,6 +201,8 @@ def judge_entities(states: dict[str, dict[str, Any]]) -> None:
         "event.goal_tidy_event": {},
         **SWEEPING,
     }
+    missing = wanted.keys() - states.keys()
+    assert not missing, (missing, sorted(states))
     for entity, attributes in wanted.items():
         shown = states[entity]["attributes"]
         for name, value in attributes.items():
@@ -282,6 +285,9 @@ def main() -> int:
             if chosen.stay:
                 print(f"http://127.0.0.1:{home.port} {home.token} {folder}", flush=True)
                 sys.stdin.readline()
+        except BaseException:
+            print(home.log)
+            raise
         finally:
             rig.close()
             with suppress(subprocess.TimeoutExpired):

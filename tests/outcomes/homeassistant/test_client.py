@@ -1,5 +1,6 @@
 """What a real broker is told, in both directions, and over its ends."""
 
+import gc
 import json
 import time
 from collections.abc import Iterator
@@ -16,6 +17,10 @@ from running_rig import eventually
 
 BASE = f"inhand/{SHAPE.node}"
 CONFIG = f"homeassistant/device/{SHAPE.node}/config"
+PAHO_LEAVES_SOCKETS = (
+    "ignore:Exception ignored in. <ssl.SSLSocket:pytest.PytestUnraisableExceptionWarning"
+)
+"""paho-mqtt 2.2 does not close a socket on which TLS failed."""
 SIP = HomeEvent("sip", datetime(2026, 11, 30, 9, tzinfo=ZURICH), "mug", None, {"volume_ml": 31.0})
 
 
@@ -190,6 +195,7 @@ def test_a_wrong_password_is_said_with_the_mend(broker: Broker, tmp_path: Path) 
         eventually("the trouble", lambda: "change user and password_file" in shown.troubles)
 
 
+@pytest.mark.filterwarnings(PAHO_LEAVES_SOCKETS)
 def test_a_broker_whose_certificate_is_known_is_told_all(tmp_path: Path) -> None:
     made = certificate(tmp_path)
     (tmp_path / "other").mkdir()
@@ -201,6 +207,7 @@ def test_a_broker_whose_certificate_is_known_is_told_all(tmp_path: Path) -> None
             eventually("the trouble", lambda: "certificate that is not trusted" in shown.troubles)
         with showing(broker.port, tmp_path, tls=True) as shown:  # the system's authorities
             eventually("the trouble", lambda: "certificate that is not trusted" in shown.troubles)
+    gc.collect()
 
 
 def test_a_slow_broker_gets_the_newest_state_and_stalls_nobody(
