@@ -79,23 +79,31 @@ class FloorMap:
         """Cells (X, Y) that were swept."""
         return self.swept >= parameters.swept
 
+    def seen_under(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
+        """Cells (X, Y) with furniture above them, as was seen, that one can sweep beneath."""
+        above = (self.things >= parameters.looks) & (self.highest < parameters.wall_m)
+        return above & ((self.lowest > parameters.beneath_m) | (self.floor >= parameters.looks))
+
+    def seen_floor(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
+        """Cells (X, Y) of open floor, as was seen."""
+        return (self.floor >= parameters.looks) & (self.things < parameters.looks)
+
     def is_under(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
         """Cells (X, Y) with furniture above them that one can sweep beneath."""
-        above = (self.things >= parameters.looks) & (self.highest < parameters.wall_m)
-        free = (self.lowest > parameters.beneath_m) | (self.floor >= parameters.looks)
-        return self._filled(above & free)
+        return self._filled(self.seen_under(parameters), self.things == 0)
 
     def is_floor(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
         """Cells (X, Y) of open floor."""
-        return self._filled((self.floor >= parameters.looks) & (self.things < parameters.looks))
+        unknown = (self.floor == 0) & (self.things == 0)
+        return self._filled(self.seen_floor(parameters), unknown) & ~self.is_under(parameters)
 
-    def _filled(self, flags: Flags) -> Flags:
-        """The flags (X, Y) with cells between the pixels of a slanting view, of which nothing is
-        known, where three neighbours have the flag."""
+    def _filled(self, flags: Flags, free: Flags) -> Flags:
+        """The flags (X, Y) with ``free`` cells, between the pixels of a slanting view, where three
+        neighbours have the flag."""
         padded = np.pad(flags, 1).astype(np.int32)
         rows = padded[:-2] + padded[1:-1] + padded[2:]
         near = rows[:, :-2] + rows[:, 1:-1] + rows[:, 2:]
-        return flags | ((self.floor == 0) & (self.things == 0) & (near >= 3))
+        return flags | (free & (near >= 3))
 
     def is_missed(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
         """Cells (X, Y) that can be swept and were not."""
@@ -200,8 +208,8 @@ def cells_to_keep(
     """
     kinds = np.zeros(floor_map.size, np.uint8)
     kinds[floor_map.things >= parameters.looks] = 3
-    kinds[floor_map.is_under(parameters)] = 2
-    kinds[floor_map.is_floor(parameters)] = 1
+    kinds[floor_map.seen_under(parameters)] = 2
+    kinds[floor_map.seen_floor(parameters)] = 1
     return np.asarray((np.rint(31.0 * floor_map.swept).astype(np.uint8) | kinds << 5).T)
 
 

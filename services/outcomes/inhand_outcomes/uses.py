@@ -4,7 +4,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from inhand_outcomes.achievement import Achievement
+from inhand_outcomes.measures.hammering import hammering
+from inhand_outcomes.measures.lifting import lifting
+from inhand_outcomes.measures.painting import painting
+from inhand_outcomes.measures.shaking import shaking
 from inhand_outcomes.measures.sweeping import sweeping
+from inhand_outcomes.measures.swinging import golf, tennis
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -25,7 +30,13 @@ class Use:
 
 
 USES: Mapping[str, Use] = {
-    "broom": Use(sweeping, "sweepFloor"),
+    "golf": Use(golf, "hitGolfBall"),
+    "hammering": Use(hammering, "hammerNail"),
+    "lifting": Use(lifting, "liftWeights"),
+    "painting": Use(painting, "paintWall"),
+    "shaking": Use(shaking, "shakeVinegar"),
+    "sweeping": Use(sweeping, "sweepFloor"),
+    "tennis": Use(tennis, "hitTennisBall"),
 }
 """The uses by name."""
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import erf
 
 import numpy as np
 
@@ -106,13 +107,17 @@ def _cover(
     y = (np.arange(first[1], last[1]) + 0.5) * cell_m - place[1]
     along = x[:, None] * width[0] + y[None, :] * width[1]
     square = -x[:, None] * width[1] + y[None, :] * width[0]
-    chance = np.ones(along.shape)
     error = max(deviation, 0.2 * cell_m)
-    for offset, whole in ((along, footprint.width_m), (square, footprint.depth_m)):
-        upper = normal_share((0.5 * whole - offset) / error)
-        chance *= upper - normal_share((-0.5 * whole - offset) / error)
+    halves = (0.5 * footprint.width_m, 0.5 * footprint.depth_m)
+    bounds = [
+        sign * half - offset
+        for offset, half in zip((along, square), halves, strict=True)
+        for sign in (1, -1)
+    ]
+    shares = normal_share(np.stack(bounds) / error)
+    chance = (shares[0] - shares[1]) * (shares[2] - shares[3])
     # A narrow end is never surely over one cell: what counts is whether it passes over it, which
     # the moments before and after say; so along its way the best of them is set to one.
-    chance /= max(float(2.0 * normal_share(np.array(0.5 * footprint.depth_m / error)) - 1.0), 1e-3)
+    chance /= max(erf(halves[1] / error / np.sqrt(2.0)), 1e-3)
     part = covered[first[0] : last[0], first[1] : last[1]]
     np.maximum(part, np.minimum(chance, 1.0), out=part)

@@ -14,7 +14,9 @@ import numpy as np
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array, Indices
 from inhand_outcomes.measures.footprint import Footprint, footprint_of, swept_cells
+from inhand_outcomes.measures.passes import DEFAULT_HALTING, Halting, moving_part, ways_of
 from inhand_outcomes.measures.smoothing import normal_share, smooth
+from inhand_outcomes.measures.turning import end_of_lasting
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -32,10 +34,8 @@ class SweepingParameters:
     turn_m: float = 0.10
     """Way back from where the head was furthest after which it has turned: above what the tracker
     errs, below half of a short stroke."""
-    halt: float = 0.42
-    """Share of the speeds before and after down to which it falls where a movement ends."""
-    moves_m_s: float = 0.25
-    """Speed above which a head surely moves."""
+    halting: Halting = DEFAULT_HALTING
+    """Where a way from turn to turn is two movements."""
     shortest_m: float = 0.18
     """Length of a stroke, at least."""
     longest_s: float = 3.0
@@ -113,7 +113,7 @@ def sweeping(
             Achievement(
                 "sweeping",
                 group[0].start_s,
-                _end(group, track, parameters),
+                end_of_lasting(track, group[-1].end_s, parameters.pause_s),
                 surely,
                 {
                     "duration_s": Amount(seconds, 0.2),
@@ -195,8 +195,7 @@ def _passes(
     at: Array, places: Array, errors: Array, there: Indices, parameters: SweepingParameters
 ) -> list[Pass]:
     """The ways between turns that are long, quick and low enough to be strokes."""
-    turns = _turns(places[there, :2], parameters.turn_m)
-    turns = _with_halts(at[there], places[there, :2], turns, parameters)
+    turns = ways_of(at[there], places[there, :2], parameters.turn_m, parameters.halting)
     found = []
     for begin, end in pairwise(turns):
         rows = there[begin : end + 1]
@@ -205,7 +204,7 @@ def _passes(
         if length < parameters.shortest_m:
             continue
         gone = (places[rows, :2] - places[rows[0], :2]) @ way / length**2
-        whole, rows = rows, rows[_moving(gone)]
+        whole, rows = rows, rows[moving_part(gone)]
         if len(rows) < 3 or at[rows[-1]] - at[rows[0]] > parameters.longest_s:
             continue
         middle = rows[len(rows) // 4 : len(rows) - len(rows) // 4]
@@ -215,61 +214,6 @@ def _passes(
             Pass(int(rows[0]), int(rows[-1]), whole, height, deviation, length, way / length)
         )
     return found
-
-
-def _turns(places: Array, retreat: float) -> list[int]:
-    """Indices of the first place (N, 2), of those where a way turns back, and of the last."""
-    if len(places) == 0:
-        return [0]
-    turns, start, furthest = [0], 0, 0
-    for number in range(1, len(places)):
-        reached = np.linalg.norm(places[furthest] - places[start])
-        if np.linalg.norm(places[number] - places[start]) >= reached:
-            furthest = number
-        elif np.linalg.norm(places[number] - places[furthest]) > retreat:
-            turns.append(furthest)
-            start = furthest
-            furthest = number
-    return [*turns, furthest] if furthest != turns[-1] else turns
-
-
-def _with_halts(
-    at: Array, places: Array, turns: Sequence[int], parameters: SweepingParameters
-) -> list[int]:
-    """The turns, and where somebody halts between two: there one movement ends and another begins.
-
-    A movement's speed rises once and falls once.
-    """
-    if len(places) < 3:
-        return list(turns)
-    speeds = np.linalg.norm(np.gradient(places, at, axis=0), axis=1)
-    all_turns = [turns[0]]
-    for begin, end in pairwise(turns):
-        all_turns += [*_halts(speeds, begin, end, parameters), end]
-    return all_turns
-
-
-def _halts(speeds: Array, begin: int, end: int, parameters: SweepingParameters) -> list[int]:
-    """Indices between two, in order, at which a head of these speeds (N,) halts."""
-    part = speeds[begin : end + 1]
-    rising = np.maximum.accumulate(part)
-    falling = np.maximum.accumulate(part[::-1])[::-1]
-    peaks = np.minimum(rising, falling)
-    slow = np.where(peaks > parameters.moves_m_s, part / np.maximum(peaks, 1e-9), 1.0)
-    halt = begin + int(np.argmin(slow))
-    if slow[halt - begin] >= parameters.halt:
-        return []
-    before = _halts(speeds, begin, halt, parameters)
-    return [*before, halt, *_halts(speeds, halt, end, parameters)]
-
-
-def _moving(gone: Array) -> slice:
-    """The part of a pass, whose share gone is (N,), from its first to its last tenth."""
-    begun = np.flatnonzero(gone < 0.04)
-    ended = np.flatnonzero(gone > 0.96)
-    first = int(begun[-1]) if len(begun) else 0
-    last = int(ended[0]) if len(ended) else len(gone) - 1
-    return slice(first, last + 1) if last > first else slice(0, len(gone))
 
 
 def _chances(passes: Sequence[Pass], parameters: SweepingParameters) -> list[float]:
@@ -295,12 +239,6 @@ def _chances(passes: Sequence[Pass], parameters: SweepingParameters) -> list[flo
         )
         chances.append(float(on * reached))
     return chances
-
-
-def _end(group: Sequence[Stroke], track: Track, parameters: SweepingParameters) -> float:
-    """When a sweeping ends: with its last stroke, or not yet where another may still follow."""
-    last = float(track.times[-1])
-    return last if last - group[-1].end_s < parameters.pause_s else group[-1].end_s
 
 
 def _lifted_from(heights: Array, parameters: SweepingParameters) -> float:

@@ -1,0 +1,158 @@
+"""Strokes and swings of real people: golf with a measured club, tennis mimed before a Kinect."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from inhand_lab.importers.motion_archive import Motion, read_motion
+from inhand_lab.importers.utd_mhad import RECORDED_RATE, SKELETON_SUFFIX, read_trial
+from inhand_lab.objects.racket import racket
+from inhand_outcomes.achievement import Achievement
+from inhand_outcomes.arrays import Array
+from inhand_outcomes.measures.swinging import golf, tennis
+from inhand_outcomes.room import Room
+from inhand_outcomes.thing import Thing
+from inhand_outcomes.track import Track
+from inhand_schemas.joints import Joint
+from scipy.spatial.transform import Rotation
+
+FRAME_RATE = 30.0
+"""Frames a second that are used of faster recordings: a depth camera's."""
+SURE = 0.5
+"""Probability from which an achievement counts."""
+TENNIS_ACTIONS = ("a15", "a17")
+"""Tennis swing and tennis serve of UTD-MHAD: one stroke in each file."""
+ERROR_M, ERROR_RAD = 0.01, np.radians(3.0)
+"""Deviation of a measured club's place and rotation, and of a hand's where it was tracked."""
+
+
+@dataclass(frozen=True)
+class RealGolf:
+    """A golf swing: swings found at 30 frames a second, and the speeds (m/s) and the plane
+    (degrees) of the fastest; ``measured_m_s`` is from the markers at their full rate."""
+
+    name: str
+    swings: int
+    speed_m_s: float
+    deviation_m_s: float
+    angle_deg: float
+    measured_m_s: float
+
+
+@dataclass(frozen=True)
+class RealTennis:
+    """A mimed stroke: how many were found, and how fast the head of a racket in that hand was."""
+
+    name: str
+    strokes: int
+    speed_m_s: float
+
+
+def golf_swings(folder: Path) -> list[RealGolf]:
+    """Find the swings of the golf archives (``golf*.npz``) in a folder; raises DatasetError."""
+    return [_golf_swing(read_motion(path)) for path in sorted(folder.glob("golf*.npz"))]
+
+
+def tennis_strokes(folder: Path) -> list[RealTennis]:
+    """Find the strokes of UTD-MHAD's tennis skeletons in a folder; raises DatasetError."""
+    files = sorted(folder.glob(f"*{SKELETON_SUFFIX}"))
+    return [_tennis(path) for path in files if path.name.split("_")[0] in TENNIS_ACTIONS]
+
+
+def _golf_swing(motion: Motion) -> RealGolf:
+    """Of the marked points, the head's are those that move farthest from the first frame on."""
+    rotations = Rotation.from_quat(_filled(motion.orientations), scalar_first=True)
+    places = _filled(motion.translations)
+    points = np.stack([rotations.apply(p) + places for p in motion.marked_vertices], axis=1)
+    way = np.linalg.norm(np.diff(points, axis=0), axis=2).sum(axis=0)
+    head = motion.marked_vertices[way > 0.5 * (way.min() + way.max())].mean(axis=0)
+    path = rotations.apply(head) + places
+    speeds = np.linalg.norm(np.gradient(path, axis=0), axis=1) * motion.recorded_rate
+    track = _track(motion, places, rotations)
+    club = Thing("club", "golf", motion.marked_vertices, np.empty((0, 3), int), {"head": head})
+    found = [one for one in golf(track, club) if one.probability >= SURE]
+    best = max(found, key=_speed, default=None)
+    nothing = float("nan")
+    return RealGolf(
+        motion.path.stem,
+        len(found),
+        _speed(best) if best else nothing,
+        best.amounts["speed_m_s"].deviation if best else nothing,
+        best.amounts["angle_deg"].value if best and "angle_deg" in best.amounts else nothing,
+        float(np.nanmax(speeds)),
+    )
+
+
+def _speed(one: Achievement) -> float:
+    return one.amounts["speed_m_s"].value
+
+
+def _track(motion: Motion, places: Array, rotations: Rotation) -> Track:
+    """The club at 30 frames a second, with up where the player's hips are above the feet."""
+    step = max(round(motion.recorded_rate / FRAME_RATE), 1)
+    rows = slice(None, None, step)
+    seen = np.asarray(np.isfinite(motion.translations).all(axis=1))
+    feet = motion.joints[:, [Joint.ANKLE_LEFT, Joint.ANKLE_RIGHT]].mean(axis=1)
+    up = np.nanmedian(motion.joints[:, Joint.HIP_CENTER] - feet, axis=0)
+    poses = np.hstack([places, rotations.as_quat(scalar_first=True)])
+    count = len(places)
+    whole = Track(
+        np.arange(count) / motion.recorded_rate,
+        poses,
+        _covariances(count),
+        seen,
+        motion.joints,
+        np.zeros(count, np.int64),
+    )
+    return Room(up / np.linalg.norm(up)).place(whole[rows])
+
+
+def _covariances(count: int) -> Array:
+    return np.tile(np.diag([ERROR_M**2] * 3 + [ERROR_RAD**2] * 3), (count, 1, 1))
+
+
+def _filled(values: Array) -> Array:
+    """Values (T, K) with the last known one where one is missing, from the first known on."""
+    known = np.flatnonzero(np.isfinite(values).all(axis=1))
+    last = np.clip(np.searchsorted(known, np.arange(len(values)), side="right") - 1, 0, None)
+    return values[known[last]]
+
+
+def _tennis(path: Path) -> RealTennis:
+    """The strokes of the hand that moves most, with a racket imagined in line with the forearm."""
+    trial = read_trial(path)
+    model = racket()
+    thing = Thing(model.name, "tennis", np.asarray(model.vertices, float), np.asarray(model.faces))
+    found: Sequence[Achievement] = max(
+        (
+            [one for one in tennis(track, thing) if one.probability >= SURE]
+            for track in _hands(trial.joints_in_camera)
+        ),
+        key=lambda strokes: max((_speed(one) for one in strokes), default=0.0),
+    )
+    fastest = max((_speed(one) for one in found), default=float("nan"))
+    return RealTennis(trial.stem, len(found), fastest)
+
+
+def _hands(joints: Array) -> Iterator[Track]:
+    """A racket in either hand of somebody (T, 20, 3) before a level camera."""
+    count = len(joints)
+    for elbow, hand in (
+        (Joint.ELBOW_RIGHT, Joint.HAND_RIGHT),
+        (Joint.ELBOW_LEFT, Joint.HAND_LEFT),
+    ):
+        forearm = joints[:, hand] - joints[:, elbow]
+        seen = np.asarray(np.isfinite(forearm).all(axis=1))
+        if seen.sum() < 2:
+            continue
+        along = _filled(forearm / np.linalg.norm(forearm, axis=1, keepdims=True))
+        side = np.cross(along, [0.0, 1.0, 0.0])
+        side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), 1e-9)
+        turns = np.stack([side, np.cross(along, side), along], axis=2)
+        rotations = Rotation.from_matrix(turns)
+        poses = np.hstack([_filled(joints[:, hand]), rotations.as_quat(scalar_first=True)])
+        times = np.arange(count) / RECORDED_RATE
+        people = np.zeros(count, np.int64)
+        track = Track(times, poses, _covariances(count), seen, joints, people)
+        yield Room(np.array([0.0, -1.0, 0.0])).place(track)
