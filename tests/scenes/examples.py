@@ -126,6 +126,7 @@ EXAMPLES: tuple[Message, ...] = (
         effort=0.75,
         shutter_closed=True,
         recording=RECORDING,
+        paused=True,
     ),
 )
 LATE = replace(
