@@ -9,6 +9,7 @@ again.
 
 import argparse
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -46,9 +47,24 @@ GOALS = """
 name = "tidy"
 kind = "put_down"
 at_least = 2
+
+[[outcomes.home.goals]]
+name = "untidy"
+kind = "put_down"
+at_most = 0
 """
 INTERACTION = "sweepFloor"
 """What the cup is used for, so that there is a total of each unit, and a map of the floor."""
+PAGE = Path(__file__).parents[2] / "docs/home_assistant.md"
+PAGES = """
+frontend:
+history:
+conversation:
+lovelace:
+  mode: yaml
+automation: !include automations.yaml
+notify:
+"""
 CARRYING = Path(__file__).parent / "carrying_publisher.py"
 
 
@@ -157,8 +173,17 @@ BEGAN = time.monotonic()
 class Scene:
     """A rig with a daemon of outcomes, a broker and Home Assistant."""
 
-    def __init__(self, rig: RunningRig, broker: Broker, home: HomeAssistant, single: bool) -> None:
+    def __init__(
+        self,
+        rig: RunningRig,
+        broker: Broker,
+        home: HomeAssistant,
+        *,
+        single: bool,
+        automations: bool,
+    ) -> None:
         self.rig, self.broker, self.home, self._single = rig, broker, home, single
+        self.automations = automations
 
     def start_daemon(self) -> Process:
         """Start outcomes, which measures the cup."""
@@ -182,9 +207,23 @@ class Scene:
         one = self.home.states().get(entity)
         return None if one is None else str(one["state"])
 
+    def triggered(self, automation: str) -> bool:
+        """Whether an automation has run."""
+        states = self.home.states()
+        return bool(states[f"automation.{automation}"]["attributes"].get("last_triggered"))
+
     def shows(self, entity: str, value: str) -> None:
         """Wait until an entity has a state."""
         wait_for(f"{entity} = {value}", lambda: self.state(entity) == value)
+
+
+def yaml_of_the_page() -> list[str]:
+    """What people copy from the documentation: the dashboard and automations, for the cup."""
+    parts = re.findall(r"```yaml\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    for name, here in (("drink", "untidy"), ("glasses", "cup"), ("mug_sip", "cup_put_down")):
+        parts = [part.replace(f"goal_{name}", f"goal_{here}").replace(name, here) for part in parts]
+    parts = [part.replace("notify.notify", "notify.persistent_notification") for part in parts]
+    return [part.replace("mug", "cup") for part in parts]
 
 
 def judge_entities(states: dict[str, dict[str, Any]]) -> None:
@@ -233,6 +272,10 @@ def play(scene: Scene) -> None:
     scene.shows("binary_sensor.goal_tidy_reached", "off")
     wait_for("the event", lambda: scene.state("event.cup_event") not in (None, "unknown"))
     judge_entities(home.states())
+    if scene.automations:
+        wait_for("the automation", lambda: scene.triggered("say_when_too_little_was_drunk"))
+        asked = home.post("/api/conversation/process", {"text": "where are my cup"})
+        print(asked["response"]["speech"]["plain"]["speech"], flush=True)
 
     home.post("/api/services/switch/turn_on", {"entity_id": "switch.pause_measuring"})
     scene.shows("switch.pause_measuring", "on")
@@ -261,6 +304,8 @@ def play(scene: Scene) -> None:
     home.post("/api/services/button/press", {"entity_id": "button.forget_today"})
     scene.shows("sensor.cup_put_down_times", "0")
     scene.shows("binary_sensor.goal_tidy_reached", "off")
+    scene.carry(at_ns=time.time_ns())
+    scene.shows("sensor.cup_put_down_times", "1")
 
 
 def main() -> int:
@@ -271,15 +316,20 @@ def main() -> int:
     parser.add_argument("--frontend", action="store_true", help="with its pages")
     parser.add_argument("--stay", action="store_true", help="wait for Enter before the end")
     chosen = parser.parse_args()
-    more = "frontend:\nrecorder:\nhistory:\n" if chosen.frontend else ""
+    more = PAGES if chosen.frontend else ""
     with tempfile.TemporaryDirectory() as name, mosquitto(Path(name) / "broker") as broker:
         folder = Path(name)
         home = HomeAssistant(chosen.python, folder / "home", more)
+        if chosen.frontend:
+            dashboard, *automations = yaml_of_the_page()
+            (folder / "home" / "ui-lovelace.yaml").write_text(dashboard)
+            (folder / "home" / "automations.yaml").write_text("".join(automations))
         rig = RunningRig(folder)
         try:
             home.start()
             home.onboard(broker)
-            play(Scene(rig, broker, home, chosen.single))
+            pages = chosen.frontend
+            play(Scene(rig, broker, home, single=chosen.single, automations=pages))
             complaints = [line for line in home.log.splitlines() if "mqtt" in line.lower()]
             print("\n".join(complaints))
             if chosen.stay:

@@ -6,6 +6,7 @@ from datetime import date
 from pathlib import Path
 from zoneinfo import ZoneInfo
 
+import numpy as np
 import pytest
 from inhand_outcomes.achievement import Amount
 from inhand_outcomes.homeassistant.home import Home, Place
@@ -14,6 +15,7 @@ from inhand_outcomes.homeassistant.state import HomeState
 from inhand_outcomes.outcome import Outcome
 from inhand_outcomes.rules import Goal, PersonsGoal, Rules
 from inhand_outcomes.store.database import Database, open_database
+from inhand_outcomes.store.floor_maps import FloorMapHeader, KeptFloorMap, keep_floor_map
 from inhand_outcomes.store.forgetting import Forget, forget
 from inhand_outcomes.store.saving import Keeping, Saver
 from inhand_schemas.messages import Pose
@@ -154,3 +156,15 @@ def test_an_entity_stays_when_its_outcomes_are_forgotten(database: Database) -> 
     home.forget()
     assert shown(home, database).shape == shape
     assert shown(a_home(), database).shape == shape
+
+
+def test_the_floor_is_shown_where_something_is_swept(database: Database) -> None:
+    home = a_home(broom="sweeping")
+    before = shown(home, database)
+    assert before.floor_png.startswith(b"\x89PNG")
+    header = FloorMapHeader(cell_m=0.05, x_m=-1.0, y_m=0.5, rows=40, columns=40)
+    cells = np.full((40, 40), 0x20 | 0x1F, np.uint8)
+    keep_floor_map(database, KeptFloorMap(date(2026, 11, 30), "broom", 0, header, cells))
+    home.forget()
+    after = shown(home, database)
+    assert after.floor_png not in (before.floor_png, b"")

@@ -17,7 +17,7 @@ from inhand_outcomes.homeassistant.parameters import DEFAULT_HOME, HomeParameter
 from inhand_outcomes.homeassistant.settings import HomeAssistantSettings
 from inhand_outcomes.homeassistant.shape import Shape, goal_shape, new_node, object_shape
 from inhand_outcomes.homeassistant.state import GoalProgress, HomeEvent, HomeState, KindTotal
-from inhand_outcomes.kept_floor_picture import kept_floor_png
+from inhand_outcomes.kept_floor_picture import kept_floor_png, unswept_png
 from inhand_outcomes.outcome import Outcome
 from inhand_outcomes.rules import PersonsGoal, Rules, progress
 from inhand_outcomes.store.database import Database
@@ -172,16 +172,16 @@ class Home:
         seen = totals(database, first_day(today, "week"), today)
         if self._shape is None and kept is not None:
             seen = totals(database, *kept)
-        floor = self._floor_png(floor_maps(database, today))
+        maps = floor_maps(database, today)
         counted = [one for one in seen if one.counted]
         return HomeState(
-            shape=self._shape_of(counted, floor=floor is not None),
+            shape=self._shape_of(counted, floor=bool(maps)),
             since=self._beginning(today),
             totals=_by_kind(one for one in counted if one.day == today),
             places={one.object: one for one in last_places(database, self._uses)},
             in_use={name: in_use for name, (_, in_use) in self._last_use.items()},
             goals={one.goal.name: self._progress(one, counted, today) for one in self._rules.goals},
-            floor_png=floor,
+            floor_png=self._floor_png(maps),
             zone=self._rules.zone,
             paused=self.paused,
         )
@@ -215,18 +215,17 @@ class Home:
         """The first moment of a local day."""
         return datetime.combine(day, clock_time.min, self._rules.zone)
 
-    def _floor_png(self, maps: Sequence[KeptFloorMap]) -> bytes | None:
+    def _floor_png(self, maps: Sequence[KeptFloorMap]) -> bytes:
         """The picture of the floor, drawn anew where the maps are others."""
-        if not maps:
-            return None
         digest = blake2b()
         for one in maps:
             digest.update(repr((one.day, one.header)).encode() + one.cells.tobytes())
         if self._floor[0] != digest.digest():
             try:
-                self._floor = (digest.digest(), kept_floor_png(maps))
-            except ValueError:
-                return None  # a rig that was moved on that day
+                picture = kept_floor_png(maps) if maps else unswept_png()
+            except ValueError:  # a rig that was moved on that day: the newer one's
+                picture = kept_floor_png(maps[-1:])
+            self._floor = (digest.digest(), picture)
         return self._floor[1]
 
 

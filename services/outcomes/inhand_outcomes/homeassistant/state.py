@@ -42,7 +42,7 @@ class HomeState:
     places: Mapping[str, LastPlace]
     in_use: Mapping[str, bool | None]
     goals: Mapping[str, GoalProgress]
-    floor_png: bytes | None
+    floor_png: bytes
     zone: ZoneInfo
     paused: bool
 

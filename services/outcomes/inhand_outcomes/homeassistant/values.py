@@ -28,11 +28,11 @@ DIGITS = 6
 
 
 def retained_values(state: HomeState) -> dict[str, bytes]:
-    """Return the payload of each topic that is retained; an empty one is no value."""
+    """Return the payload of each topic that is retained."""
     topics = Topics(state.shape.node)
     values = {PAUSE: _switch(state.paused)}
     if state.shape.floor:
-        values[FLOOR] = state.floor_png or b""
+        values[FLOOR] = state.floor_png
     for thing in state.shape.objects:
         for kind, amounts in thing.kinds:
             total = state.totals.get((thing.name, kind), KindTotal())
