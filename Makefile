@@ -2,6 +2,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
+# Tests start hundreds of processes: without this, each of them would compile our sources anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 CONTRIB := .venv-contrib
 ON_ALL_CORES := --numprocesses auto --dist loadgroup --no-loadscope-reorder
 

@@ -71,6 +71,7 @@ from inhand.bench_tables import (
     watching_table,
     weighing_table,
 )
+from inhand.looking import positive_count
 from inhand.progress import progress_bar, progress_bars
 from inhand.results import write_json
 
@@ -88,7 +89,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         type=Path,
         metavar="SOURCE",
-        help="for ablation, constants and labels: a dataset; for likelihood, in place of rendered "
+        help="for ablation, constants and labels: a dataset; for outcomes: a folder, in which what "
+        "is missing is made; for likelihood, in place of rendered "
         "objects: a folder of YCB-Video, or of an excerpt; for skeletons, if at hand: a folder of "
         "UTD-MHAD with its depth",
     )
@@ -121,6 +123,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         metavar="CHECKOUT",
         help="for tracker: compare frames with those of another checkout's code, in turns",
+    )
+    parser.add_argument(
+        "--seeds",
+        type=int,
+        nargs="+",
+        default=[9001, 9002, 9003],
+        metavar="S",
+        help="for outcomes: seeds of the people who are watched (default: 9001 9002 9003)",
+    )
+    parser.add_argument(
+        "--participants",
+        type=positive_count,
+        default=2,
+        metavar="N",
+        help="for outcomes: people of each seed (default: 2)",
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
 
@@ -285,6 +302,23 @@ def _skeletons(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str,
     return Group(*tables, costs_table(costs)), {**result, "costs": [asdict(cost) for cost in costs]}
 
 
+def _outcomes(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    from inhand.bench_outcomes import (
+        amounts_table,
+        check_outcomes,
+        counts_table,
+        places_table,
+        steps,
+        swept_table,
+    )
+
+    seeds, participants = arguments.seeds, arguments.participants
+    with progress_bar("comparing", steps(seeds, participants)) as advance:
+        check = check_outcomes(arguments.source, seeds, participants, advance)
+    tables = (counts_table(check), amounts_table(check), places_table(check), swept_table(check))
+    return Group(*tables), asdict(check)
+
+
 SUBJECTS_HELP = {
     "ablation": "the error of fusion without each of its parts",
     "constants": "its error with each number halved and doubled",
@@ -293,6 +327,8 @@ SUBJECTS_HELP = {
     "likelihood": "where its optimum is beside the truth, on rendered objects; or how true poses "
     "score, and refine, on real frames of YCB-Video",
     "objects": "new objects, by measures and by the camera, beside the true meshes",
+    "outcomes": "what is said to be achieved beside what truly was, of simulated people who are "
+    "tracked from images",
     "recorder": "writing recordings beside other writers, and what a recorder takes",
     "skeletons": "skeletons from images: found people, joints' errors, and what a frame costs",
     "tracker": "poses weighed in a second, and what a frame costs, by itself or against other code",
@@ -300,7 +336,7 @@ SUBJECTS_HELP = {
     "transport": "the delay of a frame to another process, beside Zenoh's own and dora-rs's",
 }
 
-MEASURED_ON = ("ablation", "constants", "labels")
+MEASURED_ON = ("ablation", "constants", "labels", "outcomes")
 ALSO_MEASURED_ON = ("likelihood", "skeletons")
 
 SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
@@ -310,6 +346,7 @@ SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "labels": _labels,
     "likelihood": _likelihood,
     "objects": _objects,
+    "outcomes": _outcomes,
     "recorder": _recorder,
     "skeletons": _skeletons,
     "tracker": _tracker,

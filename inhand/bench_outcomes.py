@@ -14,12 +14,15 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
+from inhand_lab.achieved.sweeping import PIXEL_M, swept_floor
 from inhand_lab.achieved.true_achievement import TrueAchievement
 from inhand_lab.achieved.truths import TRUTHS
 from inhand_lab.motions.performance import ContactKind
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import Simulation, simulate
+from inhand_outcomes.floor_map import empty_map
 from inhand_outcomes.floor_watch import FloorWatch
+from inhand_outcomes.measures.footprint import CELL_M
 from inhand_outcomes.outcome import Outcome
 from inhand_outcomes.things import load_things
 from inhand_outcomes.watching import Watcher
@@ -31,6 +34,7 @@ from rich.table import Table
 TAUGHT_BY = 5150
 """Seed of the people who teach the models."""
 TEACHERS = 3
+TAUGHT_FRAMES = 300
 FRAMES = 360
 SUFFIX = "_retrack"
 SURE = 0.5
@@ -60,12 +64,22 @@ class Handled:
 
 
 @dataclass(frozen=True)
+class Swept:
+    """Intersection over union of the floor that was said to be swept in one recording and the
+    floor that was, in the map's cells."""
+
+    interaction: str
+    iou: float
+
+
+@dataclass(frozen=True)
 class OutcomesCheck:
     """All recordings of all seeds."""
 
     recordings: int
     compared: Sequence[Compared]
     handled: Sequence[Handled]
+    swept: Sequence[Swept]
 
 
 def check_outcomes(
@@ -76,6 +90,7 @@ def check_outcomes(
     models = _models(folder)
     compared: list[Compared] = []
     handled: list[Handled] = []
+    swept: list[Swept] = []
     count = 0
     for seed in seeds:
         tracked = _tracked(folder, seed, participants, models)
@@ -83,12 +98,13 @@ def check_outcomes(
             for participant in range(participants):
                 path = tracked / f"{interaction}_p{participant:02}.mcap"
                 simulation = simulate(interaction, participant, seed, FRAMES)
-                outcomes = said_of(path, models[interaction])
+                outcomes, watcher = said_of(path, models[interaction])
                 compared += list(_compare(simulation, outcomes))
                 handled += list(_places(simulation, outcomes))
+                swept += list(_swept(simulation, watcher))
                 count += 1
                 advance()
-    return OutcomesCheck(count, compared, handled)
+    return OutcomesCheck(count, compared, handled, swept)
 
 
 def steps(seeds: Sequence[int], participants: int) -> int:
@@ -96,13 +112,14 @@ def steps(seeds: Sequence[int], participants: int) -> int:
     return len(seeds) * participants * len(INTERACTIONS)
 
 
-def said_of(recording: Path, model: Path) -> list[Outcome]:
-    """Watch a tracked recording as the daemon does; all that it says of the model's object."""
+def said_of(recording: Path, model: Path) -> tuple[list[Outcome], Watcher]:
+    """Watch a tracked recording as the daemon does; all that it says of the model's object, and who
+    has watched."""
     things, problems = load_things([model], {})
     if problems:
         raise InhandError(problems[0])
     watcher = Watcher(things, "bench")
-    floors = FloorWatch()
+    floors = FloorWatch(watcher.floors.see)
     outcomes: list[Outcome] = []
     for one in read_recording(recording, streams=("info", "rgbd", "skeletons", "pose")):
         message = one.message()
@@ -119,7 +136,8 @@ def said_of(recording: Path, model: Path) -> list[Outcome]:
             outcomes += watcher.hear_pose(msgspec.structs.replace(message, object=name))
         if floors.room is not None:
             watcher.room = floors.room
-    return [one for one in outcomes + watcher.end_all() if one.probability >= SURE]
+    sure = [one for one in outcomes + watcher.end_all() if one.probability >= SURE]
+    return sure, watcher
 
 
 def _compare(simulation: Simulation, outcomes: Sequence[Outcome]) -> Iterator[Compared]:
@@ -167,10 +185,25 @@ def _places(simulation: Simulation, outcomes: Sequence[Outcome]) -> Iterator[Han
     yield Handled(simulation.interaction, CENTIMETRES * float(np.linalg.norm(off)))
 
 
+def _swept(simulation: Simulation, watcher: Watcher) -> Iterator[Swept]:
+    """How well the map of what was swept agrees, where anything was."""
+    points = swept_floor(simulation) if simulation.interaction == "sweepFloor" else np.empty((0, 3))
+    if len(points) == 0:
+        return
+    maps = watcher.floors.maps()
+    said = maps[0].is_swept() if maps else np.zeros(empty_map().size, bool)
+    level = (points @ watcher.room.matrix.T + watcher.room.translation)[:, :2]
+    cells = np.floor((level - empty_map().corner) / CELL_M).astype(int)
+    covered = np.zeros(said.shape)
+    np.add.at(covered, tuple(cells.T), PIXEL_M**2)
+    true = covered >= 0.5 * CELL_M**2
+    yield Swept(simulation.interaction, float((said & true).sum() / (said | true).sum()))
+
+
 def _models(folder: Path) -> dict[str, Path]:
     """The models by interaction, learned where they are missing."""
     taught = folder / f"people_{TAUGHT_BY}"
-    _simulate(taught, TAUGHT_BY, TEACHERS)
+    _simulate(taught, TAUGHT_BY, TEACHERS, TAUGHT_FRAMES)
     models = {}
     for interaction, done in INTERACTIONS.items():
         name = done.object_model().name
@@ -183,7 +216,7 @@ def _models(folder: Path) -> dict[str, Path]:
 def _tracked(folder: Path, seed: int, participants: int, models: Mapping[str, Path]) -> Path:
     """The folder of the tracked recordings of a seed's people."""
     people, tracked = folder / f"people_{seed}", folder / f"tracked_{seed}"
-    _simulate(people, seed, participants)
+    _simulate(people, seed, participants, FRAMES)
     for interaction, model in models.items():
         paths = [
             people / "recordings" / f"{interaction}_p{number:02}.mcap"
@@ -194,9 +227,10 @@ def _tracked(folder: Path, seed: int, participants: int, models: Mapping[str, Pa
     return tracked
 
 
-def _simulate(out: Path, seed: int, participants: int) -> None:
+def _simulate(out: Path, seed: int, participants: int, frames: int) -> None:
     if not (out / "dataset.toml").exists():
-        wanted = ("--participants", str(participants), "--seed", str(seed), "--frames", str(FRAMES))
+        numbers = {"participants": participants, "seed": seed, "frames": frames}
+        wanted = (part for name, one in numbers.items() for part in (f"--{name}", str(one)))
         _inhand("simulate", out, *wanted)
 
 
@@ -251,6 +285,17 @@ def amounts_table(check: OutcomesCheck) -> Table:
             f"{np.median(np.abs(said - true)):.3g}",
             f"{near.sum()}/{len(pairs)}",
         )
+    return table
+
+
+def swept_table(check: OutcomesCheck) -> Table:
+    """How well maps of the swept floor agree with what truly was."""
+    table = Table(title="the floor that was swept, intersection over union")
+    for column in ("recordings", "mean", "least"):
+        table.add_column(column, justify="right")
+    shares = [one.iou for one in check.swept]
+    if shares:
+        table.add_row(str(len(shares)), f"{np.mean(shares):.2f}", f"{min(shares):.2f}")
     return table
 
 

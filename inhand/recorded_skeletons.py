@@ -23,7 +23,7 @@ from inhand_schemas.conventions import SIMULATED
 from inhand_schemas.errors import MessageError
 from inhand_schemas.fields import JointState, Vector3
 from inhand_schemas.keys import parse_key
-from inhand_schemas.messages import CameraInfo, ObjectPose, Person, RgbdFrame, Skeletons
+from inhand_schemas.messages import CameraInfo, ObjectPose, Person, Skeletons
 from inhand_schemas.topics import INFO, LABEL, RGBD, SKELETONS
 from msgspec import structs
 
@@ -73,11 +73,11 @@ def add_skeletons(
     }
     estimated = {name: CameraSkeletons() for name in estimators}
     with written_or_gone(output) as writer:
-        for message in read_recording(path):
-            if message.topic is SKELETONS and message.name in wanted:
+        for message in read_recording(path, apart=True):
+            if message.topic is SKELETONS and message.name in wanted and not message.apart:
                 continue
             copy_message(writer, message)
-            if message.topic is RGBD and message.name in wanted:
+            if not message.apart and message.topic is RGBD and message.name in wanted:
                 camera = message.name
                 skeletons = _estimate(message, estimators[camera], estimated[camera])
                 if skeletons is not None:
@@ -104,7 +104,10 @@ def true_skeletons(path: Path, output: Path) -> int:
         )
     written = 0
     with written_or_gone(output) as writer:
-        for message in read_recording(path):
+        for message in read_recording(path, apart=True):
+            if message.apart:
+                copy_message(writer, message)
+                continue
             payload = message.payload
             if message.topic is SKELETONS:
                 skeletons: Skeletons = SKELETONS.decode(payload)
@@ -175,7 +178,7 @@ def _estimate(
     """Estimate the skeletons of one recorded frame, and count; None where it has none to give."""
     counts.frames += 1
     try:
-        frame: RgbdFrame = RGBD.decode(message.payload)
+        frame = message.frame()
         colour = None if frame.colour is None else decode_colour(frame.colour)
         depth = None if frame.depth is None else decode_depth(frame.depth)
         people = estimator.estimate(colour, depth, frame.time_ns)

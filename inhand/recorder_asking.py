@@ -11,6 +11,7 @@ from inhand_runtime.exit_codes import DONE, FAILED
 from inhand_runtime.roll import short_key
 from inhand_runtime.settings import RigFile, load_rig_file
 from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.wording import counted, sized
 from inhand_runtime.writable import require_writable_file
 from inhand_schemas.procedures import RecorderReply, RecorderRequest
 
@@ -52,7 +53,7 @@ def ask(given: Sequence[str]) -> int:
         if not replies and not expected:
             raise nothing_heard(look.site, arguments.seconds)
     for name, reply in sorted(replies.items()):
-        print(f"{name}: {_text(reply)}")
+        print(f"{name}: {reply_text(reply)}")
         for key, kinds in reply.losses.items():
             print(
                 f"{name}, {short_key(key)}: {kinds.transport} never came, {kinds.queue} came too "
@@ -81,17 +82,31 @@ def _expected(rig_file: RigFile, name: str | None) -> tuple[str, ...]:
     return (name,)
 
 
-def _text(reply: RecorderReply) -> str:
-    """What a recorder does, in a line."""
+def reply_text(reply: RecorderReply) -> str:
+    """Return what a recorder does, in a line."""
     state = reply.recording
     if state.paused:
         text = "paused"
     elif state.file is None:
         text = "records from the next message on"
     else:
-        text = f"records into {state.file}, {state.file_bytes / 1e6:.1f} MB so far"
+        text = f"records into {state.file}, {sized(state.file_bytes)} so far"
     if state.ring_bytes:
-        text += f"; holds {state.ring_seconds:.1f} s, {state.ring_bytes / 1e6:.1f} MB"
+        text += f"; holds {state.ring_seconds:.1f} s, {sized(state.ring_bytes)}"
+    if state.folder_bytes:
+        text += f"; all recordings take {sized(state.folder_bytes)}"
     if state.clip is not None:
         text += f"; makes the clip {state.clip}"
+    if state.unmanaged:
+        text += (
+            f"; no quota deletes {counted(state.unmanaged, 'recording')}, "
+            f"{sized(state.unmanaged_bytes)}, which no recorder of this release or a later one has "
+            "written"
+        )
+    if state.clips_bytes:
+        text += f"; clips take {sized(state.clips_bytes)}"
+    if state.colour:
+        kept = {fate: count for fate, count in state.colour.items() if fate != "coded"}
+        text += f"; colour as H.264 of {counted(state.colour.get('coded', 0), 'frame')}"
+        text += "".join(f", as it came of {count:,} ({fate})" for fate, count in kept.items())
     return text if reply.finished is None else f"{text}; {reply.finished} is whole"

@@ -94,7 +94,7 @@ def _convert(arguments: argparse.Namespace) -> int:
     for topic, count in done.damaged.items():
         print(f"  {topic}: {counted(count, 'damaged message')} left out")
     if done.apart:
-        print(f"  {counted(done.apart, 'message')} that could not be read on their keys left out")
+        print(f"  {counted(done.apart, 'message')} that could not be read on their keys kept apart")
     if arguments.json is not None:
         files = [{"path": str(one.path), "messages": one.messages} for one in done.files]
         damaged = dict(done.damaged)

@@ -67,10 +67,12 @@ def _export(arguments: argparse.Namespace) -> int:
                 on_message=percent_of(total, advance),
             )
             counts = export(request, arguments.out)
-        damaged = dict(recording.damaged)
+        damaged, apart = dict(recording.damaged), sum(recording.apart.values())
     print(f"{arguments.out}: " + ", ".join(f"{n:,} {name}" for name, n in counts.items()))
     for topic, count in damaged.items():
         print(f"  {topic}: {counted(count, 'damaged message')} left out")
+    if apart:
+        print(f"  {counted(apart, 'message')} that could not be read on their keys left out")
     if arguments.json is not None:
         values = {"output": str(arguments.out), "counts": counts, "damaged": damaged}
         write_json(arguments.json, {"exported": values})

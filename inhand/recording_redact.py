@@ -59,13 +59,13 @@ def _redact(arguments: argparse.Namespace) -> int:
         print(f"  {name}: {count:,}")
     for topic, count in written.damaged.items():
         print(f"  {topic}: {counted(count, 'damaged message')} left out")
-    if written.apart:
-        apart = counted(written.apart, "message")
+    if done.apart:
+        apart = counted(done.apart, "message")
         print(f"  {apart} that could not be read on their keys left out")
     if arguments.json is not None:
         values = {"output": str(output), "hidden": arguments.what, "counts": counts}
         write_json(
             arguments.json,
-            {"redacted": values, "damaged": dict(written.damaged), "apart": written.apart},
+            {"redacted": values, "damaged": dict(written.damaged), "apart": done.apart},
         )
     return DONE

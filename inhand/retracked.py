@@ -40,6 +40,8 @@ from inhand_tracker.people.following import PeopleWatched
 from inhand_tracker.people.watching import Watcher
 from inhand_tracker.settings import TrackerSettings
 
+from inhand.resumed_work import digest_of_recording
+
 RECORD = "retrack"
 """The metadata record that says what tracked a recording again."""
 
@@ -112,7 +114,7 @@ def retrack(task: Retracking) -> Retracked:
             raise RecordingError(index.note)
         tracked = _Tracked(task, index)
         with written_or_gone(task.output) as writer:
-            for message in read_recording(task.path):
+            for message in read_recording(task.path, apart=True):
                 copy_message(writer, message)
                 for pose in tracked.poses_of(message):
                     key = POSE.key(parse_key(message.key).site, pose.object)
@@ -138,7 +140,7 @@ class _Tracked:
 
     def poses_of(self, message: RecordedMessage) -> Iterable[ObjectPose]:
         """Track what a message brings: poses with the names that the new tracks have."""
-        if message.name != self.camera:
+        if message.apart or message.name != self.camera:
             return ()
         try:
             if message.topic is INFO:
@@ -169,8 +171,7 @@ class _Tracked:
         number = self._frame_numbers.get((message.captured_ns, message.sequence))
         if number is None or not self._needs:
             return None
-        frame: RgbdFrame = RGBD.decode(self._frames[number].payload)
-        return frame
+        return self._frames[number].frame()
 
     def _named(self, pose: ObjectPose) -> ObjectPose:
         self.result.states.setdefault(pose.object, Counter())[pose.state] += 1
@@ -235,8 +236,8 @@ def _first_info(infos: IndexedMessages, task: Retracking, camera: str) -> Camera
 
 
 def _about(task: Retracking) -> dict[str, str]:
-    size = str(task.path.stat().st_size)
-    return {"source": task.path.name, "source_bytes": size, "mark": task.mark}
+    digest = digest_of_recording(task.path)
+    return {"source": task.path.name, "source_digest": digest, "mark": task.mark}
 
 
 def _note(writer: RecordingWriter, task: Retracking, tracked: _Tracked) -> None:

@@ -1,4 +1,4 @@
-"""Settings as a stranger may see them: no secret, and no value that Inhand does not know.
+"""Settings as a stranger may see them: no secret, nobody's name, and nothing unknown to Inhand.
 
 What is shown is what the models of the settings declare. A text that nobody declared may be a
 password, as one of a camera's address in the options of somebody's own source.
@@ -75,7 +75,7 @@ class Shown:
 
     def _value(self, name: str, value: Any, annotation: Any) -> Any:
         kinds = members(annotation)
-        if Any in kinds or SecretStr in kinds or _SECRET_NAME.search(name):
+        if Any in kinds or SecretStr in kinds or _SECRET_NAME.search(name) or _names(name, value):
             is_path = name == "password_file" and isinstance(value, str)
             return value if is_path else self._leave_out(value)
         if isinstance(value, Mapping):
@@ -99,12 +99,20 @@ def _options_model(source: Any) -> Any:
 
 
 def _password_files(values: Mapping[str, Any], folder: Path) -> Iterator[Path]:
-    zenoh, studios = values.get("zenoh"), values.get("studio")
+    zenoh = values.get("zenoh")
     if isinstance(zenoh, Mapping) and isinstance(path := zenoh.get("password"), str):
         yield folder / path
-    for table in studios.values() if isinstance(studios, Mapping) else ():
-        if isinstance(table, Mapping) and isinstance(path := table.get("password_file"), str):
-            yield folder / path
+    for tables in (values.get("studio"), values.get("outcomes")):
+        for table in tables.values() if isinstance(tables, Mapping) else ():
+            if isinstance(table, Mapping) and isinstance(path := table.get("password_file"), str):
+                yield folder / path
+
+
+def _names(name: str, value: Any) -> bool:
+    """Whether a setting names people who live there."""
+    return (name == "people" and isinstance(value, Mapping)) or (
+        name == "person" and isinstance(value, str)
+    )
 
 
 def _texts(value: Any) -> Iterator[str]:

@@ -10,7 +10,9 @@ from typing import Any, Protocol
 import numpy as np
 from foxglove import messages as fox
 from inhand_recorder.recorded import Recorded, RecordedImages
+from inhand_runtime.pixels import encode_colour
 from inhand_runtime.recording import RecordingError
+from inhand_runtime.recording.copying import StandingAlone
 from inhand_schemas.errors import MessageError
 from inhand_schemas.joints import PARENTS
 from inhand_schemas.messages import (
@@ -77,9 +79,10 @@ def export_foxglove(request: ExportRequest, output: Path) -> dict[str, int]:
     damaged = 0
     with unfinished(output) as path, path.open("wb") as file:
         writer = _SchemaWriter(Writer(file, compression=CompressionType.ZSTD))
+        videos = StandingAlone()
         for one in request.read(keys):
             try:
-                for topic, message in _published(one):
+                for topic, message in _published(one, videos):
                     writer.write(topic, message, one)
             except MessageError:
                 damaged += 1
@@ -123,11 +126,14 @@ class _SchemaWriter:
         self.writer.finish()  # type: ignore[no-untyped-call]
 
 
-def _published(one: Recorded) -> Iterator[Published]:
-    """Yield what a message becomes; raises MessageError for a damaged image."""
+def _published(one: Recorded, videos: StandingAlone) -> Iterator[Published]:
+    """Yield what a message becomes; raises MessageError for a damaged image.
+
+    Colour as H.264 stays so where ``videos`` has what it builds on.
+    """
     message = one.message
     if isinstance(one, RecordedImages):
-        yield from _images(one)
+        yield from _images(one, videos)
     elif isinstance(message, CameraInfo):
         yield f"/{one.name}/calibration", _calibration(one.name, message)
         yield "/tf", _transforms(message.time_ns, RIG_FRAME, one.name, message.rig_from_camera)
@@ -143,9 +149,14 @@ def _published(one: Recorded) -> Iterator[Published]:
         yield "/events", fox.Log(timestamp=stamp, level=level, message=text, name=one.topic)
 
 
-def _images(one: RecordedImages) -> Iterator[Published]:
+def _images(one: RecordedImages, videos: StandingAlone) -> Iterator[Published]:
     colour, depth = one.message.colour, one.depth
-    if colour is not None and colour.codec == "jpeg":
+    if one.coded is not None and videos.stands(one.key, one.coded):
+        yield f"/{one.name}/video", _video(one.name, one.time_ns, one.coded.image.data)
+    elif one.coded is not None and one.colour is not None:
+        jpeg = encode_colour(one.colour).data
+        yield f"/{one.name}/colour", _compressed(one.name, one.time_ns, jpeg)
+    elif colour is not None and colour.codec == "jpeg":
         yield f"/{one.name}/colour", _compressed(one.name, one.time_ns, colour.data)
     elif colour is not None:
         image = fox.RawImage(
@@ -180,6 +191,12 @@ def _images(one: RecordedImages) -> Iterator[Published]:
 def _compressed(camera: str, time_ns: int, jpeg: bytes) -> fox.CompressedImage:
     return fox.CompressedImage(
         timestamp=_timestamp(time_ns), frame_id=camera, data=jpeg, format="jpeg"
+    )
+
+
+def _video(camera: str, time_ns: int, picture: bytes) -> fox.CompressedVideo:
+    return fox.CompressedVideo(
+        timestamp=_timestamp(time_ns), frame_id=camera, data=picture, format="h264"
     )
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
+from inhand_recorder.attachments import attach_mesh
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
-from inhand_recorder.recording_file import MESH_PLACE, MESH_TYPE
 from inhand_runtime.errors import InhandError
 from inhand_runtime.recording import RecordingError, RecordingWriter
 from inhand_runtime.recording.copying import written_or_gone
@@ -92,7 +92,7 @@ def write_imported(
 
 def _attach(writer: RecordingWriter, meshes: Mapping[str, bytes], received_ns: int) -> None:
     for name, data in meshes.items():
-        writer.add_attachment(MESH_PLACE.format(name), MESH_TYPE, data, received_ns=received_ns)
+        attach_mesh(writer, name, data, received_ns)
 
 
 def _write(writer: RecordingWriter, site: Site, one: ForeignMessage, counter: LossCounter) -> None:

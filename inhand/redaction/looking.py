@@ -2,8 +2,10 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
+import msgspec
 import numpy as np
 from inhand_capture.faces.discs import Disc
 from inhand_capture.faces.finder import FaceFinder, HeadsSeen, HeldSightings
@@ -14,6 +16,7 @@ from inhand_recorder.recording_reader import Recording
 from inhand_recorder.recording_series import Series
 from inhand_runtime.recording import RecordingError
 from inhand_schemas.errors import MessageError
+from inhand_schemas.joints import Joint
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import CameraInfo, Person, Skeletons
 from inhand_schemas.topics import SKELETONS
@@ -21,6 +24,7 @@ from numpy.typing import NDArray
 
 from inhand.redaction.bodies import Body, found_body, skeleton_body
 from inhand.redaction.parameters import DEFAULT_REDACTION
+from inhand.resumed_work import SectionResults
 
 SAME_FRAME_NS = 20_000_000
 """How far from a frame, in nanoseconds, skeletons are of it: those of others only hide more."""
@@ -91,16 +95,51 @@ class CameraSightings:
         return [body for one in about for body in one.headless]
 
 
+class _Looked(msgspec.Struct, frozen=True, array_like=True):
+    """What was seen in one frame, by itself, as it is kept until the work is done: discs as x, y
+    and radius, bodies as the bytes of their numbers."""
+
+    stamp: Stamp
+    of_bodies: list[list[tuple[float, float, float]]]
+    faces: list[list[tuple[float, float, float]]]
+    bodies: list[bytes]
+    headless: list[bytes]
+    counts: tuple[int, int]
+
+    def seen(self) -> HeadsSeen:
+        """Return the heads and faces."""
+        return HeadsSeen(
+            [[Disc(*disc) for disc in discs] for discs in self.of_bodies],
+            [[Disc(*disc) for disc in discs] for discs in self.faces],
+            (),
+        )
+
+    def sighting(self) -> Sighting:
+        """Return the bodies, without any heads."""
+        return Sighting(
+            time_ns=self.stamp[1],
+            bodies=tuple(map(_body, self.bodies)),
+            headless=tuple(map(_body, self.headless)),
+            counts=self.counts,
+        )
+
+
+_LOOKED = msgspec.msgpack.Decoder(list[_Looked])
+
+
 def look_through(
     recording: Recording,
     key: str,
-    finder: FaceFinder,
+    new_finder: Callable[[], FaceFinder],
+    results: SectionResults,
     on_frame: Callable[[], None] = lambda: None,
+    section_frames: int = DEFAULT_REDACTION.section_frames,
 ) -> CameraSightings:
     """Find people in all frames of a key, by the pictures and by skeletons of the recording.
 
-    Frames that cannot be read are passed over. Raises RecordingError where the camera's info is
-    missing.
+    Each section has a finder of its own, so that it shows the same whether those before it were
+    looked through now or before an interruption. Frames that cannot be read are passed over. Raises
+    RecordingError where the camera's info is missing.
     """
     info = recording.info_of(key)
     if info is None:
@@ -108,31 +147,50 @@ def look_through(
             f"there is no info of {parse_key(key).name}: `inhand recording repair` adds it from "
             "another file"
         )
-    stamps: list[Stamp] = []
-    sightings: list[Sighting] = []
-    seen: list[HeadsSeen] = []
-    skeletons = _skeletons(recording, key)
-    for frame in recording[key]:
-        on_frame()
-        if not isinstance(frame, RecordedImages):
-            continue
-        try:
-            heads, sighting = _look(frame, finder, info, _people_at(skeletons, frame.time_ns))
-        except MessageError:
-            continue
-        stamps.append((frame.sequence, frame.time_ns))
-        sightings.append(sighting)
-        seen.append(heads)
+    frames, looked = recording[key], list[_Looked]()
+    for first in range(0, len(frames), section_frames):
+        section = frames[first : first + section_frames]
+        name = f"looked {key.replace('/', ' ')} {first}"
+        result = results.load(name)
+        if result is None:
+            result = msgspec.msgpack.encode(
+                _look_at_section(recording, section, new_finder(), info, on_frame)
+            )
+            results.store(name, result)
+        else:
+            for _ in range(len(section)):
+                on_frame()
+        looked += _LOOKED.decode(result)
+    seen, sightings = [one.seen() for one in looked], [one.sighting() for one in looked]
     held = [
         replace(one, heads=heads)
         for one, heads in zip(sightings, _held(seen, sightings), strict=True)
     ]
+    stamps = [one.stamp for one in looked]
     return CameraSightings(info, list(zip(stamps, held, strict=True)))
+
+
+def _look_at_section(
+    recording: Recording,
+    frames: Series,
+    finder: FaceFinder,
+    info: CameraInfo,
+    on_frame: Callable[[], None],
+) -> list[_Looked]:
+    """Look at frames that follow each other."""
+    looked = []
+    skeletons = _skeletons(recording, frames.key)
+    for frame in frames:
+        if isinstance(frame, RecordedImages):
+            with suppress(MessageError):
+                looked.append(_look(frame, finder, info, _people_at(skeletons, frame.time_ns)))
+        on_frame()
+    return looked
 
 
 def _look(
     frame: RecordedImages, finder: FaceFinder, info: CameraInfo, skeletons: Sequence[Person]
-) -> tuple[HeadsSeen, Sighting]:
+) -> _Looked:
     """Look at one frame; raises MessageError where its picture is damaged."""
     colour = frame.colour
     if colour is None:
@@ -145,10 +203,12 @@ def _look(
     found += [
         (skeleton_body(one, info), head_of_skeleton(one, info, DEFAULT_FACES)) for one in skeletons
     ]
-    return replace(heads, people=()), Sighting(
-        time_ns=frame.time_ns,
-        bodies=tuple(body for body, _ in found if body is not None),
-        headless=tuple(body for body, head in found if body is not None and head is None),
+    return _Looked(
+        stamp=(frame.sequence, frame.time_ns),
+        of_bodies=_numbers(heads.of_bodies),
+        faces=_numbers(heads.faces),
+        bodies=[body.tobytes() for body, _ in found if body is not None],
+        headless=[body.tobytes() for body, head in found if body is not None and head is None],
         counts=(len(heads.people), len(skeletons)),
     )
 
@@ -165,6 +225,16 @@ def _held(
     after = HeldSightings()
     for one, of, others in zip(seen, sightings, reversed(backward), strict=True):
         yield np.unique(np.vstack([_array(after.see(one, of.time_ns)), others]), axis=0)
+
+
+def _numbers(discs_of_all: Iterable[Iterable[Disc]]) -> list[list[tuple[float, float, float]]]:
+    return [
+        [(float(one.x), float(one.y), float(one.radius)) for one in discs] for discs in discs_of_all
+    ]
+
+
+def _body(data: bytes) -> Body:
+    return np.frombuffer(data, np.float32).reshape(len(Joint), 3)
 
 
 def _array(discs: Iterable[Disc]) -> NDArray[np.float32]:

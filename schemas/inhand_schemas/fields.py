@@ -25,7 +25,7 @@ Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 Text = Annotated[str, Meta(max_length=4096)]
 
-ColourCodec = Literal["jpeg", "rgb8"]
+ColourCodec = Literal["jpeg", "rgb8", "h264"]
 DepthCodec = Literal["z16", "z16-zstd", "png16"]
 JointState = Literal["missing", "inferred", "tracked"]
 PoseState = Literal["tracked", "predicted", "lost"]

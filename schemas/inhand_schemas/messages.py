@@ -94,16 +94,25 @@ class CameraInfo(Message, frozen=True, kw_only=True):
             raise ValueError("no camera has this frame rate")
 
 
-class ColourImage(Struct, frozen=True):
-    """Colour pixels: ``jpeg``, or ``rgb8`` (rows of 3-byte RGB pixels)."""
+class ColourImage(Struct, frozen=True, omit_defaults=True):
+    """Colour pixels: ``jpeg``, or ``rgb8`` (rows of 3-byte RGB pixels).
+
+    ``h264`` stands in recordings alone, and never on the wire: one picture in Annex B. It
+    ``builds_on`` the picture before it, whose digest that is; one that begins anew has none. The
+    digest of a picture is the lowest 63 bits of XXH3 of its data, with what it builds on, or 0, as
+    the seed.
+    """
 
     codec: ColourCodec
     width: Pixels
     height: Pixels
     data: bytes
+    builds_on: Count | None = None
 
     def __post_init__(self) -> None:
         require_pixels(self.width, self.height)
+        if self.builds_on is not None and self.codec != "h264":
+            raise ValueError("only H.264 builds on another picture")
         if self.codec == "rgb8" and len(self.data) != 3 * self.width * self.height:
             raise ValueError("colour bytes do not fill the image")
 
@@ -129,6 +138,25 @@ class RgbdFrame(Message, frozen=True, kw_only=True):
     time_uncertainty_ns: Nanoseconds = 0
     colour: ColourImage | None = None
     depth: DepthImage | None = None
+
+
+class ViewedColour(ColourImage, frozen=True):
+    """Colour whose ``data`` is a view of what it was decoded from."""
+
+    data: memoryview  # type: ignore[assignment]
+
+
+class ViewedDepth(DepthImage, frozen=True):
+    """Depth whose ``data`` is a view of what it was decoded from."""
+
+    data: memoryview  # type: ignore[assignment]
+
+
+class ViewedFrame(RgbdFrame, frozen=True, kw_only=True):
+    """A frame that was decoded without a copy of its pictures."""
+
+    colour: ViewedColour | None = None
+    depth: ViewedDepth | None = None
 
 
 class Preview(Message, frozen=True, kw_only=True):
@@ -301,7 +329,10 @@ class RecordingState(Struct, frozen=True, kw_only=True):
     The last ``ring_seconds`` are held in ``ring_bytes`` of memory, and ``clip`` is the name of the
     file that is made of them, while one is. All recordings of its folder take ``folder_bytes``,
     ``free_bytes`` of the disk are free, and ``deleted`` is how many recordings its quotas have
-    deleted since it started.
+    deleted since it started. ``unmanaged`` of the recordings, of ``unmanaged_bytes``, no quota
+    deletes, as no recorder of this release or a later one has written them; clips take
+    ``clips_bytes`` beside them all. Where colour is to be H.264, ``colour`` is how many frames
+    were, and how many were recorded as they came, by what kept them from it.
     """
 
     paused: bool = False
@@ -313,6 +344,10 @@ class RecordingState(Struct, frozen=True, kw_only=True):
     folder_bytes: Count = 0
     free_bytes: Count = 0
     deleted: Count = 0
+    unmanaged: Count = 0
+    unmanaged_bytes: Count = 0
+    clips_bytes: Count = 0
+    colour: Annotated[dict[Name, Count], Meta(max_length=16)] = {}
 
     def __post_init__(self) -> None:
         require_finite("time", (self.ring_seconds,))

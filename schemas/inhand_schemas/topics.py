@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Generic, Literal, TypeVar
 
 import msgspec
@@ -45,7 +46,8 @@ class Topic(Generic[T]):
     ``gaps_are_losses`` says that a key's messages are numbered one by one. Skeletons, poses and
     previews have the numbers of the frames that they are of: who estimates and is behind leaves
     some out, and previews are of few. ``named`` is the field of a message that has the name of its
-    key, where one does.
+    key, where one does. ``viewed`` is the type that ``check`` decodes, where large fields can be
+    views of what is decoded.
     """
 
     def __init__(
@@ -56,6 +58,7 @@ class Topic(Generic[T]):
         *,
         gaps_are_losses: bool = True,
         named: str | None = None,
+        viewed: type[T] | None = None,
     ) -> None:
         self.stream = stream
         self.message_type = message_type
@@ -64,6 +67,7 @@ class Topic(Generic[T]):
         self.named = named
         self.encoding = f"application/msgpack;{message_type.__name__}.v1"
         self._decoder = msgspec.msgpack.Decoder(message_type)
+        self._checker = msgspec.msgpack.Decoder(viewed or message_type)
 
     def key(self, site: Site, name: str) -> str:
         """The key of one camera, object, kind or instance; raises KeyFormatError."""
@@ -86,10 +90,18 @@ class Topic(Generic[T]):
 
         Raises MessageError, or UnknownVersionError when ``encoding`` names another version.
         """
+        return self._decoded(self._decoder, data, encoding)
+
+    def check(self, data: bytes, encoding: str | None = None) -> T:
+        """The message in ``data``, decoded for a look: its pictures are no copies, but views of
+        ``data``. Raises as ``decode`` does."""
+        return self._decoded(self._checker, data, encoding)
+
+    def _decoded(self, decoder: msgspec.msgpack.Decoder[T], data: bytes, encoding: str | None) -> T:
         if encoding is not None:
             self._check_encoding(encoding)
         try:
-            return self._decoder.decode(data)
+            return decoder.decode(data)
         except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
             raise MessageError(f"no valid {self.message_type.__name__}: {error}") from None
 
@@ -106,6 +118,8 @@ class Topic(Generic[T]):
         return message
 
     def _check_encoding(self, encoding: str) -> None:
+        if encoding == self.encoding:
+            return
         match = _ENCODING.fullmatch(encoding)
         if match is None or match[1] != self.message_type.__name__:
             raise MessageError(f"{self.stream} carries {self.encoding}, not {encoding!r}")
@@ -117,7 +131,7 @@ class Topic(Generic[T]):
 
 
 INFO = Topic("info", messages.CameraInfo, KEPT)
-RGBD = Topic("rgbd", messages.RgbdFrame, BULK)
+RGBD = Topic("rgbd", messages.RgbdFrame, BULK, viewed=messages.ViewedFrame)
 PREVIEW = Topic("preview", messages.Preview, BULK, gaps_are_losses=False)
 SKELETONS = Topic("skeletons", messages.Skeletons, URGENT, gaps_are_losses=False)
 POSE = Topic("pose", messages.ObjectPose, URGENT, gaps_are_losses=False, named="object")
@@ -140,6 +154,7 @@ TOPICS: dict[str, AnyTopic] = {
 }
 
 
+@lru_cache(maxsize=1024)
 def topic_of(key: str) -> tuple[AnyTopic, ParsedKey]:
     """The topic that a key belongs to; raises KeyFormatError, or UnknownVersionError."""
     parsed = parse_key(key)

@@ -5,6 +5,7 @@ import signal
 from collections.abc import Sequence
 from pathlib import Path
 
+import inhand_recorder
 import numpy as np
 import pytest
 from fetched_weights import use_weights
@@ -12,6 +13,7 @@ from inhand_lab.datasets.dataset import Dataset, DatasetEntry, load_dataset
 from inhand_lab.datasets.observations import observe
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.training.model_training import train
+from inhand_recorder.attachments import meshes_in
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import ObjectPose
@@ -199,6 +201,22 @@ def test_the_demonstration_tracks_a_stranger_and_loses_nothing(tmp_path: Path) -
     assert told["vertex_error_cm"] < 12.0
     assert Path(told["picture"]).stat().st_size > 10_000
     assert verify_recording(Path(told["recording"])) == []
+    stands_alone(Path(told["recording"]), tmp_path / "bop")
+
+
+def stands_alone(path: Path, bop: Path) -> None:
+    """A live rig's recording has the object's mesh, and needs nothing else to be exported."""
+    with inhand_recorder.open(path) as recording:
+        assert list(meshes_in(recording.attachments())) == ["mug"]
+        first_ns = int(recording["pose/mug"].received_ns[10])
+        start_s = (first_ns - recording.start_ns) / 1e9
+    words = ["recording", "export", str(path), "--to", "bop", "-o", str(bop)]
+    times = ["--start", str(start_s), "--end", str(start_s + 0.5)]
+    assert main([*words, "--exclude", "label/*", *times]) == 0
+    scene = json.loads((bop / "test" / "000001" / "scene_gt_info.json").read_text())
+    seen = [one for of_image in scene.values() for one in of_image]
+    assert len(seen) > 2
+    assert all(one["px_count_all"] > 100 for one in seen)
 
 
 @pytest.mark.long

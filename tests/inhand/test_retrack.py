@@ -32,9 +32,16 @@ CAMERA = CameraInfo(
 )
 
 
-def recorded(path: Path, *, camera: str = "front", seed: int = 0, skeletons: bool = True) -> Path:
+def recorded(
+    path: Path,
+    *,
+    camera: str = "front",
+    seed: int = 0,
+    skeletons: bool = True,
+    person: int = 7,
+) -> Path:
     """Somebody who waves before a wall of noise, with poses that a tracker published then; one
-    picture is damaged, and one was lost."""
+    picture is damaged, one was lost, and one message of skeletons could not be read."""
     random = np.random.default_rng(seed)
     depth = encode_depth(np.full((120, 160), 3000, np.uint16))
     with RecordingWriter(path) as writer:
@@ -53,14 +60,14 @@ def recorded(path: Path, *, camera: str = "front", seed: int = 0, skeletons: boo
         write(INFO, camera, CAMERA)
         for number, joints in enumerate(unseen_wave(FRAMES) + 0.01 * seed):
             stamp = {"sequence": 10 + number, "time_ns": 10**18 + number * FRAME_NS}
-            person = Person(
-                id=7,
+            waving = Person(
+                id=person,
                 joints=tuple(map(tuple, joints.tolist())),
                 states=("tracked",) * 20,
                 confidences=(1.0,) * 20,
             )
             if skeletons:
-                write(SKELETONS, camera, Skeletons(**stamp, people=(person,)))
+                write(SKELETONS, camera, Skeletons(**stamp, people=(waving,)))
             colour = encode_colour(random.integers(0, 255, (120, 160, 3), np.uint8))
             if number == 3:
                 colour = ColourImage("jpeg", 160, 120, b"no picture")
@@ -68,6 +75,10 @@ def recorded(path: Path, *, camera: str = "front", seed: int = 0, skeletons: boo
                 write(RGBD, camera, RgbdFrame(**stamp, colour=colour, depth=depth))
             lost = {"object": "wedge", "camera": camera, "state": "lost", "confidence": 0.5}
             write(POSE, "wedge", ObjectPose(**stamp, **lost))
+            if number == 6:
+                writer.write_apart(
+                    SKELETONS.key(Site(), camera), b"\xc1", received_ns=stamp["time_ns"]
+                )
         writer.add_metadata(LOSSES_RECORD, format_losses(counter.losses()))
     return path
 
@@ -99,6 +110,8 @@ def test_new_poses_stand_beside_all_that_was_recorded(tmp_path: Path, model: Pat
     key = POSE.key(Site(), "wedge_retrack")
     kept = [(m.key, m.payload, m.received_ns, m.captured_ns) for m in after if m.key != key]
     assert kept == before
+    apart = [m for m in read_recording(output, apart=True) if m.apart]
+    assert [(m.name, m.payload) for m in apart] == [("front", b"\xc1")]
     new = [m for m in poses(output, "wedge_retrack") if isinstance(m, ObjectPose)]
     assert [(m.sequence, m.time_ns) for m in new] == [
         (10 + number, 10**18 + number * FRAME_NS) for number in range(FRAMES)
@@ -154,6 +167,11 @@ def test_a_result_of_something_else_is_not_taken_for_done(
     path, folder = recorded(tmp_path / "walk.mcap"), tmp_path / "again"
     assert retrack(model, path, folder=folder) == 0
     assert retrack(model, path, folder=folder, more=("--tracker", "other")) == 1
+    assert "is of another recording, model, setting or release" in capsys.readouterr().err
+    (tmp_path / "other").mkdir()
+    other = recorded(tmp_path / "other" / "walk.mcap", person=8)
+    assert other.stat().st_size == path.stat().st_size
+    assert retrack(model, other, folder=folder) == 1
     assert "is of another recording, model, setting or release" in capsys.readouterr().err
     again = tmp_path / "twice"
     assert retrack(model, folder / "walk.mcap", folder=again, more=("--tracker", "other")) == 0

@@ -20,6 +20,8 @@ SECRETS = {
     "address": "hunter2",
     "member": "words of a hub's member",
     "key": "MC4CAQAwBQYDK2VwBCIEIA",
+    "database": "words of a database",
+    "person": "Anneliese",
 }
 SETTINGS = f"""
 [studio.desk]
@@ -33,9 +35,14 @@ end = "{SECRETS["source"]}"
 [capture.back]
 source = "replay"
 options = {{ file = "a.mcap", camera = "back", url = "http://anna:{SECRETS["address"]}@cam/" }}
+[outcomes.home]
+password_file = "home.password"
+people = {{ 0 = "{SECRETS["person"]}" }}
+[[outcomes.home.goals]]
+person = "{SECRETS["person"]}"
 [recorder.disk]
 folder = "recordings"
-colour = "{SECRETS["unknown"]}"
+tint = "{SECRETS["unknown"]}"
 """
 
 
@@ -91,6 +98,7 @@ def test_no_secret_is_in_it_wherever_it_stood(
     member = '[zenoh]\npassword = "member.password"\n'
     rig.config.write_text(rig.config.read_text().replace("[zenoh]\n", member))
     (rig.folder / "member.password").write_text(SECRETS["member"] + "\n")
+    (rig.folder / "home.password").write_text(SECRETS["database"] + "\n")
     (rig.folder / "wall.password").write_text(SECRETS["file"] + "\n")
     monkeypatch.setenv("INHAND_STUDIO__SHELF__PASSWORD", SECRETS["environment"])
     monkeypatch.syspath_prepend(install_plugins(rig.folder / "plugins"))

@@ -1,4 +1,4 @@
-"""Work on a Dask cluster of two worker processes, of which one is killed."""
+"""Work on a Dask cluster of some worker processes, of which one is killed now and then."""
 
 import json
 import signal
@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from dask_cluster import dask_cluster, die, die_once, fail, process_of
+from dask_cluster import DaskCluster, dask_cluster, die, die_once, fail, process_of
 from inhand_lab.cluster import on_cluster
 from inhand_lab.datasets.dataset import DatasetError
 from inhand_lab.workers import in_processes, working
@@ -53,12 +53,28 @@ def evaluated(path: Path) -> dict[str, Any]:
     return result
 
 
-def test_a_dataset_is_simulated_and_evaluated_as_it_is_here_though_a_worker_is_killed(
+def retracked_with_a_kill(rig: RunningRig, cluster: DaskCluster, here: Path) -> None:
+    """Track a dataset's recordings again here and on a cluster, of which a worker is killed while
+    recordings grow; the files are the same."""
+    files = sorted((here / "recordings").glob("*.mcap"))
+    tracked = ["recording", "retrack", *map(str, files), "--model", f"{here}.model", "-o"]
+    there = rig.folder / "tracked_there"
+    process = rig.inhand(*tracked, there, "--cluster", cluster.address)
+    eventually("a recording that grows", lambda: list(there.glob("*.mcap.part")))
+    cluster.workers[-1].stop(signal.SIGKILL)
+    assert main([*tracked, str(rig.folder / "tracked_here")]) == 0
+    assert process.wait() == 0, process.stderr
+    assert sorted(path.name for path in there.iterdir()) == [path.name for path in files]
+    for path in there.iterdir():
+        assert path.read_bytes() == (rig.folder / "tracked_here" / path.name).read_bytes()
+
+
+def test_a_dataset_is_simulated_retracked_and_evaluated_as_it_is_here_though_workers_are_killed(
     rig: RunningRig, tmp_path: Path
 ) -> None:
     what = ["--interactions", "drinkFromMug", "--participants", "4", "--seed", "1"]
     what += ["--frames", "60", "--no-images"]
-    with dask_cluster(rig, 2) as cluster:
+    with dask_cluster(rig, 3) as cluster:
         there = ["--cluster", cluster.address]
         for name, more in (("here", []), ("there", there)):
             assert main(["simulate", str(tmp_path / name), *what, *more]) == 0
@@ -68,6 +84,7 @@ def test_a_dataset_is_simulated_and_evaluated_as_it_is_here_though_a_worker_is_k
             other = tmp_path / "there" / path.relative_to(tmp_path / "here")
             assert path.read_bytes() == other.read_bytes()
         assert (tmp_path / "here.model").read_bytes() == (tmp_path / "there.model").read_bytes()
+        retracked_with_a_kill(rig, cluster, tmp_path / "here")
         evaluate = ["evaluate", str(tmp_path / "here"), "--no-images", "--methods", "fusion"]
         assert main([*evaluate, "--json", str(tmp_path / "here.json")]) == 0
         process = rig.inhand(

@@ -106,6 +106,20 @@ def test_a_goal_that_is_reached_is_said_once(rig: RunningRig) -> None:
     assert said().count("goal_reached") == 1
 
 
+def test_what_is_kept_can_be_looked_at_and_forgotten_while_the_daemon_runs(rig: RunningRig) -> None:
+    start(rig)
+    carry(rig)
+    eventually("both acts", lambda: len(kinds(rig)) == 2)
+    ask = ("--config", rig.config, "--json", rig.folder / "answer.json")
+    assert rig.done("outcomes", "where", "cup", *ask).popen.returncode == 0
+    assert json.loads((rig.folder / "answer.json").read_text())["kind"] == "put_down"
+    assert rig.done("outcomes", "forget", "--all", "--yes", *ask).popen.returncode == 0
+    assert json.loads((rig.folder / "answer.json").read_text())["removed"]["outcomes"] == 2
+    # What the daemon sees before it hears of it is forgotten as well: the first may be.
+    carry(rig, "--start-ns", str(START_NS + 60 * 10**9), "--times", "2")
+    eventually("the next acts", lambda: kinds(rig)[-2:] == ["taken_up", "put_down"])
+
+
 def test_without_objects_the_daemon_says_so_in_its_health(rig: RunningRig) -> None:
     rig.configure("[outcomes.home]")
     rig.inhand("outcomes", "--config", rig.config).said("is up")

@@ -17,7 +17,7 @@ from inhand_runtime.recording import (
 )
 from inhand_schemas.keys import Site
 from inhand_schemas.topics import INFO, POSE
-from recordings import POSE_KEY, contents, frame_messages
+from recordings import POSE_KEY, SKELETONS_KEY, contents, frame_messages
 from small_rig import DELAY_NS, FRAME_NS, START_NS, write_rig
 
 
@@ -153,7 +153,8 @@ def test_nothing_stays_of_a_conversion_that_fails_and_no_file_is_changed(tmp_pat
         convert([path], tmp_path / "part.mcap", split=0.4)
 
     def interrupt() -> None:
-        if len(list(tmp_path.glob("other_*"))) > 1:
+        if len(list(tmp_path.rglob("other_*"))) > 1:
+            assert list(tmp_path.glob("other_*")) == []  # none looks finished before all are
             raise KeyboardInterrupt
 
     other = tmp_path / "other.mcap"
@@ -187,3 +188,42 @@ def test_pauses_publishers_and_meshes_are_carried_over_and_joined(tmp_path: Path
     assert records["objects"] == {"mug": "its model is mug.model"}
     (attached,) = read_attachments(tmp_path / "all.mcap")
     assert (attached.name, attached.data) == ("objects/mug/mesh.ply", b"ply")
+
+
+def apart_in(path: Path) -> list[tuple[str, int, bytes]]:
+    """What a file keeps apart, and that it is so in a channel that readers pass over."""
+    read = read_recording(path, apart=True)
+    return [(one.key, one.received_ns, one.payload) for one in read if one.apart]
+
+
+def write_with_apart(path: Path, first: int = 0) -> Path:
+    """Ten poses; the third could not be read, and nothing of the skeletons could."""
+    with RecordingWriter(path) as writer:
+        for number in range(first, first + 10):
+            time_ns = START_NS + number * FRAME_NS
+            if number % 10 == 2:
+                for key in (POSE_KEY, SKELETONS_KEY):
+                    writer.write_apart(key, bytes([0xC1, number]), received_ns=time_ns)
+                continue
+            stamp = {"received_ns": time_ns, "captured_ns": time_ns, "sequence": number}
+            writer.write(POSE_KEY, frame_messages(number, 1)[2][2], **stamp)
+    return path
+
+
+def test_what_could_not_be_read_when_it_was_recorded_is_kept_apart_again(tmp_path: Path) -> None:
+    paths = [write_with_apart(tmp_path / f"{first}.mcap", first) for first in (0, 10)]
+    recorded = [one for path in paths for one in apart_in(path)]
+    output = tmp_path / "all.mcap"
+    assert convert([*paths, paths[0]], output).apart == 4
+    assert apart_in(output) == recorded
+    assert len(contents(output)) == 18
+    assert verify_recording(output) == []
+    copy = tmp_path / "copy.mcap"
+    copy.write_bytes(paths[0].read_bytes())
+    assert convert([copy, *paths], tmp_path / "once.mcap").apart == 4
+    end_ns = START_NS + 10 * FRAME_NS
+    chosen = Selection(include=("pose/*",), end_ns=end_ns)
+    assert convert(paths, tmp_path / "part.mcap", chosen).apart == 1
+    assert apart_in(tmp_path / "part.mcap") == recorded[:1]
+    files = convert(paths, tmp_path / "split.mcap", split=0.33).files
+    assert [one for file in files for one in apart_in(file.path)] == recorded

@@ -6,8 +6,10 @@ import time
 from io import BytesIO
 from pathlib import Path
 
+import inhand_recorder
 import numpy as np
 import trimesh
+from inhand_recorder.attachments import attach_mesh, meshes_in
 from inhand_recorder.journal import Journal
 from inhand_recorder.provenance import (
     OBJECTS_RECORD,
@@ -114,3 +116,19 @@ def test_a_damaged_attachment_is_told_and_not_saved(tmp_path: Path) -> None:
     saved = tmp_path / "saved.mcap"
     recover_recording(path, saved)
     assert attachments(saved) == {}
+
+
+def test_the_meshes_of_a_file_that_was_cut_off_or_grows_are_read(tmp_path: Path) -> None:
+    whole, part = tmp_path / "whole.mcap", tmp_path / "cut.mcap.part"
+    with RecordingWriter(whole) as writer:
+        writer.add_metadata("session", {"participant": "p01"})
+        for name in ("mug", "broom"):
+            attach_mesh(writer, name, name.encode() * 100, 1)
+        key, message, payload = frame_messages(0, 1)[2]
+        stamp = {"received_ns": message.time_ns, "captured_ns": message.time_ns, "sequence": 0}
+        writer.write(key, payload, **stamp)
+    data = bytearray(whole.read_bytes())
+    data[data.index(b"broombroom")] ^= 1
+    part.write_bytes(data[: data.index(payload) + len(payload)])
+    with inhand_recorder.open(part) as recording:
+        assert meshes_in(recording.attachments()) == {"mug": b"mug" * 100}

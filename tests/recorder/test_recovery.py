@@ -241,7 +241,7 @@ def test_what_the_queue_dropped_is_still_told(tmp_path: Path) -> None:
 def test_a_full_disk_is_told_and_leaves_no_file(
     whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def write(file: PartFile, data: bytes) -> int:
+    def write(file: PartFile, *parts: bytes) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(PartFile, "write", write)

@@ -102,6 +102,43 @@ def test_only_whole_files_of_a_recorder_in_the_folder_itself_are_deleted(tmp_pat
     assert "recover or move away" in str(kept.retention.problem)
 
 
+def test_what_no_quota_deletes_is_counted_and_said_once(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    recording(tmp_path, 1, ours=False)  # as release 0.1.0 wrote them
+    recording(tmp_path, 2).rename(tmp_path / "precious.mcap")
+    recording(tmp_path, 3)
+    recording(tmp_path / "clips", 4)
+    kept = Kept(tmp_path, Quotas(keep_bytes=100 * SIZE))
+    for _ in range(3):
+        assert kept.tidy() == []
+    foreign, clips = kept.retention.foreign, kept.retention.clips
+    assert (foreign.files, clips.files) == (2, 1)
+    assert abs(foreign.bytes - 2 * SIZE) < 5000
+    assert abs(kept.retention.folder_bytes - 3 * SIZE) < 5000
+    (line,) = [one.getMessage() for one in caplog.records]
+    assert line.startswith(f"no quota deletes 2 recordings in {tmp_path} (2.1 MB)")
+    assert kept.retention.problem is None
+    without = Kept(tmp_path, Quotas())
+    without.tidy()
+    assert len(caplog.records) == 1
+
+
+def test_clips_that_alone_take_more_than_is_to_be_kept_are_a_trouble(tmp_path: Path) -> None:
+    paths = [recording(tmp_path / "clips", day) for day in (1, 2, 3)]
+    ours = recording(tmp_path, 4)
+    kept = Kept(tmp_path, Quotas(keep_bytes=2 * SIZE))
+    assert kept.tidy() == []
+    assert "clips take more than 2.1 MB (keep_bytes), and no quota deletes" in str(
+        kept.retention.problem
+    ).replace(f"in {tmp_path / 'clips'} ", "")
+    paths[0].unlink()
+    paths[1].unlink()
+    kept.tidy()
+    assert kept.retention.problem is None
+    assert ours.exists()
+
+
 def test_a_nearly_full_disk_costs_the_oldest_or_stops_as_is_chosen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

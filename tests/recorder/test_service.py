@@ -11,7 +11,7 @@ from inhand_recorder.losses import LOSSES_RECORD, Losses, parse_losses
 from inhand_recorder.verification import examine_recording, verify_recording
 from inhand_runtime.recording import read_metadata, read_recording
 from inhand_schemas.keys import Site
-from inhand_schemas.messages import RgbdFrame
+from inhand_schemas.messages import ColourImage, RgbdFrame
 from inhand_schemas.topics import INFO, POSE, RGBD
 from recordings import flaws
 from running_recorder import RGBD_KEY, frames_in, numbers, recordings, start_recorder
@@ -50,9 +50,12 @@ def test_sigterm_finishes_the_file_within_two_seconds(rig: RunningRig) -> None:
     assert verify_recording(path) == []
 
 
-def test_kill_9_loses_half_a_second_at_the_most_and_recover_saves_the_rest(rig: RunningRig) -> None:
-    recorder = start_recorder(rig)
-    rig.publisher("--frame-bytes", "1000")
+@pytest.mark.parametrize("colour", ["published", "h264"])
+def test_kill_9_loses_half_a_second_at_the_most_and_recover_saves_the_rest(
+    rig: RunningRig, colour: str
+) -> None:
+    recorder = start_recorder(rig, f'colour = "{colour}"')
+    rig.publisher("--pictures")
     eventually("60 frames on the disk", lambda: frames_in(rig) >= 60)
     killed_ns = time.time_ns()
     assert recorder.stop(signal.SIGKILL) == -signal.SIGKILL
@@ -64,6 +67,33 @@ def test_kill_9_loses_half_a_second_at_the_most_and_recover_saves_the_rest(rig: 
     frames = [m for m in read_recording(saved) if m.key == RGBD_KEY]
     assert [frame.sequence for frame in frames] == list(range(len(frames)))
     assert killed_ns - frames[-1].received_ns < 0.5e9  # a quarter where the machine is not busy
+    assert any(frame.coded for frame in frames) == (colour == "h264")
+    assert all(frame.message() for frame in frames)
+
+
+def test_split_files_with_h264_stand_alone_and_what_is_no_picture_is_said(
+    rig: RunningRig, wire: Wire
+) -> None:
+    recorder = start_recorder(rig, 'colour = "h264"\nsplit_seconds = 1')
+    rig.publisher("--frames", "60", "--pictures")
+    eventually("60 frames on the disk", lambda: frames_in(rig) == 60)
+    attic = wire.publisher(RGBD, "attic")
+    eventually("the recorder listens", attic.wanted)
+    image = ColourImage("jpeg", 64, 48, b"no picture")
+    attic.put(RgbdFrame(sequence=0, time_ns=time.time_ns(), colour=image))
+    told = f"{RGBD_KEY.replace('front', 'attic')}: colour is recorded as it came: damaged JPEG"
+    recorder.said(told)
+    reply = rig.done("recorder", "status", "--config", rig.config)
+    assert "colour as H.264" in reply.stdout
+    assert recorder.stop() == 0
+    paths = sorted(recordings(rig), key=lambda path: inspect_recording(path).start_ns)
+    assert len(paths) >= 2
+    assert numbers(paths) == list(range(60))
+    for path in paths:
+        assert [line for line in verify_recording(path) if "attic" not in line] == []
+        frames = [one for one in read_recording(path) if one.key == RGBD_KEY]
+        assert all(one.message() for one in frames)
+    assert any(one.coded for path in paths for one in read_recording(path))
 
 
 def test_a_recorder_that_starts_late_still_gets_the_calibration(rig: RunningRig) -> None:

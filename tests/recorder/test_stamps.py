@@ -46,3 +46,9 @@ def test_all_streams_together_wait_in_no_more_than_the_queue(streams: tuple[str,
     assert shares.keys() == set(streams)
     assert sum(shares.values()) <= 1 << 20
     assert min(shares.values()) > 0
+
+
+def test_h264_is_not_for_the_wire() -> None:
+    coded = RgbdFrame(sequence=7, time_ns=5, colour=ColourImage("h264", 64, 48, b"", 3))
+    with pytest.raises(MessageError, match="not for the wire"):
+        entry_of(Received(KEY, RGBD.encode(coded), RGBD.encoding, 0))

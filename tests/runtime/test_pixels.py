@@ -107,3 +107,10 @@ def test_depth_that_does_not_fill_its_image_is_refused(size: int, says_its_size:
     compressor = zstandard.ZstdCompressor(write_content_size=says_its_size)
     with pytest.raises(MessageError, match="damaged depth"):
         decode_depth(DepthImage("z16-zstd", 64, 48, compressor.compress(bytes(size))))
+
+
+def test_colour_that_only_recordings_hold_is_refused() -> None:
+    coded = ColourImage("h264", 64, 48, b"")
+    for decode in (decode_colour, decode_grey):
+        with pytest.raises(MessageError, match="from recordings alone"):
+            decode(coded)

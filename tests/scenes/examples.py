@@ -105,6 +105,13 @@ EXAMPLES: tuple[Message, ...] = (
         duration_ns=2_500_000_000,
         evidence={"tilt": 0.5, "height": 1.25},
         description="drank from the mug",
+        id="5d1c0a7c8a1b4f0e9d2c3b4a",
+        probability=0.875,
+        amounts={"volume_ml": 20.5},
+        deviations={"volume_ml": 8.0},
+        rig_from_object=POSE,
+        first_sequence=101,
+        last_sequence=176,
     ),
     Health(
         sequence=8,
@@ -148,6 +155,12 @@ KEEPING = replace(
     recording=RECORDING,
 )
 UNMEASURED = replace(LATE, service="outcomes", instance="home", effort=None, paused=True)
+UNMANAGED = replace(
+    PAUSED,
+    recording=RecordingState(
+        folder_bytes=1 << 33, unmanaged=2, unmanaged_bytes=1 << 32, clips_bytes=1 << 31
+    ),
+)
 REFUSED = replace(LATE, topics={"(other keys)": TopicHealth(refused=12)})
 
 PNG = RgbdFrame(
@@ -181,12 +194,14 @@ NAMED = Skeletons(sequence=12, time_ns=TIME_NS, people=(PERSON,), convention="az
 
 GOLDEN_MESSAGES: dict[str, Message] = {
     **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
+    "Event.v1.sip": next(one for one in EXAMPLES if isinstance(one, Event)),
     "Health.v1.keeping": KEEPING,
     "Health.v1.unmeasured": UNMEASURED,
     "Health.v1.late": LATE,
     "Health.v1.paused": PAUSED,
     "Health.v1.refused": REFUSED,
     "Health.v1.shutter": SHUT,
+    "Health.v1.unmanaged": UNMANAGED,
     "ObjectPose.v1.truth": TRUTH,
     "RgbdFrame.v1.png": PNG,
     "Skeletons.v1.convention": NAMED,

@@ -1,8 +1,9 @@
 """Kills a recorder at random moments, and says how much of what came is missing afterwards.
 
 ``python tests/scenes/killed_recorder.py --times 10``: frames of 164 kB and poses come 30 times a
-second. After each kill what is left is recovered and verified; missing is the time from the last
-message that was saved to the kill, less the time between two messages.
+second, or with ``--colour h264`` pictures that are coded. After each kill what is left is recovered
+and verified; missing is the time from the last message that was saved to the kill, less the time
+between two messages.
 """
 
 import argparse
@@ -24,13 +25,14 @@ PERIOD_S = 1.0 / 30.0
 MOST_MISSING_S = 0.25
 
 
-def missing_after_kills(folder: Path, times: int, seed: int) -> list[float]:
+def missing_after_kills(folder: Path, times: int, seed: int, colour: str) -> list[float]:
     """Return the seconds that are missing after each kill; raises AssertionError for a message that
     is damaged, or missing before the end."""
     draw, rig, missing = random.Random(seed), RunningRig(folder), []
     try:
-        rig.configure(f'[recorder.disk]\nfolder = "{folder}/disk"')
-        rig.publisher("--frame-bytes", str(FRAME_BYTES))
+        rig.configure(f'[recorder.disk]\nfolder = "{folder}/disk"\ncolour = "{colour}"')
+        pictures = ["--frame-bytes", str(FRAME_BYTES)] if colour == "published" else ["--pictures"]
+        rig.publisher(*pictures)
         for number in range(times):
             missing.append(_missing_after_kill(rig, folder, number, draw))
     finally:
@@ -52,6 +54,7 @@ def _missing_after_kill(rig: RunningRig, folder: Path, number: int, draw: random
     frames = list(read_recording(saved, streams=["rgbd"]))
     numbers = [frame.sequence for frame in frames]
     assert numbers == list(range(numbers[0], numbers[-1] + 1)), "frames are missing in the middle"
+    assert all(frame.message() for frame in frames[-40:]), "a frame cannot be decoded"
     return max((killed_ns - frames[-1].received_ns) / 1e9 - PERIOD_S, 0.0)
 
 
@@ -60,9 +63,10 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--times", type=int, default=10)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--colour", choices=("published", "h264"), default="published")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="inhand_killed_") as name:
-        missing = missing_after_kills(Path(name), arguments.times, arguments.seed)
+        missing = missing_after_kills(Path(name), arguments.times, arguments.seed, arguments.colour)
     print(json.dumps({"missing_s": [round(one, 3) for one in missing], "most": max(missing)}))
     return int(max(missing) > MOST_MISSING_S)
 

@@ -52,7 +52,8 @@ def _zeros_left_out() -> Iterator[None]:
     """Let files have holes where nothing but zeros would stand."""
     usual_write, usual_sync = PartFile.write, PartFile.sync
 
-    def write(self: PartFile, data: bytes) -> int:
+    def write(self: PartFile, *parts: bytes) -> None:
+        data = b"".join(parts)
         for start in range(0, len(data), len(BLOCK)):
             block = data[start : start + len(BLOCK)]
             if block == BLOCK:
@@ -60,7 +61,6 @@ def _zeros_left_out() -> Iterator[None]:
                 self.bytes_written += len(BLOCK)
             else:
                 usual_write(self, block)
-        return len(data)
 
     def sync(self: PartFile) -> None:
         self._file.truncate(self.bytes_written)

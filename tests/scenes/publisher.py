@@ -7,6 +7,8 @@ import sys
 import threading
 import time
 
+from coded_rig import picture
+from inhand_runtime.pixels import encode_colour
 from inhand_runtime.session import Publisher, open_session
 from inhand_runtime.settings import ZenohSettings
 from inhand_schemas.keys import Site
@@ -31,10 +33,13 @@ def main() -> int:
     parser.add_argument("--frame-bytes", type=int, default=1000)
     parser.add_argument("--newer", action="store_true", help="publish version 2 as well")
     parser.add_argument("--skip", type=int, action="append", default=[])
+    parser.add_argument("--pictures", action="store_true", help="frames show something")
     chosen = parser.parse_args()
     stop = threading.Event()
     signal.signal(signal.SIGTERM, lambda *_: stop.set())
-    pixels = os.urandom(chosen.frame_bytes)
+    pixels = [os.urandom(chosen.frame_bytes)]
+    if chosen.pictures:
+        pixels = [encode_colour(picture(number, WIDTH, HEIGHT)).data for number in range(32)]
     site = Site()
     with open_session(ZenohSettings(meeting=chosen.meeting)) as session:
 
@@ -66,7 +71,8 @@ def main() -> int:
             if number in chosen.skip:
                 continue
             stamp = {"sequence": number, "time_ns": time.time_ns()}
-            frames.put(RgbdFrame(**stamp, colour=ColourImage("jpeg", WIDTH, HEIGHT, pixels)))
+            data = pixels[number % len(pixels)]
+            frames.put(RgbdFrame(**stamp, colour=ColourImage("jpeg", WIDTH, HEIGHT, data)))
             poses.put(
                 ObjectPose(**stamp, object=OBJECT, camera=CAMERA, state="lost", confidence=0.0)
             )

@@ -85,15 +85,19 @@ def inputs(number: int, seed: int) -> Iterator[tuple[AnyTopic, bytes]]:
 
 
 def decodes(topic: AnyTopic, data: bytes) -> bool:
-    """Whether ``data`` is valid; any other end than MessageError goes through."""
+    """Whether ``data`` is valid; any other end than MessageError goes through. A look at it has to
+    find the same."""
     start = time.monotonic()
     try:
         message = topic.decode(data)
     except MessageError:
+        with pytest.raises(MessageError):
+            topic.check(data)
         return False
     finally:
         assert time.monotonic() - start < SECONDS_AN_INPUT
     assert topic.decode(topic.encode(message)) == message
+    topic.check(data)
     return True
 
 

@@ -39,6 +39,16 @@ def test_a_message_decodes_to_itself(stream: str, data: st.DataObject) -> None:
     assert topic.encode(topic.decode(encoded)) == encoded
 
 
+@streams
+@given(data=st.data())
+def test_a_look_at_a_message_says_what_it_decodes_to(stream: str, data: st.DataObject) -> None:
+    topic, message = TOPICS[stream], data.draw(MESSAGES[stream])
+    encoded = topic.encode(message)
+    looked = topic.check(encoded, topic.encoding)
+    assert isinstance(looked, topic.message_type)
+    assert msgspec.msgpack.encode(looked) == encoded
+
+
 @given(messages)
 def test_bare_msgpack_reads_what_a_message_says(drawn: tuple[AnyTopic, Message]) -> None:
     topic, message = drawn
@@ -75,6 +85,16 @@ def changed(message: Message, **fields: Any) -> bytes:
 
 
 EXAMPLE = {type(message): message for message in EXAMPLES}
+
+
+def test_a_look_at_a_frame_copies_no_picture() -> None:
+    encoded = RGBD.encode(EXAMPLE[RgbdFrame])
+    looked = RGBD.check(encoded)
+    assert looked.colour is not None
+    assert looked.depth is not None
+    for picture in (looked.colour.data, looked.depth.data):
+        assert isinstance(picture, memoryview)
+        assert picture.obj is encoded
 
 
 @pytest.mark.parametrize(

@@ -62,7 +62,7 @@ class FrameIndex:
     def pixels(self, frame: int) -> RgbdFrame | None:
         """Read the pixels of a frame, which ``pixels_of`` would yield with it; None without any."""
         number = int(self._pixel_numbers[frame])
-        return None if number < 0 else RGBD.decode(self._pixels[number].payload)
+        return None if number < 0 else self._pixels[number].frame()
 
     def camera_info(self) -> CameraInfo | None:
         """Read the first description of the camera; None without any."""

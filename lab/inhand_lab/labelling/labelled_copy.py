@@ -76,10 +76,12 @@ def write_labels(
     messages = _messages(scene, object_name, labels)
     with written_or_gone(output) as writer:
         number = 0
-        for recorded in read_recording(scene.path):
-            if recorded.topic is LABEL and recorded.name == object_name:
+        for recorded in read_recording(scene.path, apart=True):
+            copied = recorded.topic is not LABEL or recorded.name != object_name
+            if copied or recorded.apart:
+                copy_message(writer, recorded)
+            if recorded.apart:
                 continue
-            copy_message(writer, recorded)
             if recorded.topic is SKELETONS and recorded.name == scene.camera:
                 label, number = messages[number], number + 1
                 if label is not None:

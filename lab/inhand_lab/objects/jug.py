@@ -23,26 +23,33 @@ SPOUT = np.array([0.0, JUG_RIM + SPOUT_REACH, JUG_HEIGHT / 2.0 + 0.004])
 """Tip of the spout in the jug's frame."""
 CREAM = (238, 232, 214)
 
+_HALF = JUG_HEIGHT / 2.0
+JUG_OUTSIDE = (
+    (0.0, -_HALF),
+    (0.025, -_HALF),
+    (0.028, -_HALF + 0.004),
+    (0.035, -0.026),
+    (JUG_BELLY, -0.012),
+    (0.034, 0.006),
+    (0.027, 0.026),
+    (0.028, 0.036),
+    (JUG_RIM, _HALF),
+)
+"""Radii and heights of the jug's outside without its spout, from below, metres."""
+JUG_INSIDE = (
+    *((radius - JUG_WALL, z) for radius, z in JUG_OUTSIDE[:2:-1]),
+    (0.024, -_HALF + 0.006),
+)
+"""The same of its inside, from the rim to the bottom's edge."""
+
 
 @cache
 def jug() -> ObjectModel:
     """A jug standing along z, its spout towards +y; the origin is the middle of its height."""
-    half = JUG_HEIGHT / 2.0
-    outer = [
-        (0.0, -half),
-        (0.025, -half),
-        (0.028, -half + 0.004),
-        (0.035, -0.026),
-        (JUG_BELLY, -0.012),
-        (0.034, 0.006),
-        (0.027, 0.026),
-        (0.028, 0.036),
-        (JUG_RIM, half),
-    ]
-    inner = [(radius - JUG_WALL, z) for radius, z in outer[:1:-1]]
-    inner[-1] = (0.024, -half + 0.006)
-    vessel = creation.revolve(np.array([*outer, *inner, (0.0, -half + 0.006)]), sections=40)
-    vessel = trimesh.Trimesh(_with_spout(np.asarray(vessel.vertices)), vessel.faces, process=False)
+    half = _HALF
+    outline = np.array([*JUG_OUTSIDE, *JUG_INSIDE, (0.0, -half + 0.006)])
+    vessel = creation.revolve(outline, sections=40)
+    vessel = trimesh.Trimesh(with_spout(np.asarray(vessel.vertices)), vessel.faces, process=False)
     angles = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 13)
     loop = np.stack(
         [
@@ -65,7 +72,7 @@ def jug() -> ObjectModel:
     return build_model("jug", [(vessel, CREAM), (tube(loop, 0.005), CREAM)], marks)
 
 
-def _with_spout(vertices: Array) -> Array:
+def with_spout(vertices: Array) -> Array:
     """A vessel's vertices (V, 3) with the rim drawn out and up about +y."""
     x, y, z = vertices.T
     high = np.clip((z - 0.020) / (JUG_HEIGHT / 2.0 - 0.020), 0.0, 1.0) ** 2

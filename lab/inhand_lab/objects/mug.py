@@ -13,6 +13,8 @@ from inhand_lab.objects.model import ObjectModel, build_model, tube, turned
 MUG_HEIGHT = 0.096
 MUG_RADIUS = 0.041
 MUG_WALL = 0.004
+MUG_BOTTOM = 0.006
+"""Thickness of the mug's bottom."""
 MUG_HANDLE_REACH = 0.033
 """Distance from the mug's wall to the middle of its handle's bar."""
 RED = (178, 40, 46)
@@ -67,8 +69,8 @@ def _cup(measures: MugMeasures) -> trimesh.Trimesh:
         (radius, -half + 0.004),
         (radius, half),
         (radius - wall, half),
-        (radius - wall, -half + 0.006),
-        (0.0, -half + 0.006),
+        (radius - wall, -half + MUG_BOTTOM),
+        (0.0, -half + MUG_BOTTOM),
     ]
     return turned(outline, sections=40)
 

@@ -12,10 +12,10 @@ import numpy as np
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import CameraInfo, Pose
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from inhand_outcomes.arrays import Array, Flags
 from inhand_outcomes.room import CAMERA_UP, Room
+from inhand_outcomes.rotations import matrices
 
 FEET = (Joint.ANKLE_LEFT, Joint.ANKLE_RIGHT, Joint.FOOT_LEFT, Joint.FOOT_RIGHT)
 HIPS = (Joint.HIP_CENTER, Joint.HIP_LEFT, Joint.HIP_RIGHT)
@@ -86,8 +86,7 @@ class Floor:
 
     def in_rig(self, rig_from_camera: Pose) -> "Floor":
         """A floor in the camera's frame as one of the rig's."""
-        turn = Rotation.from_quat(rig_from_camera.rotation, scalar_first=True)
-        up = turn.apply(self.up)
+        up = matrices(rig_from_camera.rotation) @ self.up
         height = self.height + float(up @ np.array(rig_from_camera.translation))
         return Floor(up, height, self.up_deviation_deg, self.height_deviation_m, self.area_m2)
 

@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from inhand_schemas.messages import CameraInfo
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from inhand_outcomes.arrays import Array, Flags
 from inhand_outcomes.measures.footprint import CELL_M, footprint_of, swept_cells
 from inhand_outcomes.measures.sweeping import groups_of, strokes
 from inhand_outcomes.room import Room
+from inhand_outcomes.rotations import matrices
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -161,7 +161,7 @@ def with_depth(
     points = _in_room(depth, info, room, parameters)
     for joints in people:
         known = joints[np.isfinite(joints).all(axis=1)]
-        body = (room.rotation.apply(known) + room.translation)[:, :2] if len(known) else known
+        body = (known @ room.matrix.T + room.translation)[:, :2] if len(known) else known
         for joint in body:
             points = points[np.linalg.norm(points[:, :2] - joint, axis=1) > parameters.person_m]
     cells = np.floor((points[:, :2] - floor_map.corner) / CELL_M).astype(int)
@@ -241,8 +241,8 @@ def _in_room(
     y = (v.ravel()[near] * info.height / rows - info.cy) / info.fy
     points = np.stack([x, y, np.ones(len(x))], axis=1) * z[near, None]
     pose = info.rig_from_camera
-    in_rig = Rotation.from_quat(pose.rotation, scalar_first=True).apply(points) + pose.translation
-    return np.asarray(room.rotation.apply(in_rig) + room.translation)
+    in_rig = points @ matrices(pose.rotation).T + np.array(pose.translation)
+    return in_rig @ room.matrix.T + room.translation
 
 
 def _any(cells: NDArray[np.int64], size: tuple[int, int]) -> NDArray[np.int32]:

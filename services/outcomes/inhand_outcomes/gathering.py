@@ -1,16 +1,16 @@
 """The last seconds of each object in each person's hands, put together from messages."""
 
 from collections import OrderedDict, deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from inhand_schemas.messages import CameraInfo, ObjectPose, Person, Pose, Skeletons
-from scipy.spatial.transform import Rotation
 
 from inhand_outcomes.arrays import Array
 from inhand_outcomes.parameters import DEFAULT_GATHERING, GatheringParameters
 from inhand_outcomes.room import Room
+from inhand_outcomes.rotations import matrices, multiply
 from inhand_outcomes.track import Track
 
 NS_PER_S = 1_000_000_000
@@ -111,11 +111,7 @@ class Sightings:
 
     def joints(self, camera: str, person: Person) -> Array:
         """A person's joints (20, 3) in the rig, NaN where missing."""
-        joints = np.array(person.joints)
-        joints[[state == "missing" for state in person.states]] = np.nan
-        rig_from_camera = self._rig_from_camera.get(camera, STILL)
-        turn = Rotation.from_quat(rig_from_camera.rotation, scalar_first=True)
-        return np.asarray(turn.apply(joints) + rig_from_camera.translation)
+        return joints_of(person, self._rig_from_camera.get(camera))
 
     def sighting(self, message: ObjectPose) -> tuple[Holding, Sighting] | None:
         """Whose track a pose belongs to, and what it says; None before the object was ever seen.
@@ -124,16 +120,16 @@ class Sightings:
         """
         holding = Holding(message.object, message.person)
         rig_from_camera = self._rig_from_camera.get(message.camera, STILL)
-        turn = Rotation.from_quat(rig_from_camera.rotation, scalar_first=True)
+        turn = matrices(rig_from_camera.rotation)
         pose = self._last.get(holding)
         covariance = np.eye(6)
         if message.camera_from_object is not None:
-            inner = Rotation.from_quat(message.camera_from_object.rotation, scalar_first=True)
-            place = turn.apply(message.camera_from_object.translation) + rig_from_camera.translation
-            rotation = (turn * inner).as_quat(canonical=True, scalar_first=True)
+            inner = message.camera_from_object
+            place = turn @ np.array(inner.translation) + rig_from_camera.translation
+            rotation = multiply(np.array(rig_from_camera.rotation), np.array(inner.rotation))
             pose = np.concatenate([place, rotation])
             if message.covariance is not None:
-                both = np.kron(np.eye(2), turn.as_matrix())
+                both = np.kron(np.eye(2), turn)
                 covariance = both @ np.array(message.covariance).reshape(6, 6) @ both.T
         if pose is None:
             return None
@@ -150,8 +146,12 @@ class Sightings:
             joints = self.joints(message.camera, person)
         return holding, Sighting(message.time_ns, message.sequence, pose, covariance, seen, joints)
 
-    def all_joints(self) -> Iterator[Array]:
-        """Joints (20, 3) in the rig of everybody in the frames that wait."""
-        for (camera, _), people in self._people.items():
-            for person in people.values():
-                yield self.joints(camera, person)
+
+def joints_of(person: Person, rig_from_camera: Pose | None = None) -> Array:
+    """A person's joints (20, 3), NaN where missing, in the rig, or else as the camera has them."""
+    joints = np.array(person.joints)
+    joints[[state == "missing" for state in person.states]] = np.nan
+    if rig_from_camera is None:
+        return joints
+    turn = matrices(rig_from_camera.rotation)
+    return joints @ turn.T + np.array(rig_from_camera.translation)

@@ -5,11 +5,11 @@ from itertools import groupby, pairwise
 
 import numpy as np
 from inhand_schemas.joints import Joint
-from scipy.special import ndtr
 
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array, Flags, Indices
 from inhand_outcomes.hands import hand_distances
+from inhand_outcomes.normal import normal_share
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -198,7 +198,7 @@ def _taken_up(
     track: Track, lying: Stretch, held: Stretch, parameters: HandlingParameters
 ) -> list[Achievement]:
     moved, deviation = _moved(track, lying, held)
-    probability = float(ndtr((moved - parameters.moved_m) / deviation))
+    probability = float(normal_share((moved - parameters.moved_m) / deviation))
     start = float(track.times[lying.last])
     evidence = {"moved_m": float(moved), **_seen(track, lying, held)}
     return [_achievement(TAKEN_UP, start, float(track.times[held.first]), probability, evidence)]
@@ -209,7 +209,7 @@ def _put_down(
 ) -> list[Achievement]:
     moved, deviation = _moved(track, lying, held)
     place, spread = _place(track, lying)
-    probability = float(ndtr((moved - parameters.moved_m) / deviation))
+    probability = float(normal_share((moved - parameters.moved_m) / deviation))
     times = track.times
     around = np.abs(times - times[lying.first]) <= parameters.longest_fall_s
     hands = track.joints[around][:, (Joint.HAND_LEFT, Joint.HAND_RIGHT)]

@@ -15,7 +15,7 @@ SURFACE_POINTS = 64
 def hand_distances(track: Track, thing: Thing) -> Array:
     """Distance (T, 2) of the left and the right hand from a thing, metres; NaN where missing."""
     hands = track.joints[:, HANDS] - track.positions[:, None]
-    turned = np.einsum("tji,thj->thi", track.rotations.as_matrix(), hands)
+    turned = np.einsum("tji,thj->thi", track.matrices, hands)
     points = surface_points(thing.vertices)
     return np.linalg.norm(turned[:, :, None] - points, axis=-1).min(axis=-1)
 

@@ -29,6 +29,11 @@ class _Remembered(msgspec.Struct, frozen=True):
     going_on: list[Outcome]
 
 
+class _State(msgspec.Struct, frozen=True):
+    followed: list[_Remembered]
+    told: dict[str, dict[str, Outcome]]
+
+
 class _Piece(msgspec.Struct, frozen=True):
     object: str
     person: int | None
@@ -61,7 +66,10 @@ class Memory:
                 entries[name] = None
                 del self._pieces[name]
         state = msgspec.msgpack.encode(
-            [_remembered(holding, one) for holding, one in self._watcher.followed.items()]
+            _State(
+                [_remembered(holding, one) for holding, one in self._watcher.followed.items()],
+                self._watcher.told,
+            )
         )
         if state != self._state:
             entries[STATE] = self._state = state
@@ -75,9 +83,12 @@ class Memory:
             raise ValueError(f"no journal of a watcher: {error}") from None
 
     def _recall(self, entries: Mapping[str, bytes]) -> None:
-        remembered = msgspec.msgpack.decode(entries.get(STATE, b"\x90"), type=list[_Remembered])
+        if STATE not in entries:
+            return
+        state = msgspec.msgpack.decode(entries[STATE], type=_State)
+        self._watcher.told.update(state.told)
         followed: dict[Holding, Followed] = {}
-        for one in remembered:
+        for one in state.followed:
             holding = Holding(one.object, one.person)
             followed[holding] = self._watcher.follow(holding, one.measured_ns)
             followed[holding].said_until_ns = dict(one.said_until_ns)

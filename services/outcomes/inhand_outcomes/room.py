@@ -3,9 +3,9 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from inhand_outcomes.arrays import Array
+from inhand_outcomes.rotations import multiply, of_matrix
 from inhand_outcomes.track import Track
 
 CAMERA_UP = np.array([0.0, -1.0, 0.0])
@@ -21,13 +21,13 @@ class Room:
     floor_height: float | None = None
 
     @property
-    def rotation(self) -> Rotation:
-        """room_from_rig's rotation: up becomes z, and the rig's z, as far as it is level, y."""
+    def matrix(self) -> Array:
+        """room_from_rig's rotation (3, 3): up becomes z; the rig's z, as far as it is level, y."""
         forward = np.array([0.0, 0.0, 1.0]) - self.up[2] * self.up
         if np.linalg.norm(forward) < 0.1:  # a camera that looks straight up or down
             forward = np.array([0.0, 1.0, 0.0]) - self.up[1] * self.up
         forward /= np.linalg.norm(forward)
-        return Rotation.from_matrix(np.stack([np.cross(forward, self.up), forward, self.up]))
+        return np.stack([np.cross(forward, self.up), forward, self.up])
 
     @property
     def translation(self) -> Array:
@@ -36,13 +36,13 @@ class Room:
 
     def place(self, track: Track) -> Track:
         """Bring a track from the rig's frame into the room's."""
-        turn = self.rotation
-        both = np.kron(np.eye(2), turn.as_matrix())
-        rotations = (turn * track.rotations).as_quat(canonical=True, scalar_first=True)
-        joints = track.joints @ turn.as_matrix().T + self.translation
+        turn = self.matrix
+        both = np.kron(np.eye(2), turn)
+        rotations = multiply(of_matrix(turn), track.poses[:, 3:])
+        joints = track.joints @ turn.T + self.translation
         return replace(
             track,
-            poses=np.hstack([turn.apply(track.positions) + self.translation, rotations]),
+            poses=np.hstack([track.positions @ turn.T + self.translation, rotations]),
             covariances=both @ track.covariances @ both.T,
             joints=joints,
             floor=self.floor_height is not None,

@@ -7,17 +7,19 @@ from dataclasses import dataclass
 from datetime import date
 from importlib.metadata import version
 
-from inhand_runtime.daemon import Daemon, running_daemon
+from inhand_runtime.daemon import Arrivals, Daemon, running_daemon
 from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import Received
 from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
-from inhand_schemas.messages import Event
-from inhand_schemas.topics import EVENT, INFO, POSE, SKELETONS, topic_of
+from inhand_schemas.errors import MessageError
+from inhand_schemas.messages import Event, RgbdFrame
+from inhand_schemas.topics import EVENT, INFO, POSE, RGBD, SKELETONS, topic_of
 from msgspec.structs import replace
 
 from inhand_outcomes.capture_clock import CaptureClock
 from inhand_outcomes.days import local_day
+from inhand_outcomes.floor_watch import FloorWatch
 from inhand_outcomes.handling import LEFT_IN_USE
 from inhand_outcomes.homeassistant.home import Home, Place
 from inhand_outcomes.keeping import open_kept
@@ -27,6 +29,7 @@ from inhand_outcomes.rules import Rules
 from inhand_outcomes.settings import OutcomesSettings, check
 from inhand_outcomes.store.database import Database
 from inhand_outcomes.store.failures import StoreError
+from inhand_outcomes.store.floor_maps import floor_maps, keep_floor_map
 from inhand_outcomes.store.forgetting import Forget, forget
 from inhand_outcomes.store.goal_marks import events_to_publish, judge_goals, mark_published
 from inhand_outcomes.store.retention import Retention, remove_old
@@ -112,6 +115,8 @@ class OutcomesLoop:
 
     def __post_init__(self) -> None:
         self._clock = CaptureClock()
+        self._floors = FloorWatch(self.watcher.floors.see)
+        self._frames: Arrivals | None = None
         self._memory = Memory(self.watcher)
         self._events: Publisher[Event] = self.daemon.publisher(EVENT, self.daemon.instance)
         self._published = 0
@@ -131,12 +136,24 @@ class OutcomesLoop:
             if sample is not None:
                 settled += self._hear(sample)
             if time.monotonic() >= next_save:
+                self._look_for_floor()
                 settled += self.watcher.end_quiet(self._clock.now_ns())
                 self._save(settled)
                 settled = []
                 next_save = time.monotonic() + SAVE_PERIOD_S
         self._save(settled)
         self.waiting.close()
+
+    def _look_for_floor(self) -> None:
+        """Let frames arrive while one is to be looked at, and no longer: they are large."""
+        wanted = not self._paused and self._floors.wants_frame(self._clock.now_ns())
+        if wanted and self._frames is None:
+            self._frames = self.daemon.subscribe(RGBD, samples=1)
+        elif not wanted and self._frames is not None:
+            self.daemon.unsubscribe(self._frames)
+            self._frames = None
+        if self._floors.room is not None:
+            self.watcher.room = self._floors.room
 
     def _hear(self, sample: Received) -> list[Outcome]:
         """Take one message; what is settled by it."""
@@ -151,11 +168,19 @@ class OutcomesLoop:
             skeletons = self.daemon.decode(SKELETONS, sample)
             if skeletons is not None:
                 self._clock.hear(skeletons.time_ns)
-                return [] if self._paused else self.watcher.hear_skeletons(key.name, skeletons)
+                if self._paused:
+                    return []
+                self._floors.hear_skeletons(key.name, skeletons)
+                return self.watcher.hear_skeletons(key.name, skeletons)
         if topic is INFO:
             info = self.daemon.decode(INFO, sample)
             if info is not None:
                 self.watcher.hear_info(key.name, info)
+                self._floors.hear_info(key.name, info)
+        if topic is RGBD and not self._paused and self._floors.wants_frame(self._clock.now_ns()):
+            frame = self.daemon.decode(RGBD, sample)
+            if frame is not None:
+                self._look_at(key.name, frame, sample.key)
         return []
 
     @property
@@ -166,11 +191,20 @@ class OutcomesLoop:
         """End what is under way: what was achieved counts, and nothing is left in use by it."""
         return [outcome for outcome in self.watcher.end_all() if outcome.kind != LEFT_IN_USE]
 
+    def _look_at(self, camera: str, frame: RgbdFrame, key: str) -> None:
+        """Look for the floor in a frame; damaged depth is counted."""
+        try:
+            self._floors.hear_frame(camera, frame)
+        except MessageError as error:
+            self.daemon.health.malformed(key, error)
+
     def _recall(self) -> None:
         """Go on where the last process of this database ended, if it can be read."""
         self.waiting.save((), {}, time.monotonic())
         if self.waiting.saver is not None:
             self._memory.recall(read_journal(self.waiting.saver.database))
+            if self.home is not None:
+                self.home.recall(self.waiting.saver.database)
         self._show()
 
     def _save(self, settled: Sequence[Outcome]) -> None:
@@ -206,6 +240,10 @@ class OutcomesLoop:
             self.home.say_goals(events)
             self.home.show(database, now_ns)
         today = local_day(now_ns, self.rules.zone)
+        for kept in self.watcher.floors.to_keep():
+            keep_floor_map(database, kept)
+        if today != self.watcher.floors.day:
+            self.watcher.floors.begin(today, floor_maps(database, today))
         if today != self._tidied:
             remove_old(database, self.retention, today)
             self._tidied = today

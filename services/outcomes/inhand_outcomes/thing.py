@@ -12,7 +12,7 @@ END_SHARE = 0.05
 AXES = {"x": 0, "y": 1, "z": 2}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Thing:
     """An object whose use is measured.
 

@@ -48,6 +48,15 @@ class DayTotal:
     amounts: Mapping[str, AmountTotal] = field(default_factory=dict)
 
 
+PLACE_ENDS = ("_x_m", "_y_m", "_z_m")
+"""Ends of the names of amounts that are coordinates, whose sum and mean mean nothing."""
+
+
+def has_total(name: str) -> bool:
+    """Whether an amount of this name is part of totals: a place is not."""
+    return not name.endswith(PLACE_ENDS)
+
+
 def sum_of_amount(totals: Iterable[DayTotal], name: str) -> AmountTotal | None:
     """Put an amount of totals together; None where none has it."""
     found = [total.amounts[name] for total in totals if name in total.amounts]

@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 from inhand_schemas.joints import Joint
-from scipy.spatial.transform import Rotation
 
 from inhand_outcomes.arrays import Array, Flags, Indices
+from inhand_outcomes.rotations import matrices
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,9 @@ class Track:
         return self.poses[:, :3]
 
     @cached_property
-    def rotations(self) -> Rotation:
-        """The object's T rotations."""
-        return Rotation.from_quat(self.poses[:, 3:], scalar_first=True)
+    def matrices(self) -> Array:
+        """The object's rotation matrices (T, 3, 3)."""
+        return matrices(self.poses[:, 3:])
 
     def joint(self, joint: Joint) -> Array:
         """One joint of the person (T, 3), NaN where it is missing."""
@@ -61,13 +61,13 @@ class Track:
 
     def points(self, points: Array) -> Array:
         """Points (3,) or (K, 3) of the object's frame, in the room: (T, 3) or (T, K, 3)."""
-        turned = np.einsum("tij,...j->t...i", self.rotations.as_matrix(), points)
+        turned = np.einsum("tij,...j->t...i", self.matrices, points)
         shape = (len(self), *(1,) * (points.ndim - 1), 3)
         return np.asarray(turned + self.positions.reshape(shape))
 
     def directions(self, direction: Array) -> Array:
         """A direction (3,) of the object's frame, in the room: (T, 3)."""
-        return np.asarray(self.rotations.as_matrix() @ direction)
+        return np.asarray(self.matrices @ direction)
 
     def point_deviations(self, point: Array) -> Array:
         """Standard deviation (T,) of a point (3,) of the object's frame along any one axis, metres.

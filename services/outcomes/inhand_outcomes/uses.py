@@ -1,15 +1,23 @@
 """The uses of things: what is measured of each, and which interactions teach it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from inhand_outcomes.achievement import Achievement
+from inhand_outcomes.measures.drinking import drinking, sip_volumes
+from inhand_outcomes.measures.filming import filming
 from inhand_outcomes.measures.hammering import hammering
 from inhand_outcomes.measures.lifting import lifting
 from inhand_outcomes.measures.painting import painting
+from inhand_outcomes.measures.phoning import phoning
+from inhand_outcomes.measures.playing import playing
+from inhand_outcomes.measures.pouring import pour_volumes, pouring
+from inhand_outcomes.measures.reading import reading
 from inhand_outcomes.measures.shaking import shaking
+from inhand_outcomes.measures.shoes import shoes
 from inhand_outcomes.measures.sweeping import sweeping
 from inhand_outcomes.measures.swinging import golf, tennis
+from inhand_outcomes.measures.wearing import wearing
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -20,6 +28,13 @@ It sees a window that moves on, again and again, so what it says of one act must
 the window begins or ends; an act that the window cuts is left out, but for lasting ones.
 """
 
+Completion = Callable[[Sequence[Achievement], Sequence[Achievement]], list[Achievement]]
+"""What earlier outcomes say of what a measure has found: how much was left in a vessel, say.
+
+It takes the achievements that were found and the last settled one of each kind that the object had
+in anybody's hands, times of the same origin; it gives those that were found, completed.
+"""
+
 
 @dataclass(frozen=True)
 class Use:
@@ -27,6 +42,7 @@ class Use:
 
     measure: Measure
     interaction: str
+    complete: Completion | None = None
 
 
 USES: Mapping[str, Use] = {
@@ -37,6 +53,14 @@ USES: Mapping[str, Use] = {
     "shaking": Use(shaking, "shakeVinegar"),
     "sweeping": Use(sweeping, "sweepFloor"),
     "tennis": Use(tennis, "hitTennisBall"),
+    "drinking": Use(drinking, "drinkFromMug", sip_volumes),
+    "pouring": Use(pouring, "pourCream", pour_volumes),
+    "phoning": Use(phoning, "answerPhone"),
+    "filming": Use(filming, "recordVideo"),
+    "playing": Use(playing, "playFlute"),
+    "wearing": Use(wearing, "putOnGlasses"),
+    "reading": Use(reading, "magnifyText"),
+    "shoes": Use(shoes, "putOnShoe"),
 }
 """The uses by name."""
 

@@ -13,12 +13,15 @@ from inhand_outcomes.lasting import LastingOutcomes
 from inhand_outcomes.outcome import Outcome, outcome_id
 from inhand_outcomes.parameters import DEFAULT_GATHERING, GatheringParameters
 from inhand_outcomes.room import LEVEL, Room
+from inhand_outcomes.swept_floors import SweptFloors
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 from inhand_outcomes.uses import USES
 from inhand_outcomes.waiting_poses import WaitingPoses
 
 HANDED_OVER = "handed_over"
+SWEEPING = "sweeping"
+"""The use of which a map of the floor is kept."""
 
 
 @dataclass
@@ -46,12 +49,15 @@ class Watcher:
         parameters: GatheringParameters = DEFAULT_GATHERING,
     ) -> None:
         self.room: Room = LEVEL
+        self.floors = SweptFloors()
         self._things = things
         self._place = place
         self._parameters = parameters
         self._sightings = Sightings(parameters)
         self._waiting = WaitingPoses(parameters.frames_that_wait)
         self.followed: dict[Holding, Followed] = {}
+        self.told: dict[str, dict[str, Outcome]] = {}
+        """The last settled outcome of each object, by kind."""
 
     def hear_info(self, camera: str, info: CameraInfo) -> None:
         """Take note of where a camera stands."""
@@ -104,6 +110,7 @@ class Watcher:
     def forget(self) -> None:
         """Know nothing of what came until now."""
         self.followed.clear()
+        self.told.clear()
 
     def end_all(self) -> list[Outcome]:
         """Settle all tracks, at the end of what comes."""
@@ -155,13 +162,16 @@ class Watcher:
         settled_ns = last_ns if ended else last_ns - self._parameters.settle_s * NS_PER_S
         outcomes = []
         for lasts, outcome in found:
-            said_until_ns = followed.said_until_ns.get(outcome.kind, first_ns)
-            if not lasts and outcome.start_ns >= said_until_ns and outcome.end_ns <= settled_ns:
+            said_until_ns = followed.said_until_ns.get(outcome.kind, first_ns - 1)
+            is_new = outcome.start_ns >= said_until_ns and outcome.end_ns > said_until_ns
+            if not lasts and is_new and outcome.end_ns <= settled_ns:
                 followed.said_until_ns[outcome.kind] = outcome.end_ns
                 outcomes.append(outcome)
         lasting = [outcome for lasts, outcome in found if lasts]
         outcomes = [self._handed(holding, followed, outcome) for outcome in outcomes]
-        return outcomes + followed.lasting.follow(lasting, last_ns, ended=ended)
+        outcomes += followed.lasting.follow(lasting, last_ns, ended=ended)
+        self.told.setdefault(holding.object, {}).update({one.kind: one for one in outcomes})
+        return outcomes
 
     def _handed(self, holding: Holding, followed: Followed, outcome: Outcome) -> Outcome:
         """What was left in use is handed over, where somebody else has it then."""
@@ -185,7 +195,27 @@ class Watcher:
         counted_s = (followed.lasting.counted_ns - followed.gathering.first_ns) / NS_PER_S
         uncounted = track[track.times >= counted_s]
         if use is not None and len(uncounted) > 1:
-            yield from use.measure(uncounted, thing)
+            done = use.measure(uncounted, thing)
+            if use.complete is not None:
+                done = use.complete(done, self._earlier(holding, followed.gathering.first_ns))
+            if thing.use == SWEEPING:
+                for one in done:
+                    self.floors.sweep(holding, uncounted, thing, one.start_s, one.end_s)
+            yield from done
+
+    def _earlier(self, holding: Holding, first_ns: int) -> list[Achievement]:
+        """What was settled of an object before, as achievements of a track that began then."""
+        return [
+            Achievement(
+                outcome.kind,
+                (outcome.start_ns - first_ns) / NS_PER_S,
+                (outcome.end_ns - first_ns) / NS_PER_S,
+                outcome.probability,
+                outcome.amounts,
+                outcome.evidence,
+            )
+            for outcome in self.told.get(holding.object, {}).values()
+        ]
 
     def _outcome(self, holding: Holding, gathering: Gathering, achievement: Achievement) -> Outcome:
         start_ns, end_ns = (

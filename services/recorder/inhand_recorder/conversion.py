@@ -1,17 +1,19 @@
 """Recordings made of recordings: merged, cut, filtered and split."""
 
+import shutil
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
+from heapq import merge
 from pathlib import Path
 
 from inhand_runtime.recording import RecordedMessage, RecordingError, RecordingWriter
-from inhand_runtime.recording.copying import copy_message
+from inhand_runtime.recording.copying import StandingAlone, copy_message
 from inhand_runtime.recording.layout import LATEST_NS
 
 from inhand_recorder.attachments import attach
 from inhand_recorder.conversion_records import CONVERSION_RECORD, losses_by_source, records_of
 from inhand_recorder.losses import LossCounter
-from inhand_recorder.recording_reader import Recording
+from inhand_recorder.recording_reader import Recording, matches
 
 CONVERTING_SUFFIX = ".converting"
 
@@ -37,8 +39,8 @@ class ConvertedFile:
 
 @dataclass(frozen=True)
 class Conversion:
-    """The files that were written, and the numbers of damaged messages, by topic, and of those kept
-    apart as undecodable that none of them holds."""
+    """The files that were written, the numbers of damaged messages by topic, which none of them
+    holds, and how many they keep apart, as these could not be read on their keys."""
 
     files: tuple[ConvertedFile, ...]
     damaged: Mapping[str, int]
@@ -56,9 +58,10 @@ def convert_recording(
     """Write what is selected of an open recording, which may be of many files, to a new file.
 
     With ``split_seconds`` it is several files, ``NAME_000.mcap`` and so on, each of as many seconds
-    at the most. Each begins with the last message of each kept stream. ``on_message`` is called for
-    each message. Raises RecordingError, also where two files hold different messages of one key at
-    one time, and then leaves no file; an existing file is never changed.
+    at the most, which get their names when all are whole. Each begins with the last message of each
+    kept stream. ``on_message`` is called for each message. Raises RecordingError, also where two
+    files hold different messages of one key at one time, and then leaves no file; an existing file
+    is never changed.
     """
     keys = chosen_keys(recording, selection)
     _refuse_clashes(recording, keys)
@@ -68,18 +71,20 @@ def convert_recording(
         for before in _kept_before(recording, keys, selection.start_ns):
             outputs.remember(before)
         recording.damaged.clear()
-        for message in recording.messages(
-            keys, start_ns=selection.start_ns, end_ns=selection.end_ns
-        ):
+        times = {"start_ns": selection.start_ns, "end_ns": selection.end_ns}
+        apart = recording.messages_apart(_chosen_apart(recording, selection), **times)
+        read = recording.messages(keys, **times)
+        for message in merge(read, apart, key=lambda one: one.received_ns):
             outputs.write(message)
-            on_message()
+            if not message.apart:
+                on_message()
         if not outputs.files:
             raise RecordingError("no message is left: choose a longer time, or other topics")
-        outputs.finish()
+        outputs.publish()
     except BaseException:
         outputs.discard()
         raise
-    return Conversion(tuple(outputs.files), dict(recording.damaged), recording.apart)
+    return Conversion(tuple(outputs.files), dict(recording.damaged), outputs.apart)
 
 
 def chosen_keys(recording: Recording, selection: Selection) -> list[str]:
@@ -92,6 +97,16 @@ def chosen_keys(recording: Recording, selection: Selection) -> list[str]:
     return keys
 
 
+def _chosen_apart(recording: Recording, selection: Selection) -> list[str]:
+    """Return the keys that are selected of what is kept apart."""
+    return [
+        key
+        for key in recording.apart
+        if not any(matches(key, pattern) for pattern in selection.exclude)
+        and (not selection.include or any(matches(key, one) for one in selection.include))
+    ]
+
+
 class _Outputs:
     """Writes messages to one file, or to one after another."""
 
@@ -99,13 +114,16 @@ class _Outputs:
         self, recording: Recording, output: Path, selection: Selection, split_seconds: float
     ) -> None:
         self.files: list[ConvertedFile] = []
+        self.apart = 0
         self._sources, self._attachments = recording.metadata(), recording.attachments()
         self._output, self._selection = output, selection
+        self._split_folder = output.with_name(output.name + CONVERTING_SUFFIX)
         self._split_ns = round(1e9 * split_seconds)
         self._whole = not split_seconds and selection == Selection()
         self._kept: dict[str, RecordedMessage] = {}
         self._writer: RecordingWriter | None = None
         self._written: list[Path] = []
+        self._start_ns = self._end_ns = 0
         self._begin()
 
     def remember(self, message: RecordedMessage) -> None:
@@ -117,9 +135,14 @@ class _Outputs:
         if self._writer is not None and self._is_over(message.received_ns):
             self.finish()
         writer = self._writer or self._open(message)
+        if message.apart:
+            copy_message(writer, message)
+            self.apart += 1
+            self._end_ns = max(self._end_ns, message.received_ns)
+            return
         if message.topic.delivery.kept:
             self.remember(message)
-        copy_message(writer, message)
+        copy_message(writer, self._standing.standing(message))
         self._count(message, message.received_ns)
 
     def discard(self) -> None:
@@ -130,16 +153,35 @@ class _Outputs:
             unfinished.with_name(unfinished.name + CONVERTING_SUFFIX).unlink(missing_ok=True)
         for path in self._written:
             path.unlink(missing_ok=True)
+        if self._split_ns and self._split_folder.exists():
+            shutil.rmtree(self._split_folder)
+
+    def publish(self) -> None:
+        """Finish the file under way, and give those of a split their names; raises
+        RecordingError."""
+        self.finish()
+        if not self._split_ns:
+            return
+        try:
+            for number, path in enumerate(self._written):
+                self._written[number] = path.rename(self._output.with_name(path.name))
+            self._split_folder.rmdir()
+        except OSError as error:
+            raise RecordingError(f"cannot name {self._output}: {error.strerror}") from error
+        self.files = [
+            ConvertedFile(path, one.messages)
+            for path, one in zip(self._written, self.files, strict=True)
+        ]
 
     def _begin(self) -> None:
         self._counter, self._messages = LossCounter(), 0
-        self._start_ns = self._end_ns = 0
+        self._standing = StandingAlone()
 
     def _is_over(self, received_ns: int) -> bool:
         return 0 < self._split_ns <= received_ns - self._start_ns
 
     def _open(self, first: RecordedMessage) -> RecordingWriter:
-        path = _numbered(self._output, len(self.files)) if self._split_ns else self._output
+        path = self._next_path()
         path.with_name(path.name + CONVERTING_SUFFIX).unlink(missing_ok=True)
         self._begin()
         self._writer = RecordingWriter(path, part_suffix=CONVERTING_SUFFIX)
@@ -156,6 +198,21 @@ class _Outputs:
                 )
                 self._count(kept, first.received_ns)
         return self._writer
+
+    def _next_path(self) -> Path:
+        """Return where the next file goes; raises RecordingError where no folder can be made."""
+        if not self._split_ns:
+            return self._output
+        if not self.files:
+            if self._split_folder.is_dir():
+                shutil.rmtree(self._split_folder)
+            try:
+                self._split_folder.mkdir()
+            except OSError as error:
+                raise RecordingError(
+                    f"cannot make {self._split_folder}: {error.strerror}"
+                ) from error
+        return self._split_folder / _numbered(self._output, len(self.files)).name
 
     def _count(self, message: RecordedMessage, received_ns: int) -> None:
         self._counter.count(message.key, message.sequence)

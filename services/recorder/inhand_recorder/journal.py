@@ -128,18 +128,16 @@ class Journal:
     def close(self) -> Path | None:
         """Finish the file, if there is one, and return it; a later ``write`` begins another."""
         self._write_waiting()
-        if (file := self._file) is None:
-            return None
-        with self._giving_up_on_failure(file):
-            file.sync()
-        return self._finish(file)
+        return None if self._file is None else self._finish(self._file)
 
     def _write_waiting(self) -> None:
         while self._waiting:
             file = self._file_at(self._waiting[0].received_ns)
             entry = self._waiting.popleft()
-            with self._giving_up_on_failure(file):
+            try:  # for each message, so without a context manager
                 file.put(entry)
+            except RecordingError as error:
+                raise self._given_up(file, error) from error.__cause__
             self._remember(entry)
 
     def _remember(self, entry: Entry) -> None:
@@ -196,12 +194,14 @@ class Journal:
         try:
             yield
         except RecordingError as error:
-            self._file = None
-            self._latest = {**self._latest, **file.latest}
-            self._waiting.extendleft(reversed(file.give_up()))
-            if file.worth_keeping:
-                raise
-            raise self._left_no_file(error) from error.__cause__
+            raise self._given_up(file, error) from error.__cause__
+
+    def _given_up(self, file: RecordingFile, error: RecordingError) -> RecordingError:
+        """Take back what stands only in memory of a file that failed, and return what to raise."""
+        self._file = None
+        self._latest = {**self._latest, **file.latest}
+        self._waiting.extendleft(reversed(file.give_up()))
+        return error if file.worth_keeping else self._left_no_file(error)
 
     def _left_no_file(self, error: RecordingError) -> RecordingError:
         if not isinstance(error.__cause__, OSError):

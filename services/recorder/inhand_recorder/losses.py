@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from inhand_runtime.recording import SEQUENCE_MASK
 
@@ -32,6 +32,17 @@ class Losses:
     before: int = 0
 
 
+@dataclass
+class _Count:
+    """What came of one key so far, and what did not."""
+
+    latest: int
+    received: int = 1
+    lost: int = 0
+    restarts: int = 0
+    before: int = 0
+
+
 class LossCounter:
     """Counts one recording's losses, each key from the first message seen on.
 
@@ -43,31 +54,30 @@ class LossCounter:
     def __init__(self, former: Mapping[str, int] | None = None) -> None:
         """``former`` are the latest numbers in the recorder's former file, by key."""
         self._former = former or {}
-        self._latest: dict[str, int] = {}
-        self._losses: dict[str, Losses] = {}
+        self._counts: dict[str, _Count] = {}
 
     def count(self, key: str, sequence: int) -> None:
         """Take note of one message."""
         sequence &= SEQUENCE_MASK
-        latest = self._latest.get(key)
-        losses = self._losses.get(key, Losses())
-        if sequence == latest:
-            return
-        self._latest[key] = sequence
-        received = losses.received + 1
-        if latest is None:
+        count = self._counts.get(key)
+        if count is None:
             missing = sequence - self._former.get(key, sequence) - 1
-            self._losses[key] = replace(losses, received=received, before=max(missing, 0))
-        elif sequence < latest:
-            self._losses[key] = replace(losses, received=received, restarts=losses.restarts + 1)
+            self._counts[key] = _Count(sequence, before=max(missing, 0))
+            return
+        step = sequence - count.latest
+        if step == 0:
+            return
+        count.latest = sequence
+        count.received += 1
+        if step < 0:
+            count.restarts += 1
         else:
-            lost = losses.lost + sequence - latest - 1
-            self._losses[key] = replace(losses, received=received, lost=lost)
+            count.lost += step - 1
 
     @property
     def latest(self) -> Mapping[str, int]:
         """The latest number by key."""
-        return self._latest
+        return {key: count.latest for key, count in self._counts.items()}
 
     def losses(
         self,
@@ -77,15 +87,18 @@ class LossCounter:
         """The count so far by key, with the drops that the queue counted by key, and those among
         them for which the disk was to blame."""
         dropped, unwritten = dropped or {}, unwritten or {}
-        keys = sorted(self._losses.keys() | dropped.keys())
-        return {
-            key: replace(
-                self._losses.get(key, Losses()),
+        losses = {}
+        for key in sorted(self._counts.keys() | dropped.keys()):
+            count = self._counts.get(key, _Count(0, received=0))
+            losses[key] = Losses(
+                received=count.received,
+                lost=count.lost,
+                restarts=count.restarts,
                 dropped=dropped.get(key, 0),
                 unwritten=unwritten.get(key, 0),
+                before=count.before,
             )
-            for key in keys
-        }
+        return losses
 
 
 def format_losses(losses: Mapping[str, Losses]) -> dict[str, str]:

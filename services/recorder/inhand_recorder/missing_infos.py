@@ -9,7 +9,10 @@ from inhand_runtime.recording import (
     read_metadata,
     read_recording,
 )
+from inhand_runtime.recording.copying import copy_message
 from inhand_schemas.topics import INFO, RGBD, SKELETONS
+
+from inhand_recorder.attachments import copy_attachments
 
 
 def add_infos(path: Path, info_from: Path, output: Path) -> tuple[str, ...]:
@@ -28,14 +31,15 @@ def add_infos(path: Path, info_from: Path, output: Path) -> tuple[str, ...]:
         raise RecordingError(f"{info_from} holds no info of {missing[0]}: it has {there}")
     with RecordingWriter(output) as writer:
         begun = False
-        for message in read_recording(path):
+        for message in read_recording(path, apart=True):
             if not begun:
                 for camera in lacking:
                     _write(writer, others[camera], received_ns=message.received_ns)
                 begun = True
-            _write(writer, message, received_ns=message.received_ns)
+            copy_message(writer, message)
         for name, values in read_metadata(path).items():
             writer.add_metadata(name, values)
+        copy_attachments(writer, path)
         writer.add_metadata("repair", {"source": path.name, "info_from": info_from.name})
     return tuple(lacking)
 

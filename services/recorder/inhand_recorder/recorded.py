@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from inhand_runtime.pixels import decode_colour, decode_depth
 from inhand_runtime.recording import RecordedMessage
+from inhand_runtime.recording.coded_colour import CodedPicture
 from inhand_schemas.messages import CameraInfo, Message, RgbdFrame
 from numpy.typing import NDArray
 
@@ -40,11 +41,13 @@ class Recorded:
 class RecordedImages(Recorded):
     """One frame of a camera; images are decoded when they are first asked for.
 
-    ``info`` describes the camera; None where the recording has no info of it.
+    ``info`` describes the camera; None where the recording has no info of it. ``coded`` is the
+    colour as it was recorded, where that is H.264; in ``message`` it is ``rgb8``.
     """
 
     message: RgbdFrame
     info: CameraInfo | None
+    coded: CodedPicture | None = None
 
     @cached_property
     def colour(self) -> NDArray[np.uint8] | None:
@@ -79,5 +82,6 @@ def decoded(recorded: RecordedMessage, topic: str, info: CameraInfo | None) -> R
     """Decode a message; raises MessageError."""
     message = recorded.message()
     if isinstance(message, RgbdFrame):
-        return RecordedImages(recorded.key, topic, recorded.received_ns, message, info)
+        whose = recorded.key, topic, recorded.received_ns
+        return RecordedImages(*whose, message, info, recorded.coded)
     return Recorded(recorded.key, topic, recorded.received_ns, message)

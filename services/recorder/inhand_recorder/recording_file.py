@@ -8,12 +8,20 @@ from pathlib import Path
 from inhand_runtime.recording import RecordingError, RecordingWriter
 from inhand_runtime.recording.part_file import PART_SUFFIX, no_room
 
+from inhand_recorder.attachments import attach_mesh
 from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses
 
-MESH_PLACE = "objects/{}/mesh.ply"
-MESH_TYPE = "model/ply"
-"""The name and the type of the attachment that holds an object's mesh."""
+
+@dataclass(frozen=True)
+class CodedEntry:
+    """A frame with its colour as H.264: a payload with the digest of the picture, and of the one
+    that it ``builds_on``; ``missed`` is to be called where that is not in the file."""
+
+    payload: bytes
+    digest: int
+    builds_on: int | None
+    missed: Callable[[], None]
 
 
 @dataclass(frozen=True)
@@ -21,7 +29,8 @@ class Entry:
     """One encoded message; times are nanoseconds since the epoch.
 
     A ``kept`` one (calibration, say) belongs at the start of every later file. One that cannot be
-    decoded is kept ``apart`` from what readers find under its key.
+    decoded is kept ``apart`` from what readers find under its key. A frame may be ``coded`` beside,
+    which is written in place of ``payload`` where the file has what it builds on.
     """
 
     key: str
@@ -31,6 +40,7 @@ class Entry:
     sequence: int
     kept: bool = False
     apart: bool = False
+    coded: CodedEntry | None = None
 
 
 @dataclass(frozen=True)
@@ -82,6 +92,7 @@ class RecordingFile:
         self._losses = LossCounter(former)
         self._in_memory: list[Entry] = []
         self._noted: dict[str, dict[str, str]] = {}
+        self._pictures: dict[str, int] = {}
         self.worth_keeping = False
         try:
             self._writer = RecordingWriter(path, make_room=make_room)
@@ -126,9 +137,7 @@ class RecordingFile:
         """Write what each file of a recorder begins with."""
         self.note_all(handling.records())
         for name, data in handling.meshes().items():
-            self._writer.add_attachment(
-                MESH_PLACE.format(name), MESH_TYPE, data, received_ns=now_ns
-            )
+            attach_mesh(self._writer, name, data, now_ns)
 
     def repeat(self, entry: Entry, received_ns: int) -> None:
         """Add an entry of before this file, as if it were received with the file's first one."""
@@ -154,6 +163,10 @@ class RecordingFile:
         """Bring everything to the disk, and make sure that the file is still there."""
         self._writer.sync()
         self.worth_keeping = True
+        self._require_part()
+        self._in_memory.clear()
+
+    def _require_part(self) -> None:
         try:
             self._part.stat()
         except OSError as error:
@@ -161,13 +174,13 @@ class RecordingFile:
                 f"{self._part} was removed while it was written ({error.strerror}): "
                 "bring its disk or folder back; a new file is begun"
             ) from error
-        self._in_memory.clear()
 
     def finish(
         self, dropped: Mapping[str, int], unwritten: Mapping[str, int] | None = None
     ) -> Path:
         """Write the losses (with the drops of a queue by key, and those for which the disk was to
-        blame) and give the file its name."""
+        blame), bring everything to the disk, and give the file its name."""
+        self._require_part()
         losses = self._losses.losses(dropped, unwritten)
         self._writer.add_metadata(LOSSES_RECORD, format_losses(losses))
         return self._writer.close()
@@ -199,8 +212,19 @@ class RecordingFile:
         self._losses.count(entry.key, entry.sequence)
         self._writer.write(
             entry.key,
-            entry.payload,
+            self._payload(entry),
             received_ns=entry.received_ns,
             captured_ns=entry.captured_ns,
             sequence=entry.sequence,
         )
+
+    def _payload(self, entry: Entry) -> bytes:
+        """Return what is written of an entry, so that the file can be read by itself."""
+        coded = entry.coded
+        if coded is None:
+            return entry.payload
+        if coded.builds_on not in (None, self._pictures.get(entry.key)):
+            coded.missed()
+            return entry.payload
+        self._pictures[entry.key] = coded.digest
+        return coded.payload

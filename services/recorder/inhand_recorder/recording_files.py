@@ -25,7 +25,7 @@ _MOST_OPEN = 16
 class FileSummary:
     """A file with its topics and numbers of messages by key, the times, in nanoseconds, at which
     its first and last message were received (0 where it has none), whether it is whole, and the
-    number of messages that it keeps apart as undecodable."""
+    numbers by key of messages that it keeps apart as undecodable."""
 
     path: Path
     topics: dict[str, AnyTopic]
@@ -33,7 +33,7 @@ class FileSummary:
     start_ns: int
     end_ns: int
     whole: bool
-    apart: int
+    apart: dict[str, int]
 
 
 class RecordingFiles:
@@ -75,6 +75,10 @@ class RecordingFiles:
         for one in in_order_of_reception(timed):
             if start_ns <= times[one] < end_ns:
                 yield int(times[one]), of_keys[owners[one]][0], int(numbers[one])
+
+    def apart(self, path: Path, key: str) -> IndexedMessages:
+        """Return what a file keeps apart of a key, to be used in the same way."""
+        return self._opened(path).index.apart_of(key)
 
     def read(self, path: Path, key: str, number: int) -> RecordedMessage:
         """Read one message; raises RecordingError."""

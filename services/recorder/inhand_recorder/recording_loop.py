@@ -2,8 +2,10 @@
 
 import contextlib
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon
@@ -28,6 +30,9 @@ from inhand_recorder.recording_file import Entry
 from inhand_recorder.retention import Retention
 from inhand_recorder.stamps import entry_apart, entry_of
 
+if TYPE_CHECKING:
+    from inhand_recorder.colour_coding import ColourCoding
+
 HAND_OVER_PERIOD_S = 0.1
 """A crash of this process loses this much, and what came meanwhile: a quarter of a second at the
 most."""
@@ -35,6 +40,8 @@ SYNC_PERIOD_S = 0.75
 """A power cut loses this much and what a sync takes itself: a second at the most."""
 TIDY_PERIOD_S = 5.0
 IDLE_S = 0.1
+CODING_S = 0.005
+"""How long what arrives is waited for while colour is coded."""
 FIRST_RETRY_S, LAST_RETRY_S = 1.0, 5.0
 MOST_KEYS = 10_000
 """Number of keys that are recorded; a file holds 65,535 channels, and a site has some dozens."""
@@ -44,7 +51,7 @@ REFUSED_KEYS_LAST_S = 5.0
 @dataclass(frozen=True)
 class RecorderParts:
     """What a recorder works with: where it writes, who asks it, what is kept, what it announces,
-    where files come from, and clips, where any are wanted."""
+    where files come from, clips, where any are wanted, and what codes colour, where that is."""
 
     journal: Journal
     desk: CommandDesk
@@ -52,6 +59,7 @@ class RecorderParts:
     announcer: Announcer
     provenance: Provenance
     clips: EventClips | None = None
+    colour: "ColourCoding | None" = None
 
 
 class RecordingLoop:
@@ -62,6 +70,7 @@ class RecordingLoop:
         self._parts = parts
         self._journal = parts.journal
         self._clips = parts.clips
+        self._colour = parts.colour
         self._gaps = GapReporter(daemon.health.error)
         self._keys: set[str] = set()
         self._clock = ClockWatch()
@@ -126,9 +135,12 @@ class RecordingLoop:
         next_sync = time.monotonic() + SYNC_PERIOD_S
         while not self._daemon.stop.is_set():
             self._parts.desk.serve(self._do)
-            sample = self._daemon.receive(IDLE_S)
+            coding = self._colour is not None and self._colour.under_way
+            sample = self._daemon.receive(CODING_S if coding else IDLE_S)
             if sample is not None:
                 self._write(sample)
+            if self._colour is not None:
+                self._write_coded(self._colour.ready())
             if self._clips is not None:
                 self._clips.clips.step(time.monotonic(), all_came=sample is None)
             if time.monotonic() >= next_hand_over:
@@ -175,6 +187,8 @@ class RecordingLoop:
         finished: Path | None = None
         problem: str | None = None
         try:
+            if verb in (PAUSE.verb, SPLIT.verb) and self._colour is not None:
+                self._write_coded(self._colour.all())
             if verb == PAUSE.verb:
                 finished = self._journal.pause(time.time_ns())
             elif verb == RESUME.verb:
@@ -220,12 +234,17 @@ class RecordingLoop:
                 ring_bytes=clips.ring.bytes,
                 clip=clips.under_way,
             )
+        if self._colour is not None:
+            state = replace(state, colour=dict(self._colour.counts))
         retention = self._parts.retention
         state = replace(
             state,
             folder_bytes=retention.folder_bytes,
             free_bytes=retention.free_bytes,
             deleted=retention.deleted,
+            unmanaged=retention.foreign.files,
+            unmanaged_bytes=retention.foreign.bytes,
+            clips_bytes=retention.clips.bytes,
         )
         self._daemon.health.recording = state
         return state
@@ -245,6 +264,8 @@ class RecordingLoop:
     def _write_all(self) -> None:
         while (sample := self._daemon.inbox.get(0)) is not None:
             self._write(sample)
+        if self._colour is not None:
+            self._write_coded(self._colour.all())
         self._journal.close()
         if self._clips is not None:
             self._clips.clips.close(time.monotonic())
@@ -283,7 +304,14 @@ class RecordingLoop:
     def _keep(self, sample: Received, entry: Entry) -> None:
         if self._clips is not None:
             self._clips.take(sample, entry)
-        self._journal.write(entry)
+        if self._colour is None or self._journal.paused:
+            self._journal.write(entry)
+        else:
+            self._write_coded(self._colour.take(entry))
+
+    def _write_coded(self, entries: Iterable[Entry]) -> None:
+        for entry in entries:
+            self._journal.write(entry)
 
     def _refuse_key(self, key: str) -> None:
         self._daemon.health.refused(key)
@@ -296,6 +324,8 @@ class RecordingLoop:
 
     def _count_what_is_left(self) -> None:
         left = self._journal.waiting
+        if self._colour is not None:
+            left += self._colour.waiting
         while (sample := self._daemon.inbox.get(0)) is not None:
             left[sample.key] += 1
         for key, messages in left.items():

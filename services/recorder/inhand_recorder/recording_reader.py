@@ -4,7 +4,7 @@ from collections import Counter, deque
 from collections.abc import Iterable, Iterator
 from fnmatch import fnmatchcase
 from functools import cached_property
-from heapq import heappop, heappush
+from heapq import heappop, heappush, merge
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -20,7 +20,7 @@ from inhand_schemas.messages import CameraInfo
 from inhand_schemas.topics import INFO, RGBD, AnyTopic
 from mcap.records import Attachment
 
-from inhand_recorder.attachments import read_attachments
+from inhand_recorder.attachments import first_attachments, read_attachments
 from inhand_recorder.recorded import Recorded, decoded
 from inhand_recorder.recording_files import RecordingFiles
 from inhand_recorder.recording_series import Places, Series
@@ -90,9 +90,15 @@ class Recording:
         return sum(self.topics[self._names[key]] for key in keys)
 
     @property
-    def apart(self) -> int:
-        """Number of messages that could not be read on their keys, and that are not read here."""
-        return sum(one.apart for one in self._files.summaries)
+    def apart(self) -> dict[str, int]:
+        """Numbers of messages by whole key that could not be read on it when they were recorded.
+
+        Only ``messages_apart`` yields them.
+        """
+        found = Counter[str]()
+        for one in self._files.summaries:
+            found.update(one.apart)
+        return dict(found)
 
     @property
     def keys(self) -> dict[str, AnyTopic]:
@@ -130,10 +136,12 @@ class Recording:
         }
 
     def attachments(self) -> list[Attachment]:
-        """Read what is attached to the files that are whole, the same once."""
+        """Read what is attached to the files, the same once; of those that are not whole what
+        stands at their begin, as meshes do."""
         found: dict[tuple[str, bytes], Attachment] = {}
         for one in self._files.summaries:
-            for attached in read_attachments(one.path) if one.whole else ():
+            read = read_attachments if one.whole else first_attachments
+            for attached in read(one.path):
                 found.setdefault((attached.name, attached.data), attached)
         return list(found.values())
 
@@ -181,6 +189,39 @@ class Recording:
             if not repeats.has(key, self._kinds[key], file, stamp):
                 yield message
 
+    def messages_apart(
+        self, keys: Iterable[str], *, start_ns: int = 0, end_ns: int = LATEST_NS
+    ) -> Iterator[RecordedMessage]:
+        """Yield what is kept apart of whole keys, in the order of reception; what another file
+        repeats once, and damaged ones are passed over and counted."""
+        repeats, chosen = _Repeats(), set(keys)
+        of_files = (self._apart_in(file, chosen) for file in range(len(self._files.summaries)))
+        for file, one in merge(*of_files, key=lambda read: read[1].received_ns):
+            stamp = one.sequence, one.captured_ns, one.received_ns
+            if start_ns <= one.received_ns < end_ns and not repeats.has(
+                one.key, one.topic, file, stamp
+            ):
+                yield one
+
+    def _apart_in(self, file: int, keys: set[str]) -> Iterator[tuple[int, RecordedMessage]]:
+        """Yield what a file keeps apart, beside the file's number."""
+        summary = self._files.summaries[file]
+        places = sorted(
+            (received_ns, key, number)
+            for key in summary.apart
+            if key in keys
+            for number, received_ns in enumerate(
+                self._files.apart(summary.path, key).received_ns.tolist()
+            )
+        )
+        for _, key, number in places:
+            try:
+                yield file, self._files.apart(summary.path, key)[number]
+            except RecordingError as error:
+                if isinstance(error.__cause__, OSError):
+                    raise
+                self.damaged[_short(key)] += 1
+
     def matching(self, patterns: Iterable[str]) -> list[str]:
         """Return the keys whose topic, or whole key, matches one of the patterns (``*``, ``?``).
 
@@ -188,8 +229,8 @@ class Recording:
         """
         chosen: dict[str, None] = {}
         for pattern in patterns:
-            found = [key for key in self._kinds if _matches(key, pattern)]
-            if not found:
+            found = [key for key in self._kinds if matches(key, pattern)]
+            if not found and not any(matches(key, pattern) for key in self.apart):
                 raise RecordingError(f"there is no topic {pattern!r}; there are: {self._listed()}")
             chosen |= dict.fromkeys(found)
         return list(chosen)
@@ -371,5 +412,6 @@ def _names(keys: Iterable[str]) -> dict[str, str]:
     return {key: _short(key) if counts[_short(key)] == 1 else key for key in keys}
 
 
-def _matches(key: str, pattern: str) -> bool:
+def matches(key: str, pattern: str) -> bool:
+    """Whether ``STREAM/NAME`` of a key, or the whole key, matches a pattern."""
     return fnmatchcase(_short(key), pattern) or fnmatchcase(key, pattern)

@@ -157,7 +157,7 @@ class _Rescue:
             self.skipped_bytes += len(record.data)
             return False
         try:
-            topic.decode(record.data)
+            topic.check(record.data)
         except MessageError as error:
             self.faults.note(record, UNDECODABLE, str(error))
             self.undecodable += 1

@@ -1,6 +1,7 @@
 """How much is kept of a folder of recordings: quotas, and what is deleted to hold them."""
 
 import contextlib
+import logging
 import os
 import re
 import shutil
@@ -12,13 +13,17 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from inhand_runtime.recording.part_file import PART_SUFFIX
+from inhand_runtime.wording import counted, sized
 from mcap.records import Header, Metadata
 from mcap.writer import MCAP0_MAGIC
 
+from inhand_recorder.clips import CLIPS_FOLDER
 from inhand_recorder.file_names import SUFFIX
 from inhand_recorder.provenance import RECORDER_RECORD
 from inhand_recorder.quotas import FILES_WITHIN, SMALLEST_FILE_BYTES, Quotas
 from inhand_recorder.records import length_at, record_at
+
+log = logging.getLogger(__name__)
 
 DAY_NS = 86_400 * 1_000_000_000
 HEAD_BYTES = 1 << 18
@@ -44,6 +49,14 @@ class _Recording:
     path: Path
     size: int
     written_ns: int
+
+
+@dataclass(frozen=True)
+class Untouched:
+    """Number and bytes of files that no quota deletes."""
+
+    files: int = 0
+    bytes: int = 0
 
 
 class Retention:
@@ -74,6 +87,12 @@ class Retention:
         """Number of recordings deleted so far."""
         self.folder_bytes = 0
         """Bytes of the folder's recordings, those that grow among them, by the last look."""
+        self.foreign = Untouched()
+        """Recordings in the folder that count and are not deleted, as no recorder of this release
+        or a later one has written them under the name that it gave them, by the last look."""
+        self.clips = Untouched()
+        """Clips, which do not count and are not deleted, by the last look."""
+        self._ours: dict[_Recording, bool | None] = {}
 
     @property
     def free_bytes(self) -> int:
@@ -100,7 +119,7 @@ class Retention:
         if self.free_bytes >= floor * (ROOM_TO_RESUME if stopped else 1.0):
             return None
         return (
-            f"less than {_size(floor)} of the disk of {self._folder} are free (free_bytes): make "
+            f"less than {sized(floor)} of the disk of {self._folder} are free (free_bytes): make "
             "room; until then what arrives waits in memory"
         )
 
@@ -112,11 +131,24 @@ class Retention:
     def tidy(self, now_ns: int) -> None:
         """Delete what has to go, and note as the ``problem`` what could not."""
         self.problem, failure = None, None
+        foreign_before = self.foreign
         self._look_at_clock(now_ns)
         for recording in self._look():
             if (why := self._why(recording, now_ns)) is not None:
                 failure = self._delete(recording, why) or failure
+        if self._deletes and self.foreign.files > foreign_before.files:
+            self._say_what_is_left_out()
         self.problem = failure or self._unheld()
+
+    def _say_what_is_left_out(self) -> None:
+        """Log how many recordings no quota deletes; whoever sets one does not expect that."""
+        log.warning(
+            "no quota deletes %s in %s (%s): an earlier release or another program has written "
+            "them, or they were renamed",
+            counted(self.foreign.files, "recording"),
+            self._folder,
+            sized(self.foreign.bytes),
+        )
 
     def _look_at_clock(self, now_ns: int) -> None:
         """Note since when nobody has set the wall clock."""
@@ -126,17 +158,29 @@ class Retention:
             self._steady_from_s = now_s
         self._wall_offset_s = offset_s
 
+    @property
+    def _deletes(self) -> bool:
+        """Whether any quota makes something go."""
+        quotas = self._quotas
+        return bool(quotas.keep_bytes or quotas.keep_days or quotas.when_full == "delete-oldest")
+
     def _unheld(self) -> str | None:
         """Why a quota is not held, though nothing is left to delete."""
         if self._quotas.keep_bytes and self.folder_bytes > self._quotas.keep_bytes:
             return (
-                f"files in {self._folder} take more than {_size(self._quotas.keep_bytes)} "
+                f"files in {self._folder} take more than {sized(self._quotas.keep_bytes)} "
                 "(keep_bytes), and no other may be deleted: recover or move away what is left of "
-                "crashes, and what others have put there"
+                "crashes, and what earlier releases have written or others have put there"
+            )
+        if self._quotas.keep_bytes and self.clips.bytes > self._quotas.keep_bytes:
+            return (
+                f"clips in {self._folder / CLIPS_FOLDER} take more than "
+                f"{sized(self._quotas.keep_bytes)} (keep_bytes), and no quota deletes them: move "
+                "away those that are not needed"
             )
         if self.short():
             return (
-                f"less than {_size(self._quotas.free_bytes)} of the disk of {self._folder} are "
+                f"less than {sized(self._quotas.free_bytes)} of the disk of {self._folder} are "
                 "free (free_bytes), and no recording is left to delete: make room"
             )
         return None
@@ -162,13 +206,13 @@ class Retention:
         if quotas.keep_days and is_steady and age_ns > quotas.keep_days * DAY_NS:
             return f"it is older than {quotas.keep_days:g} days"
         if quotas.keep_bytes and self.folder_bytes > quotas.keep_bytes:
-            return f"recordings take more than {_size(quotas.keep_bytes)}"
+            return f"recordings take more than {sized(quotas.keep_bytes)}"
         if self.short():
-            return f"less than {_size(quotas.free_bytes)} of the disk are free"
+            return f"less than {sized(quotas.free_bytes)} of the disk are free"
         return None
 
     def _delete(self, recording: _Recording, why: str) -> str | None:
-        """Delete a recording, unless it is none of a recorder's; returns what failed."""
+        """Delete a recording, unless it is none of a recorder's any more; returns what failed."""
         if not _written_by_recorder(recording.path):
             return None
         try:
@@ -181,26 +225,29 @@ class Retention:
         return None
 
     def _look(self) -> list[_Recording]:
-        """Return whole files by their names, the oldest first, and note what all files take."""
-        self.folder_bytes = 0
-        recordings = []
-        for path, status in self._files():
-            self.folder_bytes += status.st_size
-            if (match := _NAME.fullmatch(path.name)) is not None:
-                began = datetime.strptime(match[1], "%Y%m%dT%H%M%SZ").replace(tzinfo=UTC)
-                number, size = int(match[2] or 1), status.st_size
-                began_ns, written_ns = int(began.timestamp()) * 1_000_000_000, status.st_mtime_ns
-                recordings.append(_Recording(began_ns, number, path, size, written_ns))
-        return sorted(recordings)
-
-    def _files(self) -> Iterator[tuple[Path, os.stat_result]]:
-        with contextlib.suppress(OSError):
-            for path in self._folder.iterdir():
-                if path.name.endswith((SUFFIX, SUFFIX + PART_SUFFIX)):
-                    with contextlib.suppress(OSError):  # it was renamed meanwhile
-                        status = path.lstat()
-                        if stat.S_ISREG(status.st_mode):
-                            yield path, status
+        """Return the whole files of recorders, the oldest first, and note what all files take."""
+        named: list[_Recording] = []
+        total = others = foreign_bytes = 0
+        for path, status in _files(self._folder):
+            total += status.st_size
+            recording = _named_recording(path, status)
+            if recording is not None:
+                named.append(recording)
+            elif path.suffix == SUFFIX:
+                others += 1
+                foreign_bytes += status.st_size
+        # A file's begin is read once, as there may be thousands of them.
+        before = self._ours
+        self._ours = {one: before.get(one, None) for one in named}
+        for one, ours in self._ours.items():
+            if ours is None:
+                self._ours[one] = _written_by_recorder(one.path)
+        foreign = [one.size for one, ours in self._ours.items() if not ours]
+        self.folder_bytes = total
+        self.foreign = Untouched(others + len(foreign), foreign_bytes + sum(foreign))
+        clips = [status.st_size for _, status in _files(self._folder / CLIPS_FOLDER)]
+        self.clips = Untouched(len(clips), sum(clips))
+        return sorted(one for one, ours in self._ours.items() if ours)
 
     def _existing(self) -> Path:
         """The folder, or the one in which it would be made."""
@@ -210,21 +257,38 @@ class Retention:
         return folder
 
 
-def _written_by_recorder(path: Path) -> bool:
-    """Whether a recorder says, at the begin of a file, that it is its."""
+def _files(folder: Path) -> Iterator[tuple[Path, os.stat_result]]:
+    """Yield the recordings in a folder, whole ones and others."""
+    with contextlib.suppress(OSError):
+        for path in folder.iterdir():
+            if path.name.endswith((SUFFIX, SUFFIX + PART_SUFFIX)):
+                with contextlib.suppress(OSError):  # it was renamed meanwhile
+                    status = path.lstat()
+                    if stat.S_ISREG(status.st_mode):
+                        yield path, status
+
+
+def _named_recording(path: Path, status: os.stat_result) -> _Recording | None:
+    """Return a whole file that has a name as a recorder gives; None of others."""
+    match = _NAME.fullmatch(path.name)
+    if match is None:
+        return None
+    began = datetime.strptime(match[1], "%Y%m%dT%H%M%SZ").replace(tzinfo=UTC)
+    began_ns, number = int(began.timestamp()) * 1_000_000_000, int(match[2] or 1)
+    return _Recording(began_ns, number, path, status.st_size, status.st_mtime_ns)
+
+
+def _written_by_recorder(path: Path) -> bool | None:
+    """Whether a recorder says, at the begin of a file, that it is its; None where that cannot be
+    read."""
     try:
         with path.open("rb") as file:
             head = file.read(HEAD_BYTES)
     except OSError:
-        return False
+        return None
     offset = len(MCAP0_MAGIC)
     while isinstance(record := record_at(head, offset), Header | Metadata):
         if isinstance(record, Metadata) and record.name == RECORDER_RECORD:
             return True
         offset += length_at(head, offset)
     return False
-
-
-def _size(count: int) -> str:
-    """Bytes as people read them."""
-    return f"{count / 1e9:.1f} GB" if count >= 1e9 else f"{count / 1e6:.1f} MB"

@@ -1,6 +1,7 @@
 """The recorder's daemon: what it is made of, and what it subscribes to."""
 
 import time
+from dataclasses import replace
 from functools import lru_cache
 
 from inhand_runtime.daemon import Daemon, running_daemon
@@ -43,8 +44,14 @@ def _parts(daemon: Daemon, settings: Settings[RecorderSettings]) -> RecorderPart
     provenance = Provenance(settings)
     announcer = Announcer(daemon.publisher(EVENT, daemon.instance).put)
     retention = Retention(chosen.folder, chosen.quotas, announcer.deleted)
+    colour = None
+    if chosen.colour == "h264":
+        # It loads NumPy, which no other recorder needs.
+        from inhand_recorder.colour_coding import ColourCoding
+
+        colour = ColourCoding(daemon.health, time.monotonic)
     files = FileHandling(
-        records=provenance.records,
+        records=lambda: {**provenance.records(), **(colour.records() if colour else {})},
         meshes=provenance.meshes,
         make_room=retention.make_room,
         unwritten=daemon.health.unwritten_counts,
@@ -62,7 +69,8 @@ def _parts(daemon: Daemon, settings: Settings[RecorderSettings]) -> RecorderPart
         retention,
         announcer,
         provenance,
-        event_clips(daemon, settings, files),
+        event_clips(daemon, settings, replace(files, records=provenance.records)),
+        colour,
     )
 
 

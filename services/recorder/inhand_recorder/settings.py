@@ -1,7 +1,7 @@
 """The settings of a recorder, and what is checked of them before a start."""
 
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import FilePath, Section, Settings
@@ -58,6 +58,9 @@ class RecorderSettings(Section):
     The last ``ring_seconds`` are held in memory, in ``ring_bytes`` at the most; 0 seconds is none.
     A snapshot, or an event whose name or kind one of ``ring_events`` matches, makes a clip of them
     and of the ``after_seconds``.
+
+    ``colour`` says whether colour is recorded as it is published, or as H.264, which PyAV codes
+    (the extra ``h264``); clips have it as it is published.
     """
 
     folder: FilePath = Field(default=Path("recordings"), validate_default=True)
@@ -79,6 +82,7 @@ class RecorderSettings(Section):
     ring_bytes: Annotated[ByteSize, Field(ge=1 << 20)] = ByteSize(256 << 20)
     after_seconds: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 5.0
     ring_events: Annotated[tuple[str, ...], AfterValidator(_checked_names)] = ()
+    colour: Literal["published", "h264"] = "published"
 
     @property
     def chosen(self) -> Chosen:

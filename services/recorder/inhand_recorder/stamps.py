@@ -1,6 +1,8 @@
 """Makes a sample into an entry of a recording."""
 
 from inhand_runtime.inbox import Received
+from inhand_schemas.errors import MessageError
+from inhand_schemas.messages import RgbdFrame
 from inhand_schemas.topics import topic_of
 
 from inhand_recorder.recording_file import Entry
@@ -13,7 +15,9 @@ def entry_of(sample: Received) -> Entry:
     that cannot be read would spoil its recording for whoever replays or trains from it.
     """
     topic, _ = topic_of(sample.key)
-    message = topic.decode(sample.payload, sample.encoding)
+    message = topic.check(sample.payload, sample.encoding)
+    if isinstance(message, RgbdFrame) and message.colour and message.colour.codec == "h264":
+        raise MessageError("its colour is H.264, which is not for the wire")
     return Entry(
         key=sample.key,
         payload=sample.payload,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from inhand_runtime.recording import APART_ENCODING
+from inhand_runtime.recording.coded_colour import coded_image, digest_of
 from inhand_runtime.wording import counted
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import parse_key
@@ -127,6 +128,8 @@ class _Messages:
         self._received_ns: dict[str, int] = {}
         self._backwards: dict[str, int] = {}
         self._apart: Counter[str] = Counter()
+        self._pictures: dict[str, int] = {}
+        self._baseless: Counter[str] = Counter()
         self._counts: Counter[str] = Counter()
         self._first_ns: dict[str, int] = {}
         self._last_ns: dict[str, int] = {}
@@ -152,11 +155,27 @@ class _Messages:
         self._received_ns[key] = message.log_time
         try:
             topic, _ = topic_of(key)
-            topic.decode(message.data)
+            topic.check(message.data)
+            if topic is RGBD:
+                self._note_colour(key, message.data)
         except (KeyFormatError, MessageError) as error:
             self.faults.note(message, UNDECODABLE, str(error))
 
+    def _note_colour(self, key: str, payload: bytes) -> None:
+        image = coded_image(payload)
+        if image is None:
+            return
+        if image.builds_on in (None, self._pictures.get(key)):
+            self._pictures[key] = digest_of(image)
+        else:
+            self._baseless[key] += 1
+
     def problems(self) -> Iterator[str]:
+        for key, count in self._baseless.items():
+            yield (
+                f"{key}: the colour of {counted(count, 'frame')} cannot be read, since pictures "
+                "that it builds on (H.264) are not in the file"
+            )
         steps_back = sum(step_ns < 0 for step_ns in self.clock_steps.values())
         for key, times in self._backwards.items():
             if times > steps_back:

@@ -13,9 +13,10 @@ import numbers
 import re
 import sys
 import tempfile
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial, wraps
+from functools import cache, partial, wraps
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
@@ -131,8 +132,8 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
 
     The ``layout`` is NumPy's signature of generalised functions: the function fills its last
     arguments, which stand behind the arrow, and its callers get them as results. What is not a
-    number stays so without a warning. It is compiled when it is defined: what it calls stands above
-    it.
+    number stays so without a warning. It is compiled, or loaded, at the first call: a process pays
+    for what it uses, and not for all that it imports.
     """
     inputs, outputs = layout.split("->")
     types = []
@@ -142,33 +143,70 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
         types.append("float64" if scalar else f"float64[{axes}]")
 
     def compiled(function: Callable[..., None]) -> Callable[..., Any]:
-        with _kept_here():
-            made = _vectorised(function, layout, types)
-        silent: Any = np.errstate(invalid="ignore", divide="ignore")(made)
-        return wraps(function)(silent)
+        caches = _caches_of(function) if KEPT else None
+
+        @cache
+        def made() -> Any:
+            with _MAKING:
+                ufunc = _vectorised(function, layout, types, caches)
+            return np.errstate(invalid="ignore", divide="ignore")(ufunc)
+
+        _LOOPS.append(made)
+
+        @wraps(function)
+        def silent(*arrays: Any, **options: Any) -> Any:
+            return made()(*arrays, **options)
+
+        return silent
 
     return compiled
 
 
-def _vectorised(function: Callable[..., None], layout: str, types: list[str]) -> Any:
+def make_loops() -> None:
+    """Compile, or load, all that is ``vectorised`` in the modules that were imported: for who works
+    live, and cannot wait at a first call."""
+    for made in _LOOPS:
+        made()
+
+
+_LOOPS: list[Callable[[], Any]] = []
+"""What gives the loop over arrays of each function, and makes it the first time."""
+
+Caches = tuple[KernelCache, LoopCache]
+"""Where one function and its loop over arrays are kept."""
+
+_MAKING = threading.Lock()
+"""Held by the thread that compiles: two that call a function first share its caches."""
+
+
+def _caches_of(function: Callable[..., None]) -> Caches:
+    with _kept_here():
+        return KernelCache(function), LoopCache(function)  # type: ignore[no-untyped-call]
+
+
+def _vectorised(
+    function: Callable[..., None], layout: str, types: list[str], caches: Caches | None
+) -> Any:
     made: Any = GUFunc(function, layout, targetoptions={"nopython": True})
     builder = made.gufunc_builder
-    if KEPT:
-        builder.nb_func.cache = KernelCache(function)  # type: ignore[no-untyped-call]
-        builder.build = partial(_build_loop, function, builder)
+    if caches:
+        builder.nb_func.cache, loops = caches
+        builder.build = partial(_build_loop, function, builder, loops)
     made.add(f"void({', '.join(types)})")
     made.disable_compile()
     return made.build_ufunc().ufunc
 
 
-def _build_loop(function: Callable[..., None], builder: Any, compiled: Any) -> Any:
+def _build_loop(
+    function: Callable[..., None], builder: Any, loops: LoopCache, compiled: Any
+) -> Any:
     """Build the loop over arrays, which Numba keeps apart from the function that it calls.
 
     The one that was kept may be of another process's compilation than the function is: Numba would
     then call a function at address 0. It is compiled again instead. Returns what ``build`` of
     Numba's builders does: numbers of types, an address, and what must live as long.
     """
-    caches: tuple[Any, ...] = LoopCache(function), LoopCache(function), NullCache()  # type: ignore[no-untyped-call]
+    caches: tuple[Any, ...] = loops, loops, NullCache()
     for kept in caches:
         wrapper: Any = _GufuncWrapper(  # type: ignore[no-untyped-call]
             function, compiled, builder.sin, builder.sout, cache=None, is_parfors=False

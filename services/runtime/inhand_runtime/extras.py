@@ -3,6 +3,7 @@
 EXTRAS = {
     "cluster": ("dask", "distributed"),
     "export": ("av", "foxglove", "pyarrow", "rosbags"),
+    "h264": ("av",),
     "homeassistant": ("aiomqtt",),
     "hub": ("cryptography",),
     "lab": ("faiss", "fast_simplification", "matplotlib", "scipy", "sklearn", "trimesh"),

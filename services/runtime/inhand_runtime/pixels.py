@@ -81,6 +81,8 @@ def decode_depth(image: DepthImage) -> NDArray[np.uint16]:
 
 
 def _decode_jpeg(image: ColourImage, colour_space: str) -> NDArray[np.uint8]:
+    if image.codec != "jpeg":
+        raise MessageError(f"colour as {image.codec} is read from recordings alone")
     try:
         height, width, *_ = simplejpeg.decode_jpeg_header(image.data)
         fits = (height, width) == (image.height, image.width)

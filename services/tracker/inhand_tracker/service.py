@@ -7,6 +7,7 @@ from functools import cache, partial
 from typing import Any
 
 from inhand_runtime.camera_infos import InfoWatch
+from inhand_runtime.compiled import make_loops
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError
 from inhand_runtime.inbox import UNBOUNDED, Received
@@ -232,7 +233,7 @@ class TrackerService:
 
 def run(settings: Settings[TrackerSettings]) -> None:
     """Run until a signal; raises SettingsError before anything is tracked."""
-    chosen, checked = settings.service, cache(partial(check, settings))
+    chosen, checked = settings.service, cache(partial(_prepare, settings))
     with running_daemon("tracker", settings, prepare=checked) as daemon:
         first = checked()
         log.info("tracking %s with %s", ", ".join(first.names), chosen.method)
@@ -240,6 +241,13 @@ def run(settings: Settings[TrackerSettings]) -> None:
         daemon.answer(HYPOTHESES, service.desk.ask)
         daemon.answer(RELOAD, lambda request: _reload(request, settings, service))
         service.run()
+
+
+def _prepare(settings: Settings[TrackerSettings]) -> Watcher:
+    """Make what no frame shall wait for, somebody's first one neither."""
+    watcher = check(settings)
+    make_loops()
+    return watcher
 
 
 def _watchers(settings: Settings[TrackerSettings], first: Watcher) -> Callable[[], Watcher]:

@@ -7,9 +7,12 @@ from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
+import av
 import numpy as np
 import pytest
+from coded_rig import recoded
 from exported import export
+from inhand_recorder.conversion import Selection
 from inhand_runtime.errors import InhandError
 from inhand_runtime.pixels import encode_colour
 from inhand_runtime.recording import RecordingWriter, read_recording
@@ -137,3 +140,27 @@ def test_where_no_room_is_left_it_is_said_and_nothing_stays(tmp_path: Path) -> N
     with pytest.raises(InhandError, match="exists already"):
         export(export_foxglove, path, path)
     assert [one.name for one in tmp_path.iterdir()] == ["one.mcap"]
+
+
+def test_h264_stays_a_video_that_others_decode(tmp_path: Path) -> None:
+    source = recoded(write_rig(tmp_path / "jpeg.mcap"), tmp_path / "one.mcap")
+    export(export_foxglove, source, tmp_path / "fox.mcap")
+    video = decoded(tmp_path / "fox.mcap")["/front/video"]
+    assert [(name, message.format) for name, _, message in video] == [
+        ("foxglove.CompressedVideo", "h264")
+    ] * 10
+    codec = av.CodecContext.create("h264", "r")
+    codec.thread_count = 1
+    for number, (_, _, message) in enumerate(video):
+        (picture,) = codec.decode(av.Packet(message.data))
+        shown = picture.to_ndarray(format="rgb24").astype(float)
+        assert np.mean((shown - colour_of(number)) ** 2) < 60.0
+
+
+def test_h264_whose_beginning_is_cut_off_is_exported_as_pictures(tmp_path: Path) -> None:
+    source = recoded(write_rig(tmp_path / "jpeg.mcap"), tmp_path / "one.mcap")
+    selection = Selection(start_ns=START_NS + 4 * FRAME_NS)
+    counts = export(export_foxglove, source, tmp_path / "fox.mcap", selection)
+    found = decoded(tmp_path / "fox.mcap")
+    assert "/front/video" not in found
+    assert len(found["/front/colour"]) == counts["CompressedImage"] == 6

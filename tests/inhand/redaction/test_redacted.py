@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import simplejpeg
+from coded_rig import recoded
 from inhand_capture.estimation.found_person import FoundPerson
 from inhand_capture.faces.finder import FaceFinder
 from inhand_recorder.attachments import read_attachments
@@ -85,6 +86,16 @@ def test_no_pixel_of_a_person_is_left_and_all_else_is_as_it_was(tmp_path: Path) 
     assert [identity(one) for one in read_recording(output)] == [
         identity(one) for one in read_recording(path)
     ]
+
+
+def test_of_h264_no_picture_stays_that_shows_or_builds_on_a_person(tmp_path: Path) -> None:
+    path = recoded(write_walk(tmp_path / "jpeg.mcap", PAST), tmp_path / "walk.mcap")
+    done, output = redact(path, "people", PAST)
+    assert done.counts == {"frames": 7, "previews": 7}
+    assert examine_recording(output).problems == ()
+    for x, (colour, _) in zip(PAST, frames_of(output), strict=True):
+        assert colour[person_at(x)].max() < BLACK
+        assert colour.max() < PERSON - 50
 
 
 def test_faces_are_hidden_and_hands_are_not(tmp_path: Path) -> None:
@@ -225,7 +236,7 @@ def test_damaged_frames_and_previews_of_no_frame_are_left_out_and_counted(tmp_pa
     assert examine_recording(output).problems == ()
 
 
-def test_an_existing_file_is_never_touched_and_of_what_is_interrupted_nothing_stays(
+def test_an_existing_file_is_never_touched_and_what_is_interrupted_never_looks_finished(
     tmp_path: Path,
 ) -> None:
     path = write_walk(tmp_path / "walk.mcap", PAST)
@@ -239,7 +250,7 @@ def test_an_existing_file_is_never_touched_and_of_what_is_interrupted_nothing_st
 
     with pytest.raises(KeyboardInterrupt):
         redact_recording([path], tmp_path / "out.mcap", "people", told_finder(PAST), interrupted)
-    assert [one.name for one in tmp_path.iterdir()] == ["walk.mcap"]
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["out.mcap.redacting", "walk.mcap"]
 
 
 def test_what_cannot_be_redacted_is_refused_with_the_mend(tmp_path: Path) -> None:

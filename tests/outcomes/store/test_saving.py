@@ -132,12 +132,14 @@ def test_no_evidence_is_kept_that_the_settings_do_not_name(tmp_path: Path) -> No
     assert last_places(saver.database) == []
 
 
-def test_an_amount_that_is_no_number_spoils_no_total(tmp_path: Path) -> None:
+def test_no_total_has_places_or_what_is_no_number(tmp_path: Path) -> None:
     saver = new_saver(tmp_path)
-    wrong = {"volume_ml": Amount(float("nan"), 1.0), "angle_deg": Amount(40.0, 1.0)}
-    saver.save([sip(NOON, amounts=wrong)])
+    numbers = {"volume_ml": float("nan"), "angle_deg": 40.0, "place_x_m": 1.5}
+    saver.save([sip(NOON, amounts={name: Amount(one, 1.0) for name, one in numbers.items()})])
     (total,) = all_totals(saver.database)
     assert set(total.amounts) == {"angle_deg"}
+    (kept,) = latest(saver.database, 9)
+    assert set(kept.outcome.amounts) == {"angle_deg", "place_x_m"}
 
 
 def test_a_day_lasts_until_local_midnight_also_when_clocks_change(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
+from inhand_runtime.pixels import raw_colour
 from inhand_runtime.recording import RecordedMessage
 from inhand_runtime.source import Captured, Pixels
 from inhand_schemas.errors import MessageError
@@ -52,6 +53,7 @@ def _captured(
     skeletons: Skeletons | None = None
     labels: list[ObjectPose] = []
     messages: list[Message] = []
+    coded = any(recorded.coded is not None for recorded in moment)
     for recorded in moment:
         try:
             messages.append(recorded.message())
@@ -70,8 +72,14 @@ def _captured(
     yield Captured(
         time_ns=messages[0].time_ns,
         time_uncertainty_ns=0 if frame is None else frame.time_uncertainty_ns,
-        pixels=None if frame is None else partial(Pixels, frame.colour, frame.depth),
+        pixels=None if frame is None else partial(_pixels, frame, coded=coded),
         people=None if skeletons is None else skeletons.people,
         labels=tuple(labels),
         convention=None if skeletons is None else skeletons.convention,
     )
+
+
+def _pixels(frame: RgbdFrame, *, coded: bool) -> Pixels:
+    """The pixels of a frame; colour that was H.264 is not encoded yet."""
+    colour = raw_colour(frame.colour) if coded else frame.colour
+    return Pixels(colour, frame.depth)

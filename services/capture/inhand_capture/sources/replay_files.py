@@ -7,11 +7,11 @@ from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import partial
-from itertools import chain
+from itertools import chain, dropwhile
 from pathlib import Path
 
 import msgspec
-from inhand_runtime.recording import RecordingError, read_recording
+from inhand_runtime.recording import RecordedMessage, RecordingError, read_recording
 from inhand_runtime.recording.reading import Outline, read_outline
 from inhand_runtime.source import Captured, SourceError
 from inhand_schemas.errors import KeyFormatError, MessageError
@@ -54,6 +54,9 @@ class PlayedFiles:
         unreadable: Counter[str] = Counter()
         with explaining(path):
             recorded = read_recording(path, streams=PLAYED_STREAMS, captured_from_ns=from_ns)
+            if from_ns is not None:
+                # What colour builds on comes before, and may itself build on more.
+                recorded = dropwhile(partial(_is_before, from_ns), recorded)
             chosen = (one for one in recorded if is_played(one.key, self.options))
             for captured in moments(chosen, self.camera, partial(_pass_over, path, unreadable)):
                 yield self._renamed(captured)
@@ -69,6 +72,10 @@ class PlayedFiles:
             for label in captured.labels
         )
         return replace(captured, labels=labels)
+
+
+def _is_before(from_ns: int, message: RecordedMessage) -> bool:
+    return message.captured_ns < from_ns
 
 
 def open_files(options: ReplayOptions) -> PlayedFiles:

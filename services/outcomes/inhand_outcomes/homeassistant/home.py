@@ -103,8 +103,7 @@ class Home:
 
     def show(self, database: Database, now_ns: int) -> None:
         """Hand over what is kept, if it may have changed; raises StoreError."""
-        if not self._node:
-            self._recall(database)
+        self.recall(database)
         if self._kept_pause != self.paused:
             write_journal(database, {PAUSED: b"1" if self.paused else None})
             self._kept_pause = self.paused
@@ -130,8 +129,10 @@ class Home:
             self._look_soon()
             self.handover.say(new)
 
-    def _recall(self, database: Database) -> None:
-        """Go on where the last process of this database ended."""
+    def recall(self, database: Database) -> None:
+        """Go on where the last process of this database ended, once; raises StoreError."""
+        if self._node:
+            return
         entries = read_journal(database)
         place = self._place
         node = entries.get(NODE, b"").decode() or new_node(place.realm, place.rig, place.instance)

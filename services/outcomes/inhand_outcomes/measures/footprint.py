@@ -7,7 +7,7 @@ from math import erf
 import numpy as np
 
 from inhand_outcomes.arrays import Array
-from inhand_outcomes.measures.smoothing import normal_share
+from inhand_outcomes.normal import normal_share
 from inhand_outcomes.thing import Thing
 
 CELL_M = 0.05

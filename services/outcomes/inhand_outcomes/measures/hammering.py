@@ -11,8 +11,9 @@ import numpy as np
 
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array
-from inhand_outcomes.measures.smoothing import normal_share, smooth
+from inhand_outcomes.measures.smoothing import smooth
 from inhand_outcomes.measures.turning import share_seen, turns_of
+from inhand_outcomes.normal import normal_share
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 

@@ -14,8 +14,9 @@ from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array, Indices
 from inhand_outcomes.measures.footprint import Footprint, footprint_of, swept_cells
 from inhand_outcomes.measures.passes import DEFAULT_HALTING, Halting, moving_part, ways_of
-from inhand_outcomes.measures.smoothing import normal_share, smooth
+from inhand_outcomes.measures.smoothing import smooth
 from inhand_outcomes.measures.turning import end_of_lasting
+from inhand_outcomes.normal import normal_share
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 

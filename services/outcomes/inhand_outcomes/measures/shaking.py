@@ -13,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from inhand_outcomes.achievement import Achievement, Amount
-from inhand_outcomes.measures.smoothing import normal_share, smooth
+from inhand_outcomes.measures.smoothing import smooth
 from inhand_outcomes.measures.turning import share_seen, turns_of
+from inhand_outcomes.normal import normal_share
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 

@@ -62,16 +62,3 @@ def smooth(
     return Smoothed(
         fitted[:, 0], fitted[:, 1] / half_width_s, weights.sum(axis=1), np.minimum(alike, counts)
     )
-
-
-def normal_share(z: Array) -> Array:
-    """Share (...) of a normal distribution below z deviations, to within 0.0002.
-
-    scipy.special, for its exact value, costs the daemon memory.
-    """
-    t = 1.0 / (1.0 + 0.2316419 * np.abs(z))
-    series = t * (
-        0.319381530 + t * (-0.356563782 + t * (1.781477937 + t * (-1.821255978 + t * 1.330274429)))
-    )
-    tail = np.exp(-0.5 * np.asarray(z) ** 2) / np.sqrt(2.0 * np.pi) * series
-    return np.where(np.asarray(z) > 0.0, 1.0 - tail, tail)

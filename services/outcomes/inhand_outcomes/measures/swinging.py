@@ -9,12 +9,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array
-from inhand_outcomes.measures.smoothing import normal_share, smooth
+from inhand_outcomes.measures.smoothing import smooth
 from inhand_outcomes.measures.turning import share_seen
+from inhand_outcomes.normal import normal_share
+from inhand_outcomes.rotations import (
+    conjugate,
+    matrices,
+    multiply,
+    of_rotation_vectors,
+    rotation_vectors,
+)
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -152,9 +159,10 @@ def head_speeds(
     seconds = times[second] - times[first]
     near = seconds <= parameters.longest_pair_s
     first, second, seconds = first[near], second[near], seconds[near]
-    turns = (seen.rotations[second] * seen.rotations[first].inv()).as_rotvec()
-    halfway = Rotation.from_rotvec(0.5 * turns) * seen.rotations[first]
-    arms = halfway.apply(head)
+    rotations = seen.poses[:, 3:]
+    turns = rotation_vectors(multiply(rotations[second], conjugate(rotations[first])))
+    halfway = multiply(of_rotation_vectors(0.5 * turns), rotations[first])
+    arms = matrices(halfway) @ head
     moved = seen.positions[second] - seen.positions[first]
     speeds = np.linalg.norm(moved + np.cross(turns, arms), axis=1) / seconds
     deviations = seen.point_deviations(head)

@@ -67,9 +67,13 @@ def _new_marks(session: Session, rules: Rules, now_ns: int) -> list[NewMark]:
     today = local_day(now_ns, rules.zone)
     names = [one.goal.name for one in rules.goals]
     marks = _marks(session, names, first_day(today, "week"))
-    open_now = [period for _, period in open_periods(marks)]
-    first = min([first_day(today, "week"), *open_now])
-    return judge(rules, read_totals(session, first, today), marks, now_ns)
+    first = min(
+        *(first_day(today, one.goal.per) for one in rules.goals),
+        *(period for _, period in open_periods(marks)),
+        today,
+    )
+    kinds = {one.goal.kind for one in rules.goals}
+    return judge(rules, read_totals(session, first, today, kinds), marks, now_ns)
 
 
 def _marks(session: Session, goals: Sequence[str], since: date) -> set[Mark]:

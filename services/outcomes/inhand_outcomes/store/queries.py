@@ -4,6 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import date
+from typing import Any
 
 from inhand_schemas.messages import Pose
 from sqlalchemy import func, select
@@ -44,22 +45,23 @@ def totals(database: Database, first: date, last: date) -> list[DayTotal]:
         return read_totals(session, first, last)
 
 
-def read_totals(session: Session, first: date, last: date) -> list[DayTotal]:
-    """Return the totals of local days within a transaction."""
-    amounts: dict[tuple[date, str, str, int, bool], dict[str, AmountTotal]] = defaultdict(dict)
-    for row in session.scalars(
-        select(TotalAmountRow)
-        .where(TotalAmountRow.day.between(first, last))
-        .order_by(TotalAmountRow.name)
-    ):
+def read_totals(
+    session: Session, first: date, last: date, kinds: Iterable[str] | None = None
+) -> list[DayTotal]:
+    """Return the totals of local days within a transaction, of all kinds or only some."""
+    total, amount = TotalRow, TotalAmountRow
+    of_totals = select(total.__table__).where(total.day.between(first, last))
+    of_amounts = select(amount.__table__).where(amount.day.between(first, last))
+    if kinds is not None:
+        chosen = list(kinds)
+        of_totals = of_totals.where(total.kind.in_(chosen))
+        of_amounts = of_amounts.where(amount.kind.in_(chosen))
+    amounts: dict[tuple[Any, ...], dict[str, AmountTotal]] = defaultdict(dict)
+    for row in session.execute(of_amounts.order_by(amount.name)):
         key = (row.day, row.kind, row.object, row.person, row.counted)
         amounts[key][row.name] = AmountTotal(row.times, row.sum, row.variance, row.largest)
-    table = TotalRow
-    rows = session.scalars(
-        select(table)
-        .where(table.day.between(first, last))
-        .order_by(table.day, table.object, table.kind, table.person, table.counted.desc())
-    )
+    order = (total.day, total.object, total.kind, total.person, total.counted.desc())
+    of_totals = of_totals.order_by(*order)
     return [
         DayTotal(
             row.day,
@@ -71,7 +73,7 @@ def read_totals(session: Session, first: date, last: date) -> list[DayTotal]:
             row.seconds,
             amounts.get((row.day, row.kind, row.object, row.person, row.counted), {}),
         )
-        for row in rows
+        for row in session.execute(of_totals)
     ]
 
 

@@ -26,6 +26,7 @@ from inhand_outcomes.store.models import (
     TotalAmountRow,
     TotalRow,
 )
+from inhand_outcomes.totals import has_total
 
 Kept = Literal["numbers", "poses"]
 DIGITS = 6
@@ -167,7 +168,8 @@ def _add_to_totals(session: Session, rows: Sequence[OutcomeRow]) -> None:
         amounts: dict[str, list[AmountRow]] = defaultdict(list)
         for row in group:
             for amount in row.amounts:
-                amounts[amount.name].append(amount)
+                if has_total(amount.name):
+                    amounts[amount.name].append(amount)
         for name, found in amounts.items():
             of_amount = session.get(TotalAmountRow, (*key, name)) or _new_amount(session, key, name)
             of_amount.times += len(found)

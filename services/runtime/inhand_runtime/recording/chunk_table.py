@@ -21,11 +21,10 @@ from mcap.writer import MCAP0_MAGIC
 from numpy.typing import NDArray
 
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
+from inhand_runtime.recording.layout import HEADER
 
 Integers = NDArray[np.int64]
 
-HEADER = struct.Struct("<BQ")
-"""Of every record: its opcode and its length."""
 CHUNK_HEAD = struct.Struct("<QQQII")
 """A chunk's first and last time, size, checksum, and the length of its compression's name."""
 _CHUNK_INDEX = struct.Struct("<QQQQI")

@@ -19,16 +19,13 @@ from mcap.writer import MCAP0_MAGIC
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
 from inhand_runtime.recording.chunk_table import (
     CHUNK_HEAD,
-    HEADER,
     Chunks,
     Entries,
     chunks_of,
     read_channel,
 )
-from inhand_runtime.recording.layout import DAMAGE
+from inhand_runtime.recording.layout import DAMAGE, HEADER, MESSAGE_HEAD
 
-MESSAGE_HEAD = struct.Struct("<BQHIQQ")
-"""A message's header, channel, number, and times of reception and of capture."""
 FILE_ITSELF = -1
 """Start of what counts as the chunk of messages that stand in none: the whole file."""
 _READ_BYTES = 1 << 16

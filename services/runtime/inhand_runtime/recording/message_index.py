@@ -8,31 +8,39 @@ import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from io import BytesIO
 from pathlib import Path
 from typing import NamedTuple, overload
 
 import numpy as np
-from inhand_schemas.topics import AnyTopic
+from inhand_schemas.topics import RGBD, AnyTopic
 from mcap.data_stream import ReadDataStream
 from mcap.records import Header
 from mcap.writer import MCAP0_MAGIC
 
-from inhand_runtime.recording.chunk_table import HEADER, ChunkTable, Entries, IndexedTable, Integers
+from inhand_runtime.recording.chunk_table import ChunkTable, Entries, IndexedTable, Integers
 from inhand_runtime.recording.chunk_walk import WalkedTable
+from inhand_runtime.recording.coded_colour import (
+    LONGEST_CHAIN,
+    CodedPicture,
+    ColourDecoder,
+    coded_image,
+)
 from inhand_runtime.recording.layout import (
     APART_ENCODING,
+    HEADER,
     MESSAGE_ENCODING,
     PROFILE,
     SEQUENCE_MASK,
     RecordedMessage,
     RecordingError,
 )
-from inhand_runtime.recording.message_reader import MessageReader
+from inhand_runtime.recording.message_reader import MISPLACED, MessageReader
 from inhand_runtime.recording.opening import opening
 from inhand_runtime.recording.reading import (
+    apart_channels,
     choose_channels,
     explaining_damage,
     in_order_of_reception,
@@ -43,12 +51,14 @@ _OFFSET_BITS = 40
 
 
 class _Key(NamedTuple):
-    """A key, the numbers of its channels, its topic and the name in it."""
+    """A key, the numbers of its channels, its topic and the name in it, and whether these hold what
+    could not be read on it."""
 
     key: str
     channels: tuple[int, ...]
     topic: AnyTopic
     name: str
+    apart: bool = False
 
 
 @dataclass(frozen=True)
@@ -75,6 +85,7 @@ class RecordingIndex:
             self._table, self.note = _table(path, descriptor, size)
         self._reader = MessageReader(descriptor, size, self._table.chunks)
         self._keys = _keys(self._table)
+        self._apart = _keys_apart(self._table)
 
     def counts(self, stream: str) -> dict[str, int]:
         """Return the numbers of messages of a stream by their names: of cameras, objects, …"""
@@ -89,14 +100,15 @@ class RecordingIndex:
         return {one.key: one.topic for one in self._keys}
 
     @property
-    def apart(self) -> int:
-        """Number of messages that are kept apart, as they could not be read on their keys."""
-        of_apart = [
-            number
-            for number, channel in self._table.channels.items()
-            if channel.message_encoding == APART_ENCODING
-        ]
-        return sum(map(self._table.count, of_apart))
+    def apart(self) -> dict[str, int]:
+        """Numbers of messages that are kept apart, as they could not be read on their keys, by
+        these."""
+        return {one.key: sum(map(self._table.count, one.channels)) for one in self._apart}
+
+    def apart_of(self, key: str) -> "IndexedMessages":
+        """Return the messages that are kept apart of a key; raises RecordingError where the index
+        is damaged."""
+        return self._messages(next((one for one in self._apart if one.key == key), None))
 
     def count(self, key: str) -> int:
         """Return the number of messages of a key."""
@@ -130,8 +142,11 @@ class RecordingIndex:
         """Read one message; raises RecordingError where a checksum contradicts it."""
         with explaining_damage(self.path):
             stamp, payload = self._reader.read(chunk, offset)
+        if stamp.channel not in key.channels:
+            raise RecordingError(f"{self.path}: {MISPLACED}")
         times = stamp.received_ns, stamp.captured_ns
-        return RecordedMessage(key.key, key.topic, key.name, payload, *times, stamp.sequence)
+        named = key.key, key.topic, key.name
+        return RecordedMessage(*named, payload, *times, stamp.sequence, apart=key.apart)
 
     def stamps(self, entries: Entries) -> Stamps:
         """Read the stamps of messages without their payloads; raises RecordingError."""
@@ -156,6 +171,7 @@ class IndexedMessages(Sequence[RecordedMessage]):
 
     def __init__(self, index: RecordingIndex, key: _Key | None, entries: Entries) -> None:
         self._index, self._key, self._entries = index, key, entries
+        self._decoder = ColourDecoder()
         self.received_ns = entries.received_ns
 
     def __len__(self) -> int:
@@ -171,8 +187,35 @@ class IndexedMessages(Sequence[RecordedMessage]):
             return [self[one] for one in range(*number.indices(len(self)))]
         if self._key is None or not -len(self) <= number < len(self):
             raise IndexError(f"there are {len(self)} messages, and none of number {number}")
+        message = self._read(self._key, number)
+        if message.topic is not RGBD:
+            return message
+        return replace(message, coded=self._coded(message, number))
+
+    def _read(self, key: _Key, number: int) -> RecordedMessage:
         entry = int(self._entries.chunks[number]), int(self._entries.offsets[number])
-        return self._index.read(self._key, *entry)
+        message = self._index.read(key, *entry)
+        if message.received_ns != int(self.received_ns[number]):
+            raise RecordingError(f"{self._index.path}: {MISPLACED}")
+        return message
+
+    def _coded(self, message: RecordedMessage, number: int) -> CodedPicture | None:
+        """Return the colour of a message where that is H.264."""
+        number %= len(self)
+        image = coded_image(message.payload)
+        if image is None:
+            return None
+        return CodedPicture(image, lambda: self._coded_before(number), self._decoder)
+
+    def _coded_before(self, number: int) -> CodedPicture | None:
+        """Read the last colour before a message that is H.264; None where that is far away."""
+        if self._key is None:
+            return None
+        for one in range(number - 1, max(-1, number - 1 - LONGEST_CHAIN), -1):
+            coded = self._coded(self._read(self._key, one), one)
+            if coded is not None:
+                return coded
+        return None
 
     @cached_property
     def places(self) -> Integers:
@@ -252,15 +295,31 @@ def _table(path: Path, descriptor: int, size: int) -> tuple[ChunkTable, str | No
 
 def _keys(table: ChunkTable) -> list[_Key]:
     """Find the keys of Inhand's with all their channels; raises UnknownVersionError."""
-    numbers: dict[str, list[int]] = {}
-    for number, channel in table.channels.items():
-        if channel.message_encoding == MESSAGE_ENCODING:
-            numbers.setdefault(channel.topic, []).append(number)
+    numbers = _numbers(table, MESSAGE_ENCODING)
     chosen = choose_channels(table.channels.values())
     return [
         _Key(key, tuple(numbers[key]), topic, parsed.name)
         for key, (topic, parsed) in chosen.items()
     ]
+
+
+def _keys_apart(table: ChunkTable) -> list[_Key]:
+    """Find the keys of which messages are kept apart."""
+    numbers = _numbers(table, APART_ENCODING)
+    chosen = apart_channels(table.channels.values())
+    return [
+        _Key(key, tuple(numbers[key]), topic, parsed.name, apart=True)
+        for key, (topic, parsed) in chosen.items()
+    ]
+
+
+def _numbers(table: ChunkTable, encoding: str) -> dict[str, list[int]]:
+    """Return the numbers of the channels of an encoding by their keys."""
+    numbers: dict[str, list[int]] = {}
+    for number, channel in table.channels.items():
+        if channel.message_encoding == encoding:
+            numbers.setdefault(channel.topic, []).append(number)
+    return numbers
 
 
 def _joined(parts: list[Entries]) -> Entries:

@@ -11,9 +11,11 @@ from mcap.opcode import Opcode
 from mcap.records import Metadata
 
 from inhand_runtime.recording.checksums import NO_CHECKSUMS, Checksums, parse_checksums
-from inhand_runtime.recording.chunk_table import HEADER, Chunks, Entries
-from inhand_runtime.recording.chunk_walk import FILE_ITSELF, MESSAGE_HEAD, unpacked
+from inhand_runtime.recording.chunk_table import Chunks, Entries
+from inhand_runtime.recording.chunk_walk import FILE_ITSELF, unpacked
+from inhand_runtime.recording.layout import HEADER, MESSAGE_HEAD
 
+MISPLACED = "a message is not where the file's index says"
 _CHUNKS_KEPT = 4
 """Unpacked chunks that stay in memory, as neighbouring messages are often asked for."""
 _CHECKSUMS_KEPT = 256
@@ -71,7 +73,7 @@ class MessageReader:
             sequences.append(sequence)
             captured.append(captured_ns)
         if received != entries.received_ns.tolist():
-            raise McapError("a message is not where the file's index says")
+            raise McapError(MISPLACED)
         return sequences, captured
 
     def _read_plain(self, place: int) -> tuple[Stamp, bytes]:
@@ -115,5 +117,5 @@ def _stamp_of(head: bytes) -> tuple[Stamp, int]:
     """Return the stamp of a message by its head, and the bytes of its payload."""
     opcode, length, *stamp = MESSAGE_HEAD.unpack(head)
     if opcode != Opcode.MESSAGE or length < _MESSAGE_BYTES:
-        raise McapError("a message is not where the file's index says")
+        raise McapError(MISPLACED)
     return Stamp(*stamp), length - _MESSAGE_BYTES

@@ -3,14 +3,14 @@
 import heapq
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, TypeVar
 
 from inhand_schemas.errors import KeyFormatError, UnknownVersionError
 from inhand_schemas.keys import ParsedKey
-from inhand_schemas.topics import AnyTopic, topic_of
+from inhand_schemas.topics import RGBD, AnyTopic, topic_of
 from mcap.reader import SeekingReader
 from mcap.records import Channel
 from mcap.records import Message as MessageRecord
@@ -18,7 +18,9 @@ from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD
+from inhand_runtime.recording.coded_colour import LONGEST_CHAIN_NS, ColourChains
 from inhand_runtime.recording.layout import (
+    APART_ENCODING,
     DAMAGE,
     MESSAGE_ENCODING,
     PROFILE,
@@ -33,7 +35,11 @@ Item = TypeVar("Item")
 
 
 def read_recording(
-    path: Path, *, streams: Collection[str] | None = None, captured_from_ns: int | None = None
+    path: Path,
+    *,
+    streams: Collection[str] | None = None,
+    captured_from_ns: int | None = None,
+    apart: bool = False,
 ) -> Iterator[RecordedMessage]:
     """The messages of a whole recording in the order of their reception.
 
@@ -42,23 +48,42 @@ def read_recording(
 
     ``streams`` chooses; keys that are not Inhand's are passed over. In files of ours most of what
     stands before the first message that was captured at or after ``captured_from_ns`` is not read,
-    and so not yielded; nothing after it is left out. Raises RecordingError for a file that is
-    missing, foreign, cut off or damaged, and UnknownVersionError.
+    and so not yielded; nothing after it is left out, nor what colour after it builds on. With
+    ``apart``, for copies, what could not be read on its key when it was recorded is yielded as
+    well. Raises RecordingError for a file that is missing, foreign, cut off or damaged, and
+    UnknownVersionError.
     """
     with _open(path) as (file, reader):
         summary = _summary(path, reader)
         chosen = choose_channels(summary.channels.values(), streams)
         if captured_from_ns is not None and _is_ours(path, reader) and summary.chunk_indexes:
             with explaining_damage(path):
-                chunks = CaptureTimes(file, summary, chosen).chunks_from(captured_from_ns)
-            if not chunks:
-                return
+                captured = CaptureTimes(file, summary, chosen)
+                if not (chunks := captured.chunks_from(captured_from_ns)):
+                    return
+                if any(topic is RGBD for topic, _ in chosen.values()):
+                    chunks = captured.chunks_from(captured_from_ns - LONGEST_CHAIN_NS)
             # The reader keeps this summary, and reads the chunks that it names.
             summary.chunk_indexes = chunks
-        for key, message in _records(path, reader, chosen):
-            topic, parsed = chosen[key]
-            times = message.log_time, message.publish_time
-            yield RecordedMessage(key, topic, parsed.name, message.data, *times, message.sequence)
+        if apart:
+            chosen = apart_channels(summary.channels.values(), streams) | chosen
+        encodings = (MESSAGE_ENCODING, APART_ENCODING) if apart else (MESSAGE_ENCODING,)
+        chains = ColourChains()
+        for channel, message in _records(path, reader, chosen, encodings):
+            topic, parsed = chosen[channel.topic]
+            is_apart = channel.message_encoding == APART_ENCODING
+            coded = topic is RGBD and not is_apart
+            yield RecordedMessage(
+                channel.topic,
+                topic,
+                parsed.name,
+                message.data,
+                message.log_time,
+                message.publish_time,
+                message.sequence,
+                apart=is_apart,
+                coded=chains.next_picture(channel.topic, message.data) if coded else None,
+            )
 
 
 def read_metadata(path: Path) -> dict[str, dict[str, str]]:
@@ -121,14 +146,28 @@ def choose_channels(
     return chosen
 
 
+def apart_channels(
+    channels: Iterable[Channel], streams: Collection[str] | None = None
+) -> dict[str, tuple[AnyTopic, ParsedKey]]:
+    """Choose the channels that hold what could not be read on its key, by key."""
+    chosen = {}
+    for channel in channels:
+        if channel.message_encoding == APART_ENCODING:
+            with suppress(KeyFormatError):  # no recorder of Inhand has written it
+                topic, parsed = topic_of(channel.topic)
+                if streams is None or topic.stream in streams:
+                    chosen[channel.topic] = topic, parsed
+    return chosen
+
+
 def _records(
-    path: Path, reader: SeekingReader, keys: Collection[str]
-) -> Iterator[tuple[str, MessageRecord]]:
+    path: Path, reader: SeekingReader, keys: Collection[str], encodings: Collection[str]
+) -> Iterator[tuple[Channel, MessageRecord]]:
     ours = _is_ours(path, reader)
     records = (
-        (message.log_time, (channel.topic, message))
+        (message.log_time, (channel, message))
         for _, channel, message in reader.iter_messages(topics=keys, log_time_order=not ours)
-        if channel.message_encoding == MESSAGE_ENCODING
+        if channel.message_encoding in encodings
     )
     in_order = in_order_of_reception(records) if ours else (record for _, record in records)
     while True:

@@ -5,11 +5,10 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Self, cast
+from typing import Self
 
 from inhand_schemas.json_schema import json_schema
 from inhand_schemas.topics import topic_of
-from mcap.writer import CompressionType, Writer
 
 from inhand_runtime.recording.checksums import CHECKSUMS_RECORD, digest, format_checksums
 from inhand_runtime.recording.layout import (
@@ -21,9 +20,9 @@ from inhand_runtime.recording.layout import (
     PROFILE,
     SCHEMA_ENCODING,
     SEQUENCE_MASK,
-    UNBOUNDED_CHUNK,
     RecordingError,
 )
+from inhand_runtime.recording.mcap_writer import McapWriter
 from inhand_runtime.recording.part_file import PART_SUFFIX, PartFile, no_room
 
 
@@ -49,17 +48,10 @@ class RecordingWriter:
         self._schemas: dict[str, int] = {}
         self._digests: list[bytes] = []
         self._in_chunk: dict[int, tuple[str, str]] = {}
-        self._chunk_bytes = 0
         self._file = _create(path, part_suffix, make_room)
-        self._writer = Writer(
-            cast(IO[bytes], self._file),
-            chunk_size=UNBOUNDED_CHUNK,
-            compression=CompressionType.NONE,
-            enable_data_crcs=True,
-        )
         try:
             with self._reporting():
-                self._writer.start(profile=PROFILE)
+                self._writer = McapWriter(self._file, PROFILE)
         except RecordingError:
             self._file.close()
             raise
@@ -91,17 +83,16 @@ class RecordingWriter:
         sequence: int,
         apart: bool,
     ) -> None:
-        # The library writes half a message where a number does not fit, and damages the next one.
         if not (0 <= received_ns <= LATEST_NS and 0 <= captured_ns <= LATEST_NS):
             raise RecordingError(f"{key}: a time before 1970, or after 2554, cannot be recorded")
-        with self._reporting():
-            channel = self._channels.get((key, apart)) or self._register(key, apart)
-            stamp = channel, sequence & SEQUENCE_MASK, received_ns, captured_ns
-            self._writer.add_message(channel, received_ns, payload, captured_ns, stamp[1])
-            self._digests.append(digest(*stamp, payload))
-            self._in_chunk[channel] = key, APART_ENCODING if apart else MESSAGE_ENCODING
-            self._chunk_bytes += len(payload)
-            if self._chunk_bytes > CHUNK_BYTES:
+        self._require_open()
+        channel = self._channels.get((key, apart)) or self._register(key, apart)
+        stamp = channel, sequence & SEQUENCE_MASK, received_ns, captured_ns
+        self._writer.add_message(*stamp, payload)
+        self._digests.append(digest(*stamp, payload))
+        self._in_chunk[channel] = key, APART_ENCODING if apart else MESSAGE_ENCODING
+        if self._writer.chunk_bytes > CHUNK_BYTES:
+            with self._reporting():
                 self._end_chunk()
 
     def _end_chunk(self) -> None:
@@ -112,8 +103,7 @@ class RecordingWriter:
             )
         self._digests.clear()
         self._in_chunk.clear()
-        self._chunk_bytes = 0
-        self._writer.flush()  # type: ignore[no-untyped-call]
+        self._writer.end_chunk()
 
     def add_metadata(self, name: str, values: Mapping[str, str]) -> None:
         """Add one named record about the recording; a later one of that name replaces it."""
@@ -123,7 +113,7 @@ class RecordingWriter:
     def add_attachment(self, name: str, media_type: str, data: bytes, *, received_ns: int) -> None:
         """Add a file that belongs to the recording."""
         with self._reporting():
-            self._writer.add_attachment(0, received_ns, name, media_type, data)
+            self._writer.add_attachment(received_ns, name, media_type, data)
 
     def hand_over(self) -> None:
         """Write everything so far, so that the end of this process leaves it, if no power cut."""
@@ -143,7 +133,7 @@ class RecordingWriter:
         try:
             with self._reporting():
                 self._end_chunk()
-                self._writer.finish()  # type: ignore[no-untyped-call]
+                self._writer.finish()
                 self._file.publish()
         finally:
             self._file.close()
@@ -175,24 +165,27 @@ class RecordingWriter:
         if len(self._channels) >= MOST_CHANNELS:
             raise RecordingError(f"{self.path} holds {MOST_CHANNELS} keys: begin another recording")
         if apart:
-            channel = self._writer.register_channel(key, APART_ENCODING, 0)
+            channel = self._writer.add_channel(key, APART_ENCODING, 0)
             self._channels[key, apart] = channel
             return channel
         name = f"{topic.message_type.__name__}.v1"
         if name not in self._schemas:
             schema = json.dumps(json_schema(topic.message_type)).encode()
-            self._schemas[name] = self._writer.register_schema(name, SCHEMA_ENCODING, schema)
+            self._schemas[name] = self._writer.add_schema(name, SCHEMA_ENCODING, schema)
         schema_id = self._schemas[name]
-        channel = self._writer.register_channel(key, MESSAGE_ENCODING, schema_id)
+        channel = self._writer.add_channel(key, MESSAGE_ENCODING, schema_id)
         self._channels[key, apart] = channel
         return channel
 
-    @contextmanager
-    def _reporting(self) -> Iterator[None]:
+    def _require_open(self) -> None:
         if self._failure is not None:
             raise self._failure
         if self._file.closed:
             raise RecordingError(f"{self.path} is closed: open another recording")
+
+    @contextmanager
+    def _reporting(self) -> Iterator[None]:
+        self._require_open()
         try:
             yield
         except OSError as error:

@@ -138,7 +138,7 @@ class OpenedRecording:
     def _pixels_of(self, frame: int) -> RgbdFrame | None:
         if len(self.frames):
             return self.frames.pixels(frame)
-        return RGBD.decode(self._pixels[frame].payload)
+        return self._pixels[frame].frame()
 
     def _find_notes(self) -> list[str]:
         notes = [] if self.unlabelled_because is None else [self.unlabelled_because]

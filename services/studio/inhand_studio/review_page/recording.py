@@ -64,7 +64,7 @@ class ReviewedRecording:
             pixels = self._frames.pixels(frame)
         else:
             number = _numbers(self._pixels.stamps.captured_ns, int(self.times_ns[frame]))
-            pixels = RGBD.decode(self._pixels[int(number[0])].payload) if len(number) else None
+            pixels = self._pixels[int(number[0])].frame() if len(number) else None
         return None if pixels is None else Picture(pixels, 0.0)
 
     def people(self, frame: int) -> tuple[Person, ...]:

@@ -37,6 +37,8 @@ from inhand_tracker.sight.sight import SIGHT_TERMS, Sight, SightTerm, blank_imag
 from inhand_tracker.sight.support import Support
 
 USUAL_HEIGHT_M = 1.7
+_FRAME_NS = 33_333_333
+"""Time between the frames by which a tracker compiles."""
 _NOBODY = np.full((20, 3), np.nan)
 """The joints of a body that is not seen."""
 
@@ -79,11 +81,14 @@ class FusionTracker(FollowingTracker):
         self.restart()
 
     def _compile(self) -> None:
-        """Compile what a first frame would wait for, by a frame of somebody usual 2 m ahead."""
+        """Compile what frames would wait for, by two of somebody usual 2 m ahead: the second one
+        takes over what the first one gave."""
         pose = self._mapping.body_poses.mean(axis=0).reshape(20, 3)
         joints = USUAL_HEIGHT_M * pose + np.array([0.0, 0.0, 2.0])
         image = blank_image()
-        estimate = self.estimate_single_frame(joints, None if self._sight is None else image)
+        self.restart()
+        for time_ns in (0, _FRAME_NS):
+            estimate = self.step(joints, time_ns, None if self._sight is None else image)
         self.outline(estimate, image.camera)
 
     def _start(self, *, alone: bool) -> Follower:
