@@ -64,8 +64,6 @@ def test_pausing_and_forgetting_reach_what_is_kept(rig: RunningRig) -> None:
         assert (put_down(), reader.value("/pause/state")) == (1, b"ON")
         reader.send(f"inhand/{node}/pause/set", "OFF")
         eventually("the pause's end", lambda: reader.value("/pause/state") == b"OFF")
-        carry(rig, 2)
-        eventually("the cup", lambda: put_down() == 2)
         reader.send(f"inhand/{node}/forget_today/set", "PRESS")
         eventually("nothing", lambda: put_down() == 0)
         reader.close()

@@ -17,7 +17,7 @@ KINDS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "tennis": {"stroke": ()},
     "golf": {"swing": ()},
     "hammering": {"strike": ()},
-    "painting": {"painting": (AREA, DURATION)},
+    "painting": {"painting": (AREA, DURATION, STROKES)},
     "wearing": {"put_on": (), "taken_off": (), "worn": (DURATION,)},
     "shaking": {"shake": (STROKES, DURATION)},
     "reading": {"reading": (DURATION,)},
