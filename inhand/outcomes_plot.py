@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from datetime import date
 from pathlib import Path
 
-from inhand_outcomes.totals import DayTotal, adds_up
+from inhand_outcomes.outcome import adds_up
+from inhand_outcomes.totals import DayTotal
 from inhand_runtime.errors import InhandError
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

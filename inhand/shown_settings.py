@@ -104,8 +104,10 @@ def _password_files(values: Mapping[str, Any], folder: Path) -> Iterator[Path]:
         yield folder / path
     for tables in (values.get("studio"), values.get("outcomes")):
         for table in tables.values() if isinstance(tables, Mapping) else ():
-            if isinstance(table, Mapping) and isinstance(path := table.get("password_file"), str):
-                yield folder / path
+            broker = table.get("homeassistant") if isinstance(table, Mapping) else None
+            for one in (table, broker):
+                if isinstance(one, Mapping) and isinstance(path := one.get("password_file"), str):
+                    yield folder / path
 
 
 def _names(name: str, value: Any) -> bool:

@@ -96,8 +96,17 @@ def plain(path: Path) -> Path:
     return Path("/", *parts)
 
 
-_FILES = ("model", "recogniser", "network", "password_file", "certificate", "private_key", "key")
-"""Settings of services that name a file, where they are no words."""
+_FILES = (
+    "model",
+    "recogniser",
+    "network",
+    "password_file",
+    "certificate",
+    "private_key",
+    "key",
+    "authority",
+)
+"""Settings of services, and of parts of them, that name a file, where they are no words."""
 
 
 def _files(settings: Section) -> Iterator[Path | None]:
@@ -106,6 +115,9 @@ def _files(settings: Section) -> Iterator[Path | None]:
         if isinstance(value := values.get(name), Path):
             yield value
     yield from values.get("models", ())
+    for part in values.values():
+        if isinstance(part, Section):
+            yield from _files(part)
 
 
 def _folders(settings: Section) -> Iterator[Path]:

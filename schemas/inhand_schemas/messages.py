@@ -361,7 +361,8 @@ class Health(Message, frozen=True, kw_only=True):
     it has just published, or handled. ``effort`` is the share of its usual work that a tracker does
     in a frame, so that frames do not come faster than they are tracked. While ``shutter_closed``
     a camera captures nothing, because somebody wants it so; None where there is no shutter.
-    ``recording`` is what a recorder does.
+    ``recording`` is what a recorder does. While outcomes are ``paused`` nothing is measured,
+    because somebody wants it so; None where nobody can.
     """
 
     service: Name
@@ -377,6 +378,7 @@ class Health(Message, frozen=True, kw_only=True):
     effort: Fraction | None = None
     shutter_closed: bool | None = None
     recording: RecordingState | None = None
+    paused: bool | None = None
 
     def __post_init__(self) -> None:
         require_finite("time", (self.uptime_s, self.loop_age_s))

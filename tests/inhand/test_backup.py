@@ -378,3 +378,12 @@ def test_a_database_that_is_not_there_yet_or_is_a_server_s_is_no_part_of_a_backu
     assert f"NOT in it: {address}: have its server back it up" in capsys.readouterr().out
     assert main(["restore", str(backup), "--to", str(tmp_path / "b")]) == 0
     assert not (tmp_path / "b/outcomes.db").exists()
+
+
+def test_what_a_smart_home_s_broker_needs_is_in_a_backup(tmp_path: Path) -> None:
+    broker = 'host = "home.local"\nuser = "inhand"\npassword_file = "word"\nauthority = "ca.pem"'
+    files = {"rig.toml": f"[outcomes.home.homeassistant]\n{broker}", "word": "x", "ca.pem": "y"}
+    backup = _backup(_small_site(tmp_path / "a", **files), tmp_path / "site.tar.gz")
+    assert main(["restore", str(backup), "--to", str(tmp_path / "b")]) == 0
+    assert (tmp_path / "b/word").read_text() == "x"
+    assert (tmp_path / "b/ca.pem").read_text() == "y"

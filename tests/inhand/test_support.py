@@ -21,6 +21,7 @@ SECRETS = {
     "member": "words of a hub's member",
     "key": "MC4CAQAwBQYDK2VwBCIEIA",
     "database": "words of a database",
+    "broker": "words of a broker",
     "person": "Anneliese",
 }
 SETTINGS = f"""
@@ -38,6 +39,10 @@ options = {{ file = "a.mcap", camera = "back", url = "http://anna:{SECRETS["addr
 [outcomes.home]
 password_file = "home.password"
 people = {{ 0 = "{SECRETS["person"]}" }}
+[outcomes.home.homeassistant]
+host = "broker"
+user = "inhand"
+password_file = "broker.password"
 [[outcomes.home.goals]]
 person = "{SECRETS["person"]}"
 [recorder.disk]
@@ -99,6 +104,7 @@ def test_no_secret_is_in_it_wherever_it_stood(
     rig.config.write_text(rig.config.read_text().replace("[zenoh]\n", member))
     (rig.folder / "member.password").write_text(SECRETS["member"] + "\n")
     (rig.folder / "home.password").write_text(SECRETS["database"] + "\n")
+    (rig.folder / "broker.password").write_text(SECRETS["broker"] + "\n")
     (rig.folder / "wall.password").write_text(SECRETS["file"] + "\n")
     monkeypatch.setenv("INHAND_STUDIO__SHELF__PASSWORD", SECRETS["environment"])
     monkeypatch.syspath_prepend(install_plugins(rig.folder / "plugins"))

@@ -1,47 +1,66 @@
-"""The maps of a day: they go on over a restart, and what was forgotten does not come back."""
+"""Today's maps of what was swept, as they are kept and gone on with."""
 
+from dataclasses import replace
 from datetime import date
 
-import numpy as np
-from inhand_outcomes.floor_map import cells_to_keep, empty_map
-from inhand_outcomes.measures.footprint import CELL_M
-from inhand_outcomes.room import Room
-from inhand_outcomes.store.floor_maps import FloorMapHeader, KeptFloorMap
+from inhand_outcomes.gathering import Holding
 from inhand_outcomes.swept_floors import SweptFloors
-from inhand_schemas.messages import CameraInfo
+from swept_by_hand import BROOM, broom
 
-DAY = date(2026, 5, 5)
-INFO = CameraInfo(sequence=0, time_ns=0, width=64, height=48, fx=52.5, fy=52.5, cx=31.5, cy=23.5)
-ROOM = Room(np.array([0.0, -1.0, 0.0]), -1.2)
-DEPTH = np.full((48, 64), 2000, np.uint16)
+TODAY, TOMORROW = date(2026, 11, 30), date(2026, 12, 1)
+ANNA = Holding("broom", 1)
 
 
-def a_map(person: int) -> KeptFloorMap:
-    floor = empty_map()
-    floor.swept[10:20, 10:20] = 1.0
-    cells = cells_to_keep(floor)
-    x, y = floor.corner.tolist()
-    header = FloorMapHeader(CELL_M, x, y, *cells.shape)
-    return KeptFloorMap(DAY, "broom", person, header, cells)
-
-
-def test_the_maps_of_a_day_go_on_with_what_is_seen() -> None:
+def swept_today() -> SweptFloors:
+    """What was swept by somebody in one go."""
     floors = SweptFloors()
-    floors.begin(DAY, [a_map(0), a_map(1)])
-    floors.see(DEPTH, INFO, ROOM, ())
-    assert {one.person for one in floors.to_keep()} == {0, 1}
-    assert [np.sum(one.swept > 0.5) for one in floors.maps()] == [100, 100]
+    floors.begin(TODAY)
+    floors.sweep(ANNA, broom(), BROOM, 0.0, 20.0)
+    return floors
+
+
+def test_a_sweeping_is_kept_once_however_often_it_is_seen() -> None:
+    floors = swept_today()
+    (kept,) = floors.to_keep()
+    assert (kept.day, kept.object, kept.person) == (TODAY, "broom", 1)
+    assert (kept.cells & 31 > 15).sum() > 20
+    floors.sweep(ANNA, broom(), BROOM, 0.0, 20.0)
     assert list(floors.to_keep()) == []
 
 
-def test_what_was_forgotten_of_a_floor_is_not_kept_again() -> None:
+def test_another_process_goes_on_with_what_is_kept() -> None:
+    (kept,) = swept_today().to_keep()
+    again = SweptFloors()
+    again.begin(TODAY, [kept])
+    again.sweep(ANNA, broom(turn=1.0), BROOM, 0.0, 20.0)
+    (both,) = again.to_keep()
+    assert ((both.cells & 31) >= (kept.cells & 31)).all()
+    assert (both.cells & 31 > 15).sum() > 1.3 * (kept.cells & 31 > 15).sum()
+
+
+def test_a_new_day_begins_with_nothing_swept() -> None:
+    floors = swept_today()
+    floors.begin(TOMORROW)
+    assert floors.maps() == []
+    assert list(floors.to_keep()) == []
+
+
+def test_nothing_is_mapped_where_the_floor_is_not_known() -> None:
     floors = SweptFloors()
-    floors.begin(DAY, [a_map(0), a_map(1)])
-    floors.see(DEPTH, INFO, ROOM, ())
+    floors.begin(TODAY)
+    floors.sweep(ANNA, replace(broom(), floor=False), BROOM, 0.0, 20.0)
+    assert floors.maps() == []
+
+
+def test_what_was_forgotten_is_not_kept_again() -> None:
+    floors = swept_today()
+    (ours,) = floors.to_keep()
+    floors.begin(TOMORROW)
+    floors.begin(TODAY, [ours, replace(ours, person=2)])
     floors.forget()
-    floors.see(DEPTH, INFO, ROOM, ())
-    assert list(floors.to_keep()) == []
-    assert floors.day is None
-    floors.begin(DAY, [a_map(1)])
-    floors.see(DEPTH, INFO, ROOM, ())
-    assert [one.person for one in floors.to_keep()] == [1]
+    assert (floors.maps(), floors.day) == ([], None)
+    floors.begin(TODAY, [replace(ours, person=2)])
+    floors.sweep(ANNA, broom(turn=1.0), BROOM, 0.0, 20.0)
+    (again,) = floors.to_keep()
+    assert again.person == ANNA.person
+    assert len(floors.maps()) == 2

@@ -133,6 +133,7 @@ EXAMPLES: tuple[Message, ...] = (
         effort=0.75,
         shutter_closed=True,
         recording=RECORDING,
+        paused=True,
     ),
 )
 LATE = replace(
@@ -153,6 +154,7 @@ KEEPING = replace(
     PAUSED,
     recording=RECORDING,
 )
+UNMEASURED = replace(LATE, service="outcomes", instance="home", effort=None, paused=True)
 UNMANAGED = replace(
     PAUSED,
     recording=RecordingState(
@@ -194,6 +196,7 @@ GOLDEN_MESSAGES: dict[str, Message] = {
     **{f"{type(message).__name__}.v1": message for message in EXAMPLES},
     "Event.v1.sip": next(one for one in EXAMPLES if isinstance(one, Event)),
     "Health.v1.keeping": KEEPING,
+    "Health.v1.unmeasured": UNMEASURED,
     "Health.v1.late": LATE,
     "Health.v1.paused": PAUSED,
     "Health.v1.refused": REFUSED,

@@ -10,6 +10,8 @@ from inhand_outcomes.achievement import Amount
 
 ADDED_UNITS = ("_s", "_ml", "_m2", "_count")
 """Ends of the names of amounts that add up; of others the mean over time is taken."""
+RATE_UNITS = ("_m_s", "_deg_s", "_rad_s", "_per_s")
+"""Ends of the names of speeds and rates, which are no seconds."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,11 @@ class Outcome:
         )
 
 
+def adds_up(name: str) -> bool:
+    """Whether an amount of this name is summed, as litres are and angles and speeds are not."""
+    return name.endswith(ADDED_UNITS) and not name.endswith(RATE_UNITS)
+
+
 def outcome_id(place: str, kind: str, object_name: str, person: int | None, start_ns: int) -> str:
     """Return the id of an event: the same whenever the same act is found again."""
     text = f"{place}/{kind}/{object_name}/{person}/{start_ns}"
@@ -82,7 +89,7 @@ def outcome_id(place: str, kind: str, object_name: str, person: int | None, star
 
 
 def _together(name: str, first: Amount, second: Amount, share: float) -> Amount:
-    if name.endswith(ADDED_UNITS):
+    if adds_up(name):
         deviation = (first.deviation**2 + second.deviation**2) ** 0.5
         return Amount(first.value + second.value, deviation)
     value = (1.0 - share) * first.value + share * second.value

@@ -24,7 +24,7 @@ class GatheringParameters:
     one handed it to the other, metres."""
     piece_s: float = 20.0
     """Seconds of what goes on after which they are counted, so that windows stay short."""
-    frames_that_wait: int = 64
+    frames_that_wait: int = 600
     """Number of frames whose people wait for the poses of the objects in their hands."""
 
 

@@ -29,7 +29,8 @@ from inhand_outcomes.days import (
     local_time,
     seconds_of,
 )
-from inhand_outcomes.totals import DayTotal, adds_up, sum_of_amount
+from inhand_outcomes.outcome import adds_up
+from inhand_outcomes.totals import DayTotal, sum_of_amount
 
 SETTLED_S = 120.0
 """Seconds after its end at which a period is judged: outcomes are settled and saved by then."""

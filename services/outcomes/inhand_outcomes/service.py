@@ -1,11 +1,14 @@
 """The daemon of outcomes: what it is made of, and its loop."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from datetime import date
+from importlib.metadata import version
 
 from inhand_runtime.daemon import Arrivals, Daemon, running_daemon
+from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import Received
 from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
@@ -17,6 +20,8 @@ from msgspec.structs import replace
 from inhand_outcomes.capture_clock import CaptureClock
 from inhand_outcomes.days import local_day
 from inhand_outcomes.floor_watch import FloorWatch
+from inhand_outcomes.handling import LEFT_IN_USE
+from inhand_outcomes.homeassistant.home import Home, Place
 from inhand_outcomes.keeping import open_kept
 from inhand_outcomes.memory import Memory
 from inhand_outcomes.outcome import Outcome
@@ -25,6 +30,7 @@ from inhand_outcomes.settings import OutcomesSettings, check
 from inhand_outcomes.store.database import Database
 from inhand_outcomes.store.failures import StoreError
 from inhand_outcomes.store.floor_maps import floor_maps, keep_floor_map
+from inhand_outcomes.store.forgetting import Forget, forget
 from inhand_outcomes.store.goal_marks import events_to_publish, judge_goals, mark_published
 from inhand_outcomes.store.retention import Retention, remove_old
 from inhand_outcomes.store.saving import Saver, read_journal
@@ -55,7 +61,39 @@ def run(settings: Settings[OutcomesSettings]) -> None:
         place = f"{settings.site.realm}/{settings.site.rig}"
         waiting = WaitingOutcomes(lambda: Saver(open_kept(chosen), chosen.keeping))
         watcher = Watcher(things, place)
-        OutcomesLoop(daemon, watcher, waiting, chosen.rules, chosen.retention).run()
+        home = None
+        if chosen.homeassistant is not None:
+            site = settings.site
+            uses = {name: thing.use for name, thing in things.items()}
+            of = Place(site.realm, site.rig, settings.instance)
+            home = Home(chosen.homeassistant, of, uses, chosen.rules, chosen.sure)
+        loop = OutcomesLoop(daemon, watcher, waiting, chosen.rules, chosen.retention, home)
+        with _telling_home(home, chosen, daemon.health):
+            loop.run()
+
+
+@contextmanager
+def _telling_home(
+    home: Home | None, settings: OutcomesSettings, health: HealthBoard
+) -> Iterator[None]:
+    """Tell Home Assistant what is handed over, beside the block."""
+    if home is None or settings.homeassistant is None:
+        yield
+        return
+    from inhand_outcomes.homeassistant.client import HomeAssistantClient
+
+    def forget_day(day: date) -> None:
+        with closing(open_kept(settings)) as database:
+            forget(database, Forget(day=day), time.time_ns())
+
+    client = HomeAssistantClient(
+        settings.homeassistant, home.handover, health, forget_day, version("inhand")
+    )
+    client.start()
+    try:
+        yield
+    finally:
+        client.stop()
 
 
 NO_OBJECTS = (
@@ -73,6 +111,7 @@ class OutcomesLoop:
     waiting: WaitingOutcomes
     rules: Rules
     retention: Retention
+    home: Home | None = None
 
     def __post_init__(self) -> None:
         self._clock = CaptureClock()
@@ -92,6 +131,8 @@ class OutcomesLoop:
         next_save = time.monotonic() + SAVE_PERIOD_S
         while not self.daemon.stop.is_set():
             sample = self.daemon.receive(IDLE_S)
+            if self.home is not None and self.home.take_wanted_pause() and self.home.paused:
+                settled += self._done_until_pause()
             if sample is not None:
                 settled += self._hear(sample)
             if time.monotonic() >= next_save:
@@ -105,7 +146,7 @@ class OutcomesLoop:
 
     def _look_for_floor(self) -> None:
         """Let frames arrive while one is to be looked at, and no longer: they are large."""
-        wanted = self._floors.wants_frame(self._clock.now_ns())
+        wanted = not self._paused and self._floors.wants_frame(self._clock.now_ns())
         if wanted and self._frames is None:
             self._frames = self.daemon.subscribe(RGBD, samples=1)
         elif not wanted and self._frames is not None:
@@ -122,11 +163,13 @@ class OutcomesLoop:
             if pose is None:
                 return []
             self._clock.hear(pose.time_ns)
-            return self.watcher.hear_pose(pose)
+            return [] if self._paused else self.watcher.hear_pose(pose)
         if topic is SKELETONS:
             skeletons = self.daemon.decode(SKELETONS, sample)
             if skeletons is not None:
                 self._clock.hear(skeletons.time_ns)
+                if self._paused:
+                    return []
                 self._floors.hear_skeletons(key.name, skeletons)
                 return self.watcher.hear_skeletons(key.name, skeletons)
         if topic is INFO:
@@ -134,11 +177,19 @@ class OutcomesLoop:
             if info is not None:
                 self.watcher.hear_info(key.name, info)
                 self._floors.hear_info(key.name, info)
-        if topic is RGBD and self._floors.wants_frame(self._clock.now_ns()):
+        if topic is RGBD and not self._paused and self._floors.wants_frame(self._clock.now_ns()):
             frame = self.daemon.decode(RGBD, sample)
             if frame is not None:
                 self._look_at(key.name, frame, sample.key)
         return []
+
+    @property
+    def _paused(self) -> bool:
+        return self.home is not None and self.home.paused
+
+    def _done_until_pause(self) -> list[Outcome]:
+        """End what is under way: what was achieved counts, and nothing is left in use by it."""
+        return [outcome for outcome in self.watcher.end_all() if outcome.kind != LEFT_IN_USE]
 
     def _look_at(self, camera: str, frame: RgbdFrame, key: str) -> None:
         """Look for the floor in a frame; damaged depth is counted."""
@@ -152,6 +203,8 @@ class OutcomesLoop:
         self.waiting.save((), {}, time.monotonic())
         if self.waiting.saver is not None:
             self._memory.recall(read_journal(self.waiting.saver.database))
+            if self.home is not None:
+                self.home.recall(self.waiting.saver.database)
         self._show()
 
     def _save(self, settled: Sequence[Outcome]) -> None:
@@ -161,6 +214,10 @@ class OutcomesLoop:
             if saved.forget:
                 self.watcher.forget()
                 self._memory = Memory(self.watcher)
+                if self.home is not None:
+                    self.home.forget()
+            if self.home is not None:
+                self.home.say(saved.added)
             for outcome in saved.added:
                 self._publish(outcome.message(self._published))
         if self.waiting.saver is not None:
@@ -179,6 +236,9 @@ class OutcomesLoop:
             self._publish(replace(event, sequence=self._published))
         if events:
             mark_published(database, events)
+        if self.home is not None:
+            self.home.say_goals(events)
+            self.home.show(database, now_ns)
         today = local_day(now_ns, self.rules.zone)
         for kept in self.watcher.floors.to_keep():
             keep_floor_map(database, kept)
@@ -200,4 +260,5 @@ class OutcomesLoop:
         else:
             lost = f"; {self.waiting.lost} outcomes were lost" if self.waiting.lost else ""
             health.trouble("database", self.waiting.problem + lost)
+        health.paused = self.home.paused if self.home is not None else None
         health.state = "running" if self.waiting.problem is None else "degraded"

@@ -9,6 +9,7 @@ from inhand_runtime.writable import try_folder
 from inhand_schemas.fields import Name, Vector3
 from pydantic import AfterValidator
 
+from inhand_outcomes.homeassistant.settings import HomeAssistantSettings, check_homeassistant
 from inhand_outcomes.keeping import KeepingSettings
 from inhand_outcomes.uses import USES
 
@@ -31,15 +32,21 @@ class OutcomesSettings(KeepingSettings):
     """``[outcomes.NAME]``: what is measured, beside what is kept of it.
 
     Measured are the objects of ``models``; without any, those that trackers of the same file
-    follow.
+    follow. ``homeassistant`` shows it in Home Assistant.
     """
 
     models: tuple[FilePath, ...] = ()
     objects: dict[Name, ObjectUse] = {}
+    homeassistant: HomeAssistantSettings | None = None
 
 
 def check(settings: Settings[OutcomesSettings]) -> None:
-    """Check all that can be known before a start; raises SettingsError."""
+    """Check all that can be known before a start.
+
+    Raises SettingsError, and ModuleNotFoundError where an extra is missing.
+    """
+    if settings.service.homeassistant is not None:
+        check_homeassistant(settings.service.homeassistant)
     file = settings.service.database_file
     if file is None:
         return

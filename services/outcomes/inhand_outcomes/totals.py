@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from datetime import date
 
 from inhand_outcomes.achievement import Amount
-from inhand_outcomes.outcome import ADDED_UNITS
+from inhand_outcomes.outcome import adds_up
 
 
 @dataclass(frozen=True)
@@ -55,11 +55,6 @@ PLACE_ENDS = ("_x_m", "_y_m", "_z_m")
 def has_total(name: str) -> bool:
     """Whether an amount of this name is part of totals: a place is not."""
     return not name.endswith(PLACE_ENDS)
-
-
-def adds_up(name: str) -> bool:
-    """Whether an amount of this name is summed, as litres are and angles are not."""
-    return name.endswith(ADDED_UNITS)
 
 
 def sum_of_amount(totals: Iterable[DayTotal], name: str) -> AmountTotal | None:

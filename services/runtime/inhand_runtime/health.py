@@ -55,6 +55,7 @@ class HealthBoard:
         self.effort: float | None = None
         self.shutter_closed: bool | None = None
         self.recording: RecordingState | None = None
+        self.paused: bool | None = None
         self.service = service
         self._instance = instance
         self._now = now
@@ -254,6 +255,7 @@ class HealthBoard:
                 effort=self.effort,
                 shutter_closed=self.shutter_closed,
                 recording=self.recording,
+                paused=self.paused,
                 last_error=self._last_error,
                 troubles=troubles,
                 loop_age_s=max(now - self._came_round, 0.0),

@@ -23,7 +23,8 @@ def unused_counts(health: Health) -> dict[str, int]:
 
 
 def stilled_instances(living: dict[Instance, Heard | None]) -> list[str]:
-    """One line for each camera whose shutter is closed, and each recorder that is paused."""
+    """One line for each camera whose shutter is closed, and each recorder and outcomes that are
+    paused."""
     lines = []
     for (service, name), heard in living.items():
         if heard is None:
@@ -37,6 +38,11 @@ def stilled_instances(living: dict[Instance, Heard | None]) -> list[str]:
             lines.append(
                 f"{service} {name}: paused: nothing is recorded until `inhand recorder resume "
                 f"--name {name}`"
+            )
+        if heard.health.paused:
+            lines.append(
+                f"{service} {name}: paused: nothing is measured until the switch in Home Assistant "
+                "is off"
             )
     return lines
 
@@ -55,7 +61,8 @@ def shown_state(health: Health) -> str:
     """The state of an instance in a word: what somebody wants of it goes before how it is."""
     if health.shutter_closed:
         return "shut"
-    return "paused" if health.recording and health.recording.paused else health.state
+    paused = health.paused or (health.recording is not None and health.recording.paused)
+    return "paused" if paused else health.state
 
 
 def late_lines(living: dict[Instance, Heard | None]) -> list[str]:

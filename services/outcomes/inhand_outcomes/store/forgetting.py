@@ -22,7 +22,7 @@ from inhand_outcomes.store.models import (
     TotalRow,
 )
 from inhand_outcomes.store.retention import deleted
-from inhand_outcomes.store.saving import number_of, place_of
+from inhand_outcomes.store.saving import STANDING, number_of, place_of
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Removed:
 
 
 def forget(database: Database, what: Forget, now_ns: int) -> Removed:
-    """Remove it from details and totals, with the daemon's journal, which may hold any of it.
+    """Remove it from details and totals, with the memory in the journal, which may hold any of it.
 
     The places that go are replaced by those that other outcomes say. What was noted of goals goes
     where it counts any of it. What was removed is written over in the files. A daemon that runs
@@ -64,7 +64,7 @@ def forget(database: Database, what: Forget, now_ns: int) -> Removed:
         places_gone = _forget_places(session, what)
         maps_gone = deleted(session, _of(what, FloorMapRow))
         goals_gone = deleted(session, delete(GoalMarkRow).where(_chosen_marks(what)))
-        session.execute(delete(JournalRow))
+        session.execute(delete(JournalRow).where(JournalRow.name.not_like(f"{STANDING}%")))
         newest = session.scalar(select(func.max(ForgottenRow.number))) or 0
         session.add(
             ForgottenRow(number=newest + 1, time_ns=now_ns, person=what.person, day=what.day)

@@ -32,6 +32,9 @@ Kept = Literal["numbers", "poses"]
 DIGITS = 6
 """Number of digits of evidence and poses that are kept: micrometres of a metre."""
 
+STANDING = "standing/"
+"""Beginning of the names of a journal's entries that are no memory of what was seen, and stay when
+something is forgotten."""
 AHEAD_S = 60.0
 """Seconds by which the clock of a camera is ahead of this machine's at most."""
 
@@ -111,6 +114,12 @@ def read_journal(database: Database) -> dict[str, bytes]:
     """Return the daemon's journal; raises StoreError."""
     with database.reading() as session:
         return {row.name: row.value for row in session.scalars(select(JournalRow))}
+
+
+def write_journal(database: Database, journal: Mapping[str, bytes | None]) -> None:
+    """Replace entries of the journal, None removes one; raises StoreError."""
+    with database.writing() as session:
+        _write_journal(session, journal)
 
 
 def _write_journal(session: Session, journal: Mapping[str, bytes | None]) -> None:

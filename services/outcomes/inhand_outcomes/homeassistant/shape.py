@@ -1,0 +1,69 @@
+"""What is announced to Home Assistant, apart from any value: objects, kinds, amounts and goals."""
+
+import hashlib
+from collections.abc import Iterable
+
+import msgspec
+
+from inhand_outcomes.handling import DROPPED, LEFT_IN_USE, PUT_DOWN, TAKEN_UP
+from inhand_outcomes.homeassistant.kinds import KINDS, is_shown
+from inhand_outcomes.rules import Goal
+from inhand_outcomes.totals import DayTotal
+from inhand_outcomes.watching import HANDED_OVER
+
+HANDLED = (TAKEN_UP, PUT_DOWN, DROPPED, HANDED_OVER, LEFT_IN_USE)
+"""Kinds that there are of every object."""
+
+
+class ObjectShape(msgspec.Struct, frozen=True):
+    """An object, with the kinds of its outcomes and their amounts that add up, in order."""
+
+    name: str
+    kinds: tuple[tuple[str, tuple[str, ...]], ...]
+
+
+class GoalShape(msgspec.Struct, frozen=True):
+    """A goal, with the amount that counts for it."""
+
+    name: str
+    amount: str
+
+
+class Shape(msgspec.Struct, frozen=True):
+    """All that an announcement depends on. ``node`` is the device's id, and ``label`` its name at
+    first, which people may change in Home Assistant."""
+
+    node: str
+    label: str
+    prefix: str
+    single_components: bool
+    objects: tuple[ObjectShape, ...]
+    goals: tuple[GoalShape, ...]
+    floor: bool
+
+
+def new_node(realm: str, rig: str, instance: str) -> str:
+    """Return the id of a device that is announced the first time."""
+    text = f"{realm}/{rig}/{instance}"
+    return "inhand_" + hashlib.blake2b(text.encode(), digest_size=6).hexdigest()
+
+
+def object_shape(
+    name: str, use: str, seen: Iterable[DayTotal], before: ObjectShape | None
+) -> ObjectShape:
+    """Return the shape of an object by its use, by what was seen of it, and by what was announced
+    of it before: an entity stays as long as its object does."""
+    kinds: dict[str, set[str]] = {kind: set() for kind in HANDLED}
+    for kind, amounts in KINDS.get(use, {}).items():
+        kinds.setdefault(kind, set()).update(amounts)
+    for kind, amounts in before.kinds if before is not None else ():
+        kinds.setdefault(kind, set()).update(amounts)
+    for total in seen:
+        if total.object == name:
+            kinds.setdefault(total.kind, set()).update(filter(is_shown, total.amounts))
+    return ObjectShape(name, tuple((kind, tuple(sorted(kinds[kind]))) for kind in sorted(kinds)))
+
+
+def goal_shape(goal: Goal) -> GoalShape:
+    """Return the shape of a goal."""
+    return GoalShape(goal.name, goal.amount)
