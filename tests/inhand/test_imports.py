@@ -66,7 +66,7 @@ def _run(code: str, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
             (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER, "numpy", "rich", "cryptography"),
         ),
         (["replay", "--help"], (*NEEDED_BY_NOBODY, *NEEDED_BY_THE_TRACKER)),
-        (["outcomes", "--help"], ("matplotlib", "sklearn", "trimesh", "alembic", "numba")),
+        (["outcomes", "--help"], ("matplotlib", "sklearn", "trimesh", "alembic", "numba", "cv2")),
         (["tracker", "--help"], (*NEEDED_BY_NOBODY, "rich", "inhand_lab")),
         (["simulate", "--help"], ("matplotlib", "sklearn")),
         (["evaluate", "--help"], ("matplotlib", "sklearn")),

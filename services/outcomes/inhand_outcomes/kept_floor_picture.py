@@ -3,11 +3,9 @@
 from collections.abc import Sequence
 from functools import reduce
 
-import cv2
 import numpy as np
 
 from inhand_outcomes.floor_map import map_of_cells
-from inhand_outcomes.floor_picture import floor_png
 from inhand_outcomes.store.floor_maps import Cells, KeptFloorMap
 
 SWEPT_BITS, KIND_BITS = 0x1F, 0xE0
@@ -20,6 +18,8 @@ UNSWEPT, UNSWEPT_SIZE = "Nothing was swept yet", (180, 360)
 def kept_floor_png(maps: Sequence[KeptFloorMap]) -> bytes:
     """Draw the maps of a day, one at least, as one (PNG), whoever swept; raises ValueError where
     they do not lie on each other."""
+    from inhand_outcomes.floor_picture import floor_png
+
     header = maps[0].header
     if any(one.header != header for one in maps):
         raise ValueError(f"the maps of {maps[0].day} do not lie on each other: forget that day")
@@ -29,6 +29,8 @@ def kept_floor_png(maps: Sequence[KeptFloorMap]) -> bytes:
 
 def unswept_png() -> bytes:
     """Draw that nothing was swept (PNG)."""
+    import cv2
+
     picture = np.full((*UNSWEPT_SIZE, 3), 255, np.uint8)
     place = (UNSWEPT_SIZE[1] // 12, UNSWEPT_SIZE[0] // 2)
     cv2.putText(
