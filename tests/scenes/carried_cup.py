@@ -98,9 +98,9 @@ def a_pose(
     )
 
 
-def write_model(path: Path, interaction: str = "carryCup") -> Path:
-    """Write as much of a model of the cup as tells its mesh."""
-    said = json.dumps({"object": CUP.name, "interaction": interaction})
+def write_model(path: Path, interaction: str = "carryCup", name: str = CUP.name) -> Path:
+    """Write as much of a model of the cup, or of one like it, as tells its mesh."""
+    said = json.dumps({"object": name, "interaction": interaction})
     faces = np.zeros((1, 3), np.int64)
     arrays = {"model": np.array(said), "shape.vertices": CUP.vertices, "shape.faces": faces}
     with path.open("wb") as file:

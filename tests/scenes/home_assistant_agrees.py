@@ -185,9 +185,10 @@ class Scene:
         self.rig, self.broker, self.home, self._single = rig, broker, home, single
         self.automations = automations
 
-    def start_daemon(self) -> Process:
-        """Start outcomes, which measures the cup."""
-        models = [str(write_model(self.rig.folder / "cup.model", INTERACTION))]
+    def start_daemon(self, *names: str) -> Process:
+        """Start outcomes, which measures these objects."""
+        folder = self.rig.folder
+        models = [str(write_model(folder / name, INTERACTION, name)) for name in names]
         table = self.broker.settings(single_components=self._single)
         self.rig.configure(
             f'[outcomes.home]\nmodels = {json.dumps(models)}\ntime_zone = "UTC"\n{GOALS}{table}'
@@ -262,9 +263,10 @@ SWEEPING: dict[str, dict[str, Any]] = {
 def play(scene: Scene) -> None:
     """Go through a day of a home, and its mishaps."""
     home, broker = scene.home, scene.broker
-    daemon = scene.start_daemon()
+    daemon = scene.start_daemon("cup", "bowl")
     wait_for("the entities", lambda: "sensor.cup_put_down_times" in home.states())
     scene.shows("sensor.cup_put_down_times", "0")
+    assert "sensor.bowl_last_place" in home.states()
     now_ns = time.time_ns() - 60 * 10**9
     scene.carry(at_ns=now_ns)
     scene.shows("sensor.cup_put_down_times", "1")
@@ -282,10 +284,11 @@ def play(scene: Scene) -> None:
     scene.carry(at_ns=now_ns + 12 * 10**9)
     daemon.stop()
     scene.shows("sensor.cup_put_down_times", "unavailable")
-    scene.start_daemon()
+    scene.start_daemon("cup")
     scene.shows("switch.pause_measuring", "on")
     scene.shows("sensor.cup_put_down_times", "1")
     assert scene.rig.health("home")["paused"] is True
+    wait_for("the bowl's end", lambda: not [one for one in home.states() if "bowl" in one])
     home.post("/api/services/switch/turn_off", {"entity_id": "switch.pause_measuring"})
     scene.shows("switch.pause_measuring", "off")
 

@@ -95,7 +95,7 @@ def test_values_are_json_with_their_attributes() -> None:
     assert json.loads(values["mug-sip-volume_ml"]) == volume
     assert json.loads(values["broom-sweeping-area_m2"])["value"] == 0
     place = json.loads(values["mug-place"])
-    assert place["value"] == "1.90 m in front of the camera, 0.40 m right, 0.20 m below it"
+    assert place["value"] == "1.90 m ahead, 0.40 m right, 0.20 m down"
     assert place["attributes"]["x_m"] == 0.4
     assert json.loads(values["broom-place"])["value"] == "None"
     assert values["goal--drink-reached"] == b"OFF"

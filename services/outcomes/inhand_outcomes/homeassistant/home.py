@@ -17,7 +17,6 @@ from inhand_outcomes.homeassistant.parameters import DEFAULT_HOME, HomeParameter
 from inhand_outcomes.homeassistant.settings import HomeAssistantSettings
 from inhand_outcomes.homeassistant.shape import Shape, goal_shape, new_node, object_shape
 from inhand_outcomes.homeassistant.state import GoalProgress, HomeEvent, HomeState, KindTotal
-from inhand_outcomes.kept_floor_picture import kept_floor_png, unswept_png
 from inhand_outcomes.outcome import Outcome
 from inhand_outcomes.rules import PersonsGoal, Rules, progress
 from inhand_outcomes.store.database import Database
@@ -217,7 +216,13 @@ class Home:
         return datetime.combine(day, clock_time.min, self._rules.zone)
 
     def _floor_png(self, maps: Sequence[KeptFloorMap]) -> bytes:
-        """The picture of the floor, drawn anew where the maps are others."""
+        """The picture of the floor, drawn anew where the maps are others; empty where nothing is
+        ever swept."""
+        if not maps and SWEPT not in self._uses.values():
+            return b""
+        # OpenCV takes 17 MB, which only homes with a broom pay.
+        from inhand_outcomes.kept_floor_picture import kept_floor_png, unswept_png
+
         digest = blake2b()
         for one in maps:
             digest.update(repr((one.day, one.header)).encode() + one.cells.tobytes())

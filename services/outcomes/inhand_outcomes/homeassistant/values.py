@@ -85,9 +85,9 @@ def _place(state: HomeState, place: LastPlace | None) -> bytes:
     if place is None:
         return _value(UNKNOWN, {})
     x, y, z = (round(number, 2) for number in place.rig_from_object.translation)
-    side, height = "right" if x >= 0.0 else "left", "below" if y >= 0.0 else "above"
-    depth = "in front of" if z >= 0.0 else "behind"
-    text = f"{abs(z):.2f} m {depth} the camera, {abs(x):.2f} m {side}, {abs(y):.2f} m {height} it"
+    side, height = "right" if x >= 0.0 else "left", "down" if y >= 0.0 else "up"
+    depth = "ahead" if z >= 0.0 else "behind"
+    text = f"{abs(z):.2f} m {depth}, {abs(x):.2f} m {side}, {abs(y):.2f} m {height}"
     time = local_time(place.time_ns, state.zone).isoformat(timespec="seconds")
     return _value(text, {"x_m": x, "y_m": y, "z_m": z, "time": time, "after": place.kind})
 
