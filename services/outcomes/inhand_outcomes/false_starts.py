@@ -45,8 +45,8 @@ def without_false_starts(
     ways, seconds = np.linalg.norm(np.diff(places, axis=0), axis=1), np.diff(times)
     jumps = (ways > parameters.jump_m) & (seconds <= parameters.jump_s)
     jumps &= ways > parameters.jump_m_s * seconds
-    starts = np.flatnonzero(jumps) + 1
-    if not len(starts):
+    starts: list[int] = (np.flatnonzero(jumps) + 1).tolist()
+    if not starts:
         return track
     seen = track.seen.copy()
     until = -1
@@ -57,7 +57,7 @@ def without_false_starts(
         back = next((end for end in ends if _is_back(places, start, end, parameters)), None)
         if back is not None:
             seen[shown[start:back]] = False
-            until = int(back) + 1
+            until = back + 1
         elif times[-1] - times[start] < parameters.longest_s:
             seen[shown[start:]] = False
             break

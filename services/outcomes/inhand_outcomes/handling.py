@@ -241,7 +241,9 @@ def _put_down(
     distances = np.linalg.norm(hands - place, axis=-1)
     reached = float(np.nanmin(distances)) if np.isfinite(distances).any() else np.nan
     fall = float(track.positions[held.last, 2] - place[2])
-    dropped = reached > parameters.fallen_m and fall > parameters.fallen_m
+    aside = float(np.linalg.norm(track.positions[held.last, :2] - place[:2]))
+    # What falls goes down more than aside; what else is at once elsewhere was never held.
+    dropped = min(reached, fall) > parameters.fallen_m and fall > aside
     amounts = {
         f"place_{axis}_m": Amount(float(value), float(error))
         for axis, value, error in zip("xyz", place, spread, strict=True)
