@@ -127,8 +127,8 @@ def test_a_move_within_the_error_of_its_place_is_improbable() -> None:
     places = through(times, (2.0, TABLE), (3.0, near))
     hand = through(times, (1.0, SIDE), (2.0, TABLE), (3.0, near), (4.0, SIDE))
     surely, unsurely = (
-        handling(track(times, places, hand, deviation), THING)[-1].probability
-        for deviation in (0.002, 0.05)
+        max((one.probability for one in handling(moved, THING)), default=0.0)
+        for moved in (track(times, places, hand, deviation) for deviation in (0.002, 0.05))
     )
     assert surely > 0.99
     assert unsurely < 0.75
@@ -150,3 +150,19 @@ def test_the_view_and_the_frame_rate_change_nothing(turn: float, x: float, rate:
     joints = part.joints @ rotation.T + [x, 0.0, 0.0]
     moved = Track(part.times, poses, part.covariances, part.seen, joints, part.people)
     assert kinds(handling(moved, THING)) == [TAKEN_UP, PUT_DOWN]
+
+
+def test_what_is_seen_elsewhere_without_a_hand_that_took_it_is_not_taken_up() -> None:
+    times = np.arange(0.0, 9.0, 1.0 / RATE_HZ)
+    far = np.add(TABLE, [0.9, 0.0, 0.0])
+    hand = np.tile(CHEST, (len(times), 1))
+    places = through(times, (3.0, far), (3.3, CHEST), (5.0, CHEST), (5.3, far))
+    found = handling(track(times, places, hand), THING)
+    assert all(one.probability < 0.01 for one in found)
+
+
+def test_what_lies_near_a_hand_that_goes_out_of_view_is_not_left_in_use() -> None:
+    times = np.arange(0.0, 5.0, 1.0 / RATE_HZ)
+    lying = track(times, np.tile(TABLE, (len(times), 1)), np.tile(TABLE, (len(times), 1)))
+    (left,) = handling(lying, THING, ended=True)
+    assert left.probability < 0.01

@@ -1,10 +1,11 @@
 """What happens to any thing: taken up, put down, dropped, gone with who holds it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 
 import numpy as np
 from inhand_schemas.joints import Joint
+from numpy.lib.stride_tricks import sliding_window_view
 
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array, Flags, Indices
@@ -31,9 +32,22 @@ class HandlingParameters:
     away_m: float = 0.25
     """Distance that both hands must reach while a thing lies, metres: a held one may be measured
     as beyond ``far_m`` for moments."""
-    passed_m: float = 0.17
+    passed_m: float = 0.13
     """Change of a hand's distance while the thing stays where it is, by which that hand does not
-    hold it, metres."""
+    hold it, metres: over ``steady_s`` the distance of a held one errs by 3 cm."""
+    steady_s: float = 0.3
+    """Seconds over which the median of a hand's distance is taken."""
+    reach_m: float = 0.22
+    """Distance from a thing where it lies to which a hand must have come to take it up or to put it
+    there, metres."""
+    reach_deviation_m: float = 0.03
+    """Standard deviation of that distance."""
+    reached_s: float = 2.0
+    """Seconds before it lies, or from when it was last seen to lie, within which the hand must have
+    come: a tracker may tell late."""
+    noise: float = 3.0
+    """Deviations of a pose that are taken from a way, squared: the farthest of many poses is so far
+    off by error alone."""
     on_head_m: float = 0.22
     """Distance from the head's joint up to which a thing is worn, not put down, metres."""
     on_foot_m: float = 0.13
@@ -84,11 +98,11 @@ def handling(
     achievements = []
     for before, after in pairwise(stretches):
         if (before.state, after.state) == (LYING, HELD):
-            achievements += _taken_up(looked, before, after, parameters)
+            achievements += _taken_up(looked, thing, before, after, parameters)
         elif (before.state, after.state) == (HELD, LYING):
-            achievements += _put_down(looked, before, after, parameters)
+            achievements += _put_down(looked, thing, before, after, parameters)
     if ended and stretches and stretches[-1].state == HELD:
-        achievements.append(_left(looked, stretches[-1]))
+        achievements.append(_left(looked, stretches[-1], parameters))
     return achievements
 
 
@@ -110,7 +124,10 @@ def _states(track: Track, thing: Thing, parameters: HandlingParameters) -> Array
             known = hands[stay][~np.isnan(hands[stay]).any(axis=1)]
             if len(known) < parameters.least_seen * len(hands[stay]):
                 continue
-            nearest, farthest = known.min(axis=0), known.max(axis=0)
+            frames = max(round(parameters.steady_s / parameters.step_s), 1)
+            steady = sliding_window_view(known, min(frames, len(known)), axis=0)
+            steady = np.median(steady, axis=-1)
+            nearest, farthest = steady.min(axis=0), steady.max(axis=0)
             free = (nearest > parameters.far_m) & (farthest > parameters.away_m)
             free |= farthest - nearest > parameters.passed_m
             if free.all():
@@ -184,8 +201,12 @@ def _moved(track: Track, lying: Stretch, held: Stretch) -> tuple[float, float]:
     place, deviation = _place(track, lying)
     frames = _shown(track, held)
     distances = np.linalg.norm(track.positions[frames] - place, axis=1)
-    own = track.point_deviations(np.zeros(3))[frames[distances.argmax()]]
-    return float(distances.max()), float(np.hypot(np.linalg.norm(deviation) / 3**0.5, own))
+    farthest = frames[distances.argmax()]
+    own = float(np.sqrt(np.trace(track.covariances[farthest, :3, :3]) / 3.0))
+    spread = float(np.hypot(np.linalg.norm(deviation) / 3**0.5, own))
+    by_error = DEFAULT_HANDLING.noise * spread
+    moved = np.sqrt(max(distances.max() ** 2 - by_error**2, 0.0))
+    return float(moved), spread
 
 
 def _shown(track: Track, stretch: Stretch) -> Indices:
@@ -195,17 +216,21 @@ def _shown(track: Track, stretch: Stretch) -> Indices:
 
 
 def _taken_up(
-    track: Track, lying: Stretch, held: Stretch, parameters: HandlingParameters
+    track: Track, thing: Thing, lying: Stretch, held: Stretch, parameters: HandlingParameters
 ) -> list[Achievement]:
     moved, deviation = _moved(track, lying, held)
     probability = float(normal_share((moved - parameters.moved_m) / deviation))
     start = float(track.times[lying.last])
+    until = float(track.times[held.first])
+    reach = _reach(track, thing, lying, (start - parameters.reached_s, until))
+    if np.isfinite(reach):
+        probability *= _reached(reach, parameters)
     evidence = {"moved_m": float(moved), **_seen(track, lying, held)}
-    return [_achievement(TAKEN_UP, start, float(track.times[held.first]), probability, evidence)]
+    return [_achievement(TAKEN_UP, start, until, probability, evidence)]
 
 
 def _put_down(
-    track: Track, held: Stretch, lying: Stretch, parameters: HandlingParameters
+    track: Track, thing: Thing, held: Stretch, lying: Stretch, parameters: HandlingParameters
 ) -> list[Achievement]:
     moved, deviation = _moved(track, lying, held)
     place, spread = _place(track, lying)
@@ -216,7 +241,9 @@ def _put_down(
     distances = np.linalg.norm(hands - place, axis=-1)
     reached = float(np.nanmin(distances)) if np.isfinite(distances).any() else np.nan
     fall = float(track.positions[held.last, 2] - place[2])
-    dropped = reached > parameters.fallen_m and fall > parameters.fallen_m
+    aside = float(np.linalg.norm(track.positions[held.last, :2] - place[:2]))
+    # What falls goes down more than aside; what else is at once elsewhere was never held.
+    dropped = min(reached, fall) > parameters.fallen_m and fall > aside
     amounts = {
         f"place_{axis}_m": Amount(float(value), float(error))
         for axis, value, error in zip("xyz", place, spread, strict=True)
@@ -226,14 +253,36 @@ def _put_down(
         evidence["hand_to_place_m"] = reached
     kind = DROPPED if dropped else PUT_DOWN
     start, end = float(times[held.last]), float(times[lying.first])
+    reach = _reach(track, thing, lying, (end - parameters.reached_s, end))
+    if np.isfinite(reach) and not dropped:
+        probability *= _reached(reach, parameters)
     return [_achievement(kind, start, end, probability, evidence, amounts)]
 
 
-def _left(track: Track, held: Stretch) -> Achievement:
-    """Say that the thing was last seen in somebody's hands."""
+def _reach(track: Track, thing: Thing, lying: Stretch, between: tuple[float, float]) -> float:
+    """How near, metres, a hand came to the thing where it lies; NaN where no hand is known."""
+    frames = _shown(track, lying)
+    place = np.median(track.positions[frames], axis=0)
+    usual = int(frames[np.linalg.norm(track.positions[frames] - place, axis=1).argmin()])
+    then = (track.times >= between[0]) & (track.times <= between[1])
+    count = int(then.sum())
+    there = replace(track[then], poses=np.tile(track.poses[usual], (count, 1)))
+    distances = hand_distances(there, thing)
+    return float(np.nanmin(distances)) if np.isfinite(distances).any() else float("nan")
+
+
+def _reached(reach: float, parameters: HandlingParameters) -> float:
+    return float(normal_share((parameters.reach_m - reach) / parameters.reach_deviation_m))
+
+
+def _left(track: Track, held: Stretch, parameters: HandlingParameters) -> Achievement:
+    """Say that the thing was last seen in somebody's hands; what never moved there only lay near
+    a hand."""
     at = float(track.times[held.last])
     share = float(track.seen[held.first : held.last + 1].mean())
-    return _achievement(LEFT_IN_USE, at, at, share, {"seen_share": share})
+    moved, deviation = _moved(track, held, held)
+    carried = float(normal_share((moved - parameters.moved_m) / deviation))
+    return _achievement(LEFT_IN_USE, at, at, share * carried, {"seen_share": share})
 
 
 def _seen(track: Track, *stretches: Stretch) -> dict[str, float]:

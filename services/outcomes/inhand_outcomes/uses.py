@@ -43,6 +43,8 @@ class Use:
     measure: Measure
     interaction: str
     complete: Completion | None = None
+    in_hand: bool = True
+    """Whether it takes a hand that holds the thing."""
 
 
 USES: Mapping[str, Use] = {
@@ -58,9 +60,9 @@ USES: Mapping[str, Use] = {
     "phoning": Use(phoning, "answerPhone"),
     "filming": Use(filming, "recordVideo"),
     "playing": Use(playing, "playFlute"),
-    "wearing": Use(wearing, "putOnGlasses"),
+    "wearing": Use(wearing, "putOnGlasses", in_hand=False),
     "reading": Use(reading, "magnifyText"),
-    "shoes": Use(shoes, "putOnShoe"),
+    "shoes": Use(shoes, "putOnShoe", in_hand=False),
 }
 """The uses by name."""
 

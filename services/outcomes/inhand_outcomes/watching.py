@@ -7,8 +7,10 @@ import numpy as np
 from inhand_schemas.messages import CameraInfo, ObjectPose, Pose, Skeletons
 
 from inhand_outcomes.achievement import Achievement
+from inhand_outcomes.false_starts import without_false_starts
 from inhand_outcomes.gathering import NS_PER_S, Gathering, Holding, Sighting, Sightings
 from inhand_outcomes.handling import LEFT_IN_USE, handling
+from inhand_outcomes.in_hand import in_hand
 from inhand_outcomes.lasting import LastingOutcomes
 from inhand_outcomes.outcome import Outcome, outcome_id
 from inhand_outcomes.parameters import DEFAULT_GATHERING, GatheringParameters
@@ -153,7 +155,7 @@ class Watcher:
 
     def _measure(self, holding: Holding, followed: Followed, *, ended: bool) -> list[Outcome]:
         """What is settled now of a track."""
-        track = followed.gathering.track(holding.person, self.room)
+        track = without_false_starts(followed.gathering.track(holding.person, self.room))
         first_ns, last_ns = followed.gathering.first_ns, followed.gathering.last_ns
         found = [
             (achievement.lasting, self._outcome(holding, followed.gathering, achievement))
@@ -197,6 +199,8 @@ class Watcher:
         uncounted = track[track.times >= counted_s]
         if use is not None and len(uncounted) > 1:
             done = use.measure(uncounted, thing)
+            if use.in_hand:
+                done = in_hand(done, uncounted, thing)
             if use.complete is not None:
                 done = use.complete(done, self._earlier(holding, followed.gathering.first_ns))
             if thing.use == SWEEPING:

@@ -91,3 +91,13 @@ def test_neither_heading_nor_frame_rate_nor_tempo_changes_the_count(heading, rat
     whole = curls(heading=heading, rate=rate, up_s=up_s)
     some = whole[np.random.default_rng(3).random(len(whole)) < kept]
     assert len(lifting(some, BAR)) == 3
+
+
+def test_a_long_bar_that_is_not_level_or_in_one_hand_is_not_lifted():
+    assert all(one.probability < 0.01 for one in lifting(curls(tilt_deg=60.0), BAR))
+    lifted = curls()
+    lifted.joints[:, Joint.HAND_RIGHT] = np.add(lifted.positions, [0.25, 0.0, 0.0])
+    lifted.joints[:, Joint.HAND_LEFT] = lifted.positions - [0.25, 0.0, 0.0]
+    assert all(one.probability > 0.95 for one in lifting(lifted, BAR))
+    lifted.joints[:, Joint.HAND_LEFT] = lifted.positions - [0.25, 0.0, 0.6]
+    assert all(one.probability < 0.01 for one in lifting(lifted, BAR))

@@ -11,6 +11,7 @@ from inhand_schemas.joints import Joint
 
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array
+from inhand_outcomes.hands import hand_distances
 from inhand_outcomes.measures.smoothing import smooth
 from inhand_outcomes.measures.turning import share_seen, turns_of
 from inhand_outcomes.normal import normal_share
@@ -41,6 +42,16 @@ class LiftingParameters:
     """Deviation of a range by smoothing, which cuts tops and bottoms."""
     shoulders_m: float = 0.02
     """Deviation of the height of the shoulders in skeletons."""
+    level: float = np.radians(25.0)
+    """Tilt of the bar, radians, up to which two hands lift it."""
+    level_deviation: float = np.radians(5.0)
+    """Standard deviation of that tilt, beside that of the pose: bars sway."""
+    long_m: float = 0.6
+    """Length from which it takes two hands: dumbbells have up to 0.45 m."""
+    both_m: float = 0.3
+    """Distance of the farther hand from a long bar within which it holds it, metres."""
+    both_deviation_m: float = 0.04
+    """Standard deviation of that distance."""
     seen: float = 0.5
     """Share of a repetition's frames that must be seen, about."""
 
@@ -89,6 +100,11 @@ def lifting(
         )
         tilt, turned = float(np.nanmean(tilts[rows])), float(turning[rows].mean())
         turned = float(np.hypot(turned / np.sqrt(max((ended - begun) / 0.3, 1.0)), 0.005))
+        if ends_apart_m > parameters.long_m:
+            level = (parameters.level - abs(tilt)) / np.hypot(parameters.level_deviation, turned)
+            farther = _farther_hand(track, thing, begun, ended)
+            both = (parameters.both_m - farther) / parameters.both_deviation_m
+            scores = (*scores, level, both)
         up_s, down_s = topped - begun, ended - lowered
         found.append(
             Achievement(
@@ -110,6 +126,14 @@ def lifting(
             )
         )
     return found
+
+
+def _farther_hand(track: Track, thing: Thing, begun: float, ended: float) -> float:
+    """How far, metres, the farther hand usually is from the bar; 0 where both are never known."""
+    frames = track.seen & (track.times >= begun) & (track.times <= ended)
+    distances = hand_distances(track[frames], thing).max(axis=1)
+    known = distances[np.isfinite(distances)]
+    return float(np.median(known)) if len(known) else 0.0
 
 
 def _smoothed(track: Track, values: Array, at: Array, parameters: LiftingParameters) -> Array:
