@@ -93,18 +93,18 @@ def lifting(
         error = float(np.hypot(1.4 * errors[rows].mean(), parameters.smoothing_m))
         by_shoulders = float(np.hypot(error, parameters.shoulders_m))
         seen = share_seen(track.times, track.seen, begun, ended)
-        scores = (
+        scores = [
             (ranges[0] - parameters.range_m) / error,
             (ranges[1] - parameters.range_m) / by_shoulders,
             (seen - parameters.seen) / 0.12,
-        )
+        ]
         tilt, turned = float(np.nanmean(tilts[rows])), float(turning[rows].mean())
         turned = float(np.hypot(turned / np.sqrt(max((ended - begun) / 0.3, 1.0)), 0.005))
         if ends_apart_m > parameters.long_m:
             level = (parameters.level - abs(tilt)) / np.hypot(parameters.level_deviation, turned)
             farther = _farther_hand(track, thing, begun, ended)
             both = (parameters.both_m - farther) / parameters.both_deviation_m
-            scores = (*scores, level, both)
+            scores += [level, both]
         up_s, down_s = topped - begun, ended - lowered
         found.append(
             Achievement(
