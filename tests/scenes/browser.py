@@ -46,6 +46,8 @@ def chromium() -> Iterator[Browser]:
 def tab(browser: Browser, url: str, **options: Any) -> Iterator[Page]:
     """Open a page in a context of its own, and close it with the block."""
     context = browser.new_context(viewport={"width": WINDOW[0], "height": WINDOW[1]}, **options)
+    # What a page waits for starts processes, which others' tests hold up.
+    context.set_default_timeout(60_000)
     page = context.new_page()
     page.goto(url)
     yield page

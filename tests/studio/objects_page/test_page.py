@@ -70,7 +70,6 @@ def test_objects_of_measures_and_of_a_mesh_file_are_made_seen_and_saved(
     studio.said("the studio is at ")
     url = studio.stderr.split("the studio is at ")[1].split()[0]
     with chromium() as browser, tab(browser, url) as page:
-        page.set_default_timeout(60_000)
         page.get_by_text("Objects", exact=True).click()
         make = page.get_by_role("button", name="Make and show")
         save = page.get_by_role("button", name="Save to the dataset")
