@@ -18,6 +18,7 @@ from inhand_lab.achieved.sweeping import PIXEL_M, swept_floor
 from inhand_lab.achieved.true_achievement import TrueAchievement
 from inhand_lab.achieved.truths import TRUTHS
 from inhand_lab.motions.performance import ContactKind
+from inhand_lab.people.person import USUAL_PEOPLE, sample_person
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_outcomes.floor_map import empty_map
@@ -217,14 +218,22 @@ def _tracked(folder: Path, seed: int, participants: int, models: Mapping[str, Pa
     """The folder of the tracked recordings of a seed's people."""
     people, tracked = folder / f"people_{seed}", folder / f"tracked_{seed}"
     _simulate(people, seed, participants, FRAMES)
-    for interaction, model in models.items():
-        paths = [
-            people / "recordings" / f"{interaction}_p{number:02}.mcap"
-            for number in range(participants)
-        ]
-        if not all((tracked / path.name).exists() for path in paths):
-            _inhand("recording", "retrack", "--model", model, "-o", tracked, *paths)
+    for number in range(participants):
+        left_handed = sample_person(seed, number, USUAL_PEOPLE).handedness == "left"
+        for interaction, model in models.items():
+            path = people / "recordings" / f"{interaction}_p{number:02}.mcap"
+            if not (tracked / path.name).exists():
+                config = _settings(model, left_handed=left_handed)
+                _inhand("recording", "retrack", "--config", config, "-o", tracked, path)
     return tracked
+
+
+def _settings(model: Path, *, left_handed: bool) -> Path:
+    """The settings of a tracker for somebody, as they would write them."""
+    config = model.with_suffix(".left.toml" if left_handed else ".right.toml")
+    hand = str(left_handed).lower()
+    config.write_text(f'[tracker.{SUFFIX[1:]}]\nmodel = "{model.name}"\nleft_handed = {hand}\n')
+    return config
 
 
 def _simulate(out: Path, seed: int, participants: int, frames: int) -> None:
