@@ -6,8 +6,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 
 CONTRIB := .venv-contrib
-# One more than cores: processes that tests start, and what they wait for, leave a third of these idle.
-ON_ALL_CORES := --numprocesses $(shell echo $$(($$(nproc) + 1))) --dist loadgroup --no-loadscope-reorder
+ON_ALL_CORES := --numprocesses auto --dist loadgroup --no-loadscope-reorder
 
 .PHONY: help setup contrib demo demo-camera test test-fast lint format clean
 
