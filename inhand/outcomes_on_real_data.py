@@ -103,7 +103,6 @@ def _track(motion: Motion, places: Array, rotations: Rotation) -> Track:
         _covariances(count),
         seen,
         motion.joints,
-        np.zeros(count, np.int64),
     )
     return Room(up / np.linalg.norm(up)).place(whole[rows])
 
@@ -153,6 +152,5 @@ def _hands(joints: Array) -> Iterator[Track]:
         rotations = Rotation.from_matrix(turns)
         poses = np.hstack([_filled(joints[:, hand]), rotations.as_quat(scalar_first=True)])
         times = np.arange(count) / RECORDED_RATE
-        people = np.zeros(count, np.int64)
-        track = Track(times, poses, _covariances(count), seen, joints, people)
+        track = Track(times, poses, _covariances(count), seen, joints)
         yield Room(np.array([0.0, -1.0, 0.0])).place(track)

@@ -24,8 +24,7 @@ def track(places: NDArray[np.float64], hand: NDArray[np.float64]) -> Track:
     joints[:, Joint.HAND_RIGHT] = hand
     poses = np.hstack([places, np.tile([1.0, 0.0, 0.0, 0.0], (len(TIMES), 1))])
     covariances = np.tile(1e-4 * np.eye(6), (len(TIMES), 1, 1))
-    nobody = np.zeros(len(TIMES), np.int64)
-    return Track(TIMES, poses, covariances, np.ones(len(TIMES), bool), joints, nobody)
+    return Track(TIMES, poses, covariances, np.ones(len(TIMES), bool), joints)
 
 
 def elsewhere(start_s: float, end_s: float) -> Track:

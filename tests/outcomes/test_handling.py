@@ -1,7 +1,10 @@
 """Taking up, putting down and dropping, on tracks made by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from carried_cup import through
 from hypothesis import given
 from hypothesis import strategies as st
 from inhand_outcomes.achievement import Achievement
@@ -18,16 +21,6 @@ TABLE, ELSEWHERE, CHEST, SIDE = (
     np.array(place)
     for place in ([0.4, 0.3, 0.8], [0.1, 0.6, 0.8], [0.1, 0.2, 1.2], [0.3, -0.2, 0.75])
 )
-
-
-def through(
-    times: NDArray[np.float64], *knots: tuple[float, NDArray[np.float64]]
-) -> NDArray[np.float64]:
-    """Places (T, 3) on straight ways between places at times."""
-    at = [time for time, _ in knots]
-    return np.stack(
-        [np.interp(times, at, [place[axis] for _, place in knots]) for axis in range(3)], axis=1
-    )
 
 
 def track(
@@ -48,7 +41,6 @@ def track(
         np.tile(deviation_m**2 * np.eye(6), (len(times), 1, 1)),
         np.ones(len(times), bool),
         joints,
-        np.zeros(len(times), np.int64),
     )
 
 
@@ -110,14 +102,7 @@ def test_what_goes_out_of_view_in_a_hand_is_left_in_use() -> None:
 
 def test_poses_that_are_not_seen_are_no_evidence() -> None:
     whole = carried()
-    unseen = Track(
-        whole.times,
-        whole.poses,
-        whole.covariances,
-        np.zeros(len(whole), bool),
-        whole.joints,
-        whole.people,
-    )
+    unseen = replace(whole, seen=np.zeros(len(whole), bool))
     assert handling(unseen, THING, ended=True) == []
 
 
@@ -148,7 +133,7 @@ def test_the_view_and_the_frame_rate_change_nothing(turn: float, x: float, rate:
     poses[:, :3] = part.positions @ rotation.T + [x, 0.0, 0.0]
     poses[:, 3:] = [np.cos(turn / 2), 0.0, 0.0, np.sin(turn / 2)]
     joints = part.joints @ rotation.T + [x, 0.0, 0.0]
-    moved = Track(part.times, poses, part.covariances, part.seen, joints, part.people)
+    moved = Track(part.times, poses, part.covariances, part.seen, joints)
     assert kinds(handling(moved, THING)) == [TAKEN_UP, PUT_DOWN]
 
 

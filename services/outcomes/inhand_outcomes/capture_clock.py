@@ -2,8 +2,6 @@
 
 import time
 
-NS_PER_S = 1_000_000_000
-
 
 class CaptureClock:
     """Goes on from the last capture; before the first it is the host's clock.

@@ -10,11 +10,11 @@ from inhand_schemas.messages import CameraInfo, Person, RgbdFrame, Skeletons
 from numpy.typing import NDArray
 
 from inhand_outcomes.arrays import Array
+from inhand_outcomes.days import NS_PER_S
 from inhand_outcomes.floor import Floor, find_floor, together
 from inhand_outcomes.floor_of_people import find_floor_of_people
-from inhand_outcomes.gathering import NS_PER_S, joints_of
+from inhand_outcomes.gathering import joints_of
 from inhand_outcomes.room import Room
-from inhand_outcomes.rotations import matrices
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class FloorWatch:
         self.room: Room | None = None
         self._parameters = parameters
         self._infos: dict[str, CameraInfo] = {}
-        self._people: dict[str, list[Array]] = {}
+        self._people: dict[str, tuple[Person, ...]] = {}
         self._floors: deque[Floor] = deque(maxlen=parameters.floors)
         self._looked_ns: int | None = None
         self._bodies: deque[tuple[int, int, Array]] = deque(maxlen=parameters.people_frames)
@@ -72,7 +72,7 @@ class FloorWatch:
 
     def hear_skeletons(self, camera: str, skeletons: Skeletons) -> None:
         """Take the people of a frame."""
-        self._people[camera] = [joints_of(person) for person in skeletons.people]
+        self._people[camera] = skeletons.people
         for person in skeletons.people:
             self._keep_body(camera, skeletons.time_ns, person)
         waited_ns = abs(skeletons.time_ns - self._bodies_looked_ns)
@@ -97,7 +97,7 @@ class FloorWatch:
         if frame.depth is None:
             return
         depth, people = decode_depth(frame.depth), self._people.get(camera, ())
-        floor = find_floor(depth, info, people)
+        floor = find_floor(depth, info, [joints_of(one) for one in people])
         if floor is None:
             return
         self._floors.append(floor.in_rig(info.rig_from_camera))
@@ -108,12 +108,8 @@ class FloorWatch:
             self._floors.append(newest)
             found = newest
         self.room = found.room
-        self._on_depth(depth, info, self.room, [self._in_rig(info, one) for one in people])
-
-    @staticmethod
-    def _in_rig(info: CameraInfo, joints: Array) -> Array:
-        pose = info.rig_from_camera
-        return joints @ matrices(pose.rotation).T + np.array(pose.translation)
+        in_rig = [joints_of(one, info.rig_from_camera) for one in people]
+        self._on_depth(depth, info, self.room, in_rig)
 
     def _keep_body(self, camera: str, time_ns: int, person: Person) -> None:
         if self._bodies:

@@ -8,12 +8,12 @@ import numpy as np
 from inhand_schemas.messages import CameraInfo, ObjectPose, Person, Pose, Skeletons
 
 from inhand_outcomes.arrays import Array
+from inhand_outcomes.days import NS_PER_S
 from inhand_outcomes.parameters import DEFAULT_GATHERING, GatheringParameters
 from inhand_outcomes.room import Room
 from inhand_outcomes.rotations import matrices, multiply
 from inhand_outcomes.track import Track
 
-NS_PER_S = 1_000_000_000
 STILL = Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
@@ -68,11 +68,10 @@ class Gathering:
             while self.sightings[0].time_ns < oldest:
                 self.sightings.popleft()
 
-    def track(self, person: int | None, room: Room) -> Track:
+    def track(self, room: Room) -> Track:
         """Put the sightings together in the room; times count from ``first_ns``."""
         rows = self.sightings
         times = np.array([row.time_ns - self.first_ns for row in rows]) / NS_PER_S
-        who = -1 if person is None else person
         return room.place(
             Track(
                 times,
@@ -80,7 +79,6 @@ class Gathering:
                 np.array([row.covariance for row in rows]),
                 np.array([row.seen for row in rows]),
                 np.array([row.joints for row in rows]),
-                np.full(len(rows), who, np.int64),
             )
         )
 
@@ -92,7 +90,6 @@ class Sightings:
         self._parameters = parameters
         self._rig_from_camera: dict[str, Pose] = {}
         self._people: OrderedDict[tuple[str, int], Mapping[int, Person]] = OrderedDict()
-        self._last: dict[Holding, Array] = {}
 
     def hear_info(self, camera: str, info: CameraInfo) -> None:
         """Take note of where a camera stands in the rig."""
@@ -109,19 +106,15 @@ class Sightings:
         """Whether the people of a frame have come."""
         return (camera, time_ns) in self._people
 
-    def joints(self, camera: str, person: Person) -> Array:
-        """A person's joints (20, 3) in the rig, NaN where missing."""
-        return joints_of(person, self._rig_from_camera.get(camera))
-
-    def sighting(self, message: ObjectPose) -> tuple[Holding, Sighting] | None:
-        """Whose track a pose belongs to, and what it says; None before the object was ever seen.
+    def sighting(self, message: ObjectPose, last: Sighting | None) -> Sighting | None:
+        """What a pose says after the ``last`` sighting of its track; None where neither says where
+        the object is.
 
         A lost object is where it was seen last.
         """
-        holding = Holding(message.object, message.person)
         rig_from_camera = self._rig_from_camera.get(message.camera, STILL)
         turn = matrices(rig_from_camera.rotation)
-        pose = self._last.get(holding)
+        pose = None if last is None else last.pose
         covariance = np.eye(6)
         if message.camera_from_object is not None:
             inner = message.camera_from_object
@@ -138,13 +131,12 @@ class Sightings:
             and message.covariance is not None
             and message.confidence >= self._parameters.least_confidence
         )
-        self._last[holding] = pose
         people = self._people.get((message.camera, message.time_ns), {})
         person = None if message.person is None else people.get(message.person)
         joints = np.full((20, 3), np.nan)
         if person is not None:
-            joints = self.joints(message.camera, person)
-        return holding, Sighting(message.time_ns, message.sequence, pose, covariance, seen, joints)
+            joints = joints_of(person, rig_from_camera)
+        return Sighting(message.time_ns, message.sequence, pose, covariance, seen, joints)
 
 
 def joints_of(person: Person, rig_from_camera: Pose | None = None) -> Array:

@@ -9,7 +9,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array, Flags, Indices
-from inhand_outcomes.hands import hand_distances
+from inhand_outcomes.hands import HANDS, hand_distances
 from inhand_outcomes.normal import normal_share
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
@@ -169,7 +169,7 @@ def _used(track: Track, stretches: list[Stretch], parameters: HandlingParameters
     for number, stretch in enumerate(stretches):
         lay = bool(used) and used[-1].state == LYING
         if stretch.state == HELD and lay and number + 1 < len(stretches):
-            moved, _ = _moved(track, used[-1], stretch)
+            moved, _ = _moved(track, used[-1], stretch, parameters)
             if moved < parameters.moved_m:
                 continue
         if stretch.state == LYING and lay:
@@ -196,17 +196,20 @@ def _place(track: Track, stretch: Stretch) -> tuple[Array, Array]:
     return np.median(track.positions[frames], axis=0), np.median(deviations, axis=0)
 
 
-def _moved(track: Track, lying: Stretch, held: Stretch) -> tuple[float, float]:
-    """How far from where it lay a thing got while it was held, and the deviation of that."""
+def _moved(
+    track: Track, lying: Stretch, held: Stretch, parameters: HandlingParameters
+) -> tuple[float, float]:
+    """How far from where it lay a thing got while it was held, metres, and the probability that it
+    was moved."""
     place, deviation = _place(track, lying)
     frames = _shown(track, held)
     distances = np.linalg.norm(track.positions[frames] - place, axis=1)
     farthest = frames[distances.argmax()]
     own = float(np.sqrt(np.trace(track.covariances[farthest, :3, :3]) / 3.0))
     spread = float(np.hypot(np.linalg.norm(deviation) / 3**0.5, own))
-    by_error = DEFAULT_HANDLING.noise * spread
-    moved = np.sqrt(max(distances.max() ** 2 - by_error**2, 0.0))
-    return float(moved), spread
+    by_error = parameters.noise * spread
+    moved = float(np.sqrt(max(distances.max() ** 2 - by_error**2, 0.0)))
+    return moved, float(normal_share((moved - parameters.moved_m) / spread))
 
 
 def _shown(track: Track, stretch: Stretch) -> Indices:
@@ -218,26 +221,24 @@ def _shown(track: Track, stretch: Stretch) -> Indices:
 def _taken_up(
     track: Track, thing: Thing, lying: Stretch, held: Stretch, parameters: HandlingParameters
 ) -> list[Achievement]:
-    moved, deviation = _moved(track, lying, held)
-    probability = float(normal_share((moved - parameters.moved_m) / deviation))
+    moved, probability = _moved(track, lying, held, parameters)
     start = float(track.times[lying.last])
     until = float(track.times[held.first])
     reach = _reach(track, thing, lying, (start - parameters.reached_s, until))
     if np.isfinite(reach):
         probability *= _reached(reach, parameters)
-    evidence = {"moved_m": float(moved), **_seen(track, lying, held)}
+    evidence = {"moved_m": moved, **_seen(track, lying, held)}
     return [_achievement(TAKEN_UP, start, until, probability, evidence)]
 
 
 def _put_down(
     track: Track, thing: Thing, held: Stretch, lying: Stretch, parameters: HandlingParameters
 ) -> list[Achievement]:
-    moved, deviation = _moved(track, lying, held)
+    moved, probability = _moved(track, lying, held, parameters)
     place, spread = _place(track, lying)
-    probability = float(normal_share((moved - parameters.moved_m) / deviation))
     times = track.times
     around = np.abs(times - times[lying.first]) <= parameters.longest_fall_s
-    hands = track.joints[around][:, (Joint.HAND_LEFT, Joint.HAND_RIGHT)]
+    hands = track.joints[around][:, HANDS]
     distances = np.linalg.norm(hands - place, axis=-1)
     reached = float(np.nanmin(distances)) if np.isfinite(distances).any() else np.nan
     fall = float(track.positions[held.last, 2] - place[2])
@@ -248,7 +249,7 @@ def _put_down(
         f"place_{axis}_m": Amount(float(value), float(error))
         for axis, value, error in zip("xyz", place, spread, strict=True)
     }
-    evidence = {"moved_m": float(moved), "fall_m": fall, **_seen(track, held, lying)}
+    evidence = {"moved_m": moved, "fall_m": fall, **_seen(track, held, lying)}
     if np.isfinite(reached):
         evidence["hand_to_place_m"] = reached
     kind = DROPPED if dropped else PUT_DOWN
@@ -280,8 +281,7 @@ def _left(track: Track, held: Stretch, parameters: HandlingParameters) -> Achiev
     a hand."""
     at = float(track.times[held.last])
     share = float(track.seen[held.first : held.last + 1].mean())
-    moved, deviation = _moved(track, held, held)
-    carried = float(normal_share((moved - parameters.moved_m) / deviation))
+    _, carried = _moved(track, held, held, parameters)
     return _achievement(LEFT_IN_USE, at, at, share * carried, {"seen_share": share})
 
 

@@ -25,12 +25,11 @@ class LastingOutcomes:
         done: list[Outcome] = []
         under_way: set[str] = set()
         for outcome in found:
-            whole = outcome
             carried = self.carried.pop(outcome.kind, None)
-            if carried is not None and outcome.start_ns - carried.end_ns <= self.settle_ns:
-                whole = carried.with_more(outcome)
-            elif carried is not None:
+            if carried is not None and outcome.start_ns - carried.end_ns > self.settle_ns:
                 done.append(carried)
+                carried = None
+            whole = outcome if carried is None else carried.with_more(outcome)
             if ended or last_ns - outcome.end_ns > self.settle_ns:
                 done.append(whole)
                 self.counted_ns = max(self.counted_ns, outcome.end_ns)
@@ -39,7 +38,7 @@ class LastingOutcomes:
             if outcome.end_ns - outcome.start_ns >= self.piece_ns:
                 self.carried[outcome.kind] = whole
                 self.counted_ns = max(self.counted_ns, outcome.end_ns)
-            elif whole is not outcome and carried is not None:
+            elif carried is not None:
                 self.carried[outcome.kind] = carried
         for kind, carried in list(self.carried.items()):
             quiet = last_ns - carried.end_ns > self.settle_ns and kind not in under_way

@@ -65,6 +65,8 @@ class Memory:
             if kept is None or last_ns < kept.gathering.first_ns:
                 entries[name] = None
                 del self._pieces[name]
+        for holding in self._written_ns.keys() - self._watcher.followed.keys():
+            del self._written_ns[holding]
         state = msgspec.msgpack.encode(
             _State(
                 [_remembered(holding, one) for holding, one in self._watcher.followed.items()],

@@ -203,9 +203,9 @@ class OutcomesLoop:
         self.waiting.save((), {}, time.monotonic())
         if self.waiting.saver is not None:
             self._memory.recall(read_journal(self.waiting.saver.database))
-            # What is remembered waits for the next captures as if its last had just come.
-            for followed in self.watcher.followed.values():
-                self._clock.hear(followed.gathering.last_ns)
+            if remembered := self.watcher.followed.values():
+                # It waits for the next captures as if its last had just come.
+                self._clock.hear(max(one.gathering.last_ns for one in remembered))
             if self.home is not None:
                 self.home.recall(self.waiting.saver.database)
         self._show()

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from inhand_schemas.joints import Joint
 
-from inhand_outcomes.arrays import Array, Flags, Indices
+from inhand_outcomes.arrays import Array, Flags
 from inhand_outcomes.rotations import matrices
 
 
@@ -18,9 +18,8 @@ class Track:
     room_from_object: x y z, w x y z. ``covariances`` (T, 6, 6) are of (translation, rotation vector
     applied on the left) in the room's frame. ``seen`` (T,) is where the tracker vouches for the
     pose: neither lost nor predicted, and confident enough; where it is false the pose is the last
-    one that was. ``joints`` (T, 20, 3) are of the person who uses it, NaN where missing.
-    ``people`` (T,) are who that is, -1 for nobody. Where ``floor`` is true the floor is at z = 0;
-    else the height of the origin means nothing.
+    one that was. ``joints`` (T, 20, 3) are of the person who uses it, NaN where missing. Where
+    ``floor`` is true the floor is at z = 0; else the height of the origin means nothing.
     """
 
     times: Array
@@ -28,7 +27,6 @@ class Track:
     covariances: Array
     seen: Flags
     joints: Array
-    people: Indices
     floor: bool = True
 
     def __len__(self) -> int:
@@ -41,7 +39,6 @@ class Track:
             self.covariances[frames],
             self.seen[frames],
             self.joints[frames],
-            self.people[frames],
             self.floor,
         )
 

@@ -1,14 +1,16 @@
 """From poses and skeletons to settled outcomes: what a daemon does, without its session."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from inhand_schemas.messages import CameraInfo, ObjectPose, Pose, Skeletons
 
 from inhand_outcomes.achievement import Achievement
+from inhand_outcomes.days import NS_PER_S
 from inhand_outcomes.false_starts import without_false_starts
-from inhand_outcomes.gathering import NS_PER_S, Gathering, Holding, Sighting, Sightings
+from inhand_outcomes.gathering import Gathering, Holding, Sighting, Sightings
 from inhand_outcomes.handling import LEFT_IN_USE, handling
 from inhand_outcomes.in_hand import in_hand
 from inhand_outcomes.lasting import LastingOutcomes
@@ -80,12 +82,13 @@ class Watcher:
         return [outcome for message in messages for outcome in self._follow(message)]
 
     def _follow(self, message: ObjectPose) -> list[Outcome]:
-        found = self._sightings.sighting(message)
-        if found is None:
-            return []
-        holding, sighting = found
-        outcomes: list[Outcome] = []
+        holding = Holding(message.object, message.person)
         followed = self.followed.get(holding)
+        last = None if followed is None else followed.gathering.sightings[-1]
+        sighting = self._sightings.sighting(message, last)
+        if sighting is None:
+            return []
+        outcomes: list[Outcome] = []
         if followed is not None and not followed.gathering.continues(sighting.time_ns):
             if abs(sighting.time_ns - followed.gathering.last_ns) <= self._gap_ns:
                 return []  # a frame that was counted already
@@ -155,10 +158,11 @@ class Watcher:
 
     def _measure(self, holding: Holding, followed: Followed, *, ended: bool) -> list[Outcome]:
         """What is settled now of a track."""
-        track = without_false_starts(followed.gathering.track(holding.person, self.room))
+        track = without_false_starts(followed.gathering.track(self.room))
         first_ns, last_ns = followed.gathering.first_ns, followed.gathering.last_ns
+        sightings = list(followed.gathering.sightings)
         found = [
-            (achievement.lasting, self._outcome(holding, followed.gathering, achievement))
+            (achievement.lasting, self._outcome(holding, sightings, achievement))
             for achievement in self._achievements(holding, followed, track, ended=ended)
         ]
         found.sort(key=lambda one: one[1].end_ns)
@@ -222,13 +226,16 @@ class Watcher:
             for outcome in self.told.get(holding.object, {}).values()
         ]
 
-    def _outcome(self, holding: Holding, gathering: Gathering, achievement: Achievement) -> Outcome:
+    def _outcome(
+        self, holding: Holding, sightings: Sequence[Sighting], achievement: Achievement
+    ) -> Outcome:
         start_ns, end_ns = (
-            gathering.first_ns + round(seconds * NS_PER_S)
+            sightings[0].time_ns + round(seconds * NS_PER_S)
             for seconds in (achievement.start_s, achievement.end_s)
         )
-        shown = [one for one in gathering.sightings if start_ns <= one.time_ns <= end_ns]
-        last = shown[-1] if shown else gathering.sightings[-1]
+        first = bisect_left(sightings, start_ns, key=_time_of)
+        end = bisect_right(sightings, end_ns, key=_time_of)
+        last = sightings[end - 1] if first < end else sightings[-1]
         return Outcome(
             id=outcome_id(self._place, achievement.kind, holding.object, holding.person, start_ns),
             kind=achievement.kind,
@@ -239,13 +246,17 @@ class Watcher:
             probability=achievement.probability,
             amounts=achievement.amounts,
             evidence=achievement.evidence,
-            rig_from_object=pose_message(last),
-            first_sequence=shown[0].sequence if shown else last.sequence,
+            rig_from_object=_pose_message(last),
+            first_sequence=sightings[first].sequence if first < end else last.sequence,
             last_sequence=last.sequence,
         )
 
 
-def pose_message(sighting: Sighting) -> Pose:
+def _time_of(sighting: Sighting) -> int:
+    return sighting.time_ns
+
+
+def _pose_message(sighting: Sighting) -> Pose:
     """Where the object was in a sighting, in the rig."""
     x, y, z, *rotation = sighting.pose.tolist()
     w, i, j, k = rotation

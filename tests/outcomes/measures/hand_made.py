@@ -40,7 +40,6 @@ def track(
         np.tile(covariance, (count, 1, 1)),
         np.ones(count, bool) if seen is None else seen,
         np.full((count, 20, 3), np.nan) if joints is None else joints,
-        np.zeros(count, np.int64),
     )
 
 

@@ -75,7 +75,6 @@ def track_of(
         np.tile(covariance, (count, 1, 1)),
         np.ones(count, bool) if seen is None else seen,
         joints,
-        np.zeros(count, np.int64),
     )
 
 
@@ -91,5 +90,4 @@ def elsewhere(track: Track, seconds: float, heading: float, kept: Flags) -> Trac
         both @ track.covariances @ both.T,
         track.seen,
         track.joints @ matrix.T,
-        track.people,
     )[kept]

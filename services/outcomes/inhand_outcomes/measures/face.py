@@ -96,7 +96,7 @@ def find_face(track: Track, parameters: FaceParameters = DEFAULT_FACE) -> Face:
     )
 
 
-def hand_distances(track: Track, points: Array) -> Array:
+def nearest_hands(track: Track, points: Array) -> Array:
     """Distance (T,) of points (T, 3) from the nearest hand, metres; infinite where none is known.
 
     Of each hand the palm and the wrist count: either may be misread.

@@ -1,6 +1,6 @@
 """Filming: a camera that is held before the face, and where it points."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,10 +9,16 @@ from inhand_outcomes.arrays import Array
 from inhand_outcomes.measures.face import (
     DEFAULT_FACE,
     find_face,
-    hand_distances,
     middle_of,
+    nearest_hands,
 )
-from inhand_outcomes.measures.spells import find_spells, lasting_spells, smoothed, sureness
+from inhand_outcomes.measures.spells import (
+    find_spells,
+    lasting_act,
+    lasting_spells,
+    smoothed,
+    sureness,
+)
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -61,7 +67,7 @@ def filming(track: Track, thing: Thing) -> list[Achievement]:
     place = track.points(middle)
     way = place - face.middle
     below = smoothed(track.times, -way[:, 2], usable, parameters.smoothing_s)
-    hands = hand_distances(track, place) - 0.5 * float(np.ptp(thing.vertices, axis=0).max())
+    hands = nearest_hands(track, place) - 0.5 * float(np.ptp(thing.vertices, axis=0).max())
     elevation = np.arcsin(np.clip(pointing[:, 2], -1.0, 1.0))
     elevation = smoothed(track.times, elevation, usable, parameters.smoothing_s)
     with np.errstate(invalid="ignore"):
@@ -79,24 +85,21 @@ def filming(track: Track, thing: Thing) -> list[Achievement]:
         seen = pointing[spell.frames][usable[spell.frames]]
         deviation = float(np.degrees(np.mean(turning[spell.frames])))
         azimuth, mean_elevation = _direction(seen)
-        found.append(
-            Achievement(
-                "filming",
-                spell.start_s,
-                spell.end_s,
-                sureness(spell, usable, margins),
-                amounts={
-                    "duration_s": Amount(spell.seconds, 1.5 * parameters.edge_s),
-                    "azimuth_deg": Amount(azimuth, deviation),
-                    "elevation_deg": Amount(mean_elevation, deviation),
-                },
-                evidence={
-                    "below_head_m": float(np.nanmedian(below[spell.frames])),
-                    "seen_share": float(np.mean(usable[spell.frames])),
-                },
-                lasting=True,
-            )
+        act = lasting_act(
+            "filming",
+            spell,
+            sureness(spell, usable, margins),
+            parameters.edge_s,
+            {
+                "below_head_m": float(np.nanmedian(below[spell.frames])),
+                "seen_share": float(np.mean(usable[spell.frames])),
+            },
         )
+        directions = {
+            "azimuth_deg": Amount(azimuth, deviation),
+            "elevation_deg": Amount(mean_elevation, deviation),
+        }
+        found.append(replace(act, amounts={**act.amounts, **directions}))
     return found
 
 

@@ -4,9 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inhand_outcomes.achievement import Achievement, Amount
+from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.measures.face import DEFAULT_FACE, find_face, middle_of, thin_axis
-from inhand_outcomes.measures.spells import find_spells, lasting_spells, smoothed, sureness
+from inhand_outcomes.measures.spells import (
+    find_spells,
+    lasting_act,
+    lasting_spells,
+    smoothed,
+    sureness,
+)
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -58,18 +64,16 @@ def phoning(track: Track, thing: Thing) -> list[Achievement]:
     )
     spells = find_spells(track.times, inner, outer, usable, parameters.longest_gap_s)
     return [
-        Achievement(
+        lasting_act(
             "call",
-            spell.start_s,
-            spell.end_s,
+            spell,
             sureness(spell, usable, margins),
-            amounts={"duration_s": Amount(spell.seconds, 1.5 * parameters.edge_s)},
-            evidence={
+            parameters.edge_s,
+            {
                 "head_to_phone_m": float(np.nanmedian(distance[spell.frames])),
                 "seen_share": float(np.mean(usable[spell.frames])),
                 "facing_share": float(np.median(flat[spell.frames])),
             },
-            lasting=True,
         )
         for spell in lasting_spells(spells, parameters.least_s)
     ]

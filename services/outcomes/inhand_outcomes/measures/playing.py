@@ -4,10 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inhand_outcomes.achievement import Achievement, Amount
+from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.arrays import Array
 from inhand_outcomes.measures.face import DEFAULT_FACE, find_face
-from inhand_outcomes.measures.spells import find_spells, lasting_spells, smoothed, sureness
+from inhand_outcomes.measures.spells import (
+    find_spells,
+    lasting_act,
+    lasting_spells,
+    smoothed,
+    sureness,
+)
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -55,17 +61,15 @@ def playing(track: Track, thing: Thing) -> list[Achievement]:
     margins = (parameters.away_m - distance) / spread
     spells = find_spells(track.times, inner, outer, usable, parameters.longest_gap_s)
     return [
-        Achievement(
+        lasting_act(
             "playing",
-            spell.start_s,
-            spell.end_s,
+            spell,
             sureness(spell, usable, margins),
-            amounts={"duration_s": Amount(spell.seconds, 1.5 * parameters.edge_s)},
-            evidence={
+            parameters.edge_s,
+            {
                 "hole_to_mouth_m": float(np.nanmedian(distance[spell.frames])),
                 "seen_share": float(np.mean(usable[spell.frames])),
             },
-            lasting=True,
         )
         for spell in lasting_spells(spells, parameters.least_s)
     ]

@@ -4,11 +4,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inhand_outcomes.achievement import Achievement, Amount
+from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.arrays import Array, Flags
-from inhand_outcomes.measures.face import find_face, hand_distances, thin_axis
+from inhand_outcomes.measures.face import find_face, nearest_hands, thin_axis
 from inhand_outcomes.measures.spells import (
     find_spells,
+    lasting_act,
     lasting_spells,
     smoothed,
     speeds,
@@ -71,7 +72,7 @@ def reading(track: Track, thing: Thing) -> list[Achievement]:
     along = np.sum(track.directions(thin_axis(thing.vertices)) * sight, axis=1)
     angle = np.arccos(np.clip(np.abs(along) / np.maximum(distance, 1e-9), 0.0, 1.0))
     angle = smoothed(track.times, angle, usable, parameters.smoothing_s)
-    hands = hand_distances(track, track.points(handle))
+    hands = nearest_hands(track, track.points(handle))
     hands = smoothed(track.times, hands, usable & np.isfinite(hands), parameters.smoothing_s)
     speed = speeds(track.times, place)
     largest = parameters.still_served * face.size
@@ -100,18 +101,16 @@ def reading(track: Track, thing: Thing) -> list[Achievement]:
             start_s, end_s = float(track.times[first]), float(track.times[last])
             spells.append(replace(spell, first=first, last=last, start_s=start_s, end_s=end_s))
     return [
-        Achievement(
+        lasting_act(
             "reading",
-            spell.start_s,
-            spell.end_s,
+            spell,
             sureness(spell, usable & outer, margins),
-            amounts={"duration_s": Amount(spell.seconds, 1.5 * parameters.edge_s)},
-            evidence={
+            parameters.edge_s,
+            {
                 "eyes_to_lens_m": float(np.nanmedian(distance[spell.frames])),
                 "angle_rad": float(np.nanmedian(angle[spell.frames])),
                 "seen_share": float(np.mean(usable[spell.frames])),
             },
-            lasting=True,
         )
         for spell in lasting_spells(spells, parameters.least_s)
     ]

@@ -7,7 +7,7 @@ from inhand_schemas.joints import Joint
 
 from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.arrays import Array, Flags
-from inhand_outcomes.measures.face import hand_distances, middle_of
+from inhand_outcomes.measures.face import middle_of, nearest_hands
 from inhand_outcomes.measures.spells import find_spells, lasting_spells, smoothed, sureness
 from inhand_outcomes.measures.wearing import hand_at
 from inhand_outcomes.thing import Thing
@@ -58,7 +58,7 @@ def shoes(track: Track, thing: Thing) -> list[Achievement]:
         inner, outer = distance < parameters.near_m, distance < parameters.away_m
     spread = np.hypot(track.point_deviations(middle), parameters.deviation_m)
     margins = (parameters.away_m - distance) / spread
-    hands = hand_distances(track, place)
+    hands = nearest_hands(track, place)
     found = []
     spells = find_spells(track.times, inner, outer, usable, parameters.longest_gap_s)
     for spell in lasting_spells(spells, parameters.least_s):

@@ -1,9 +1,11 @@
 """Spells: times in which something holds, by two limits, so that noise does not cut them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array, Flags
 from inhand_outcomes.normal import normal_share
 
@@ -91,6 +93,16 @@ def lasting_spells(spells: list[Spell], least_s: float) -> list[Spell]:
     return [
         spell for spell in spells if spell.seconds >= (least_s if spell.begun else LEAST_REST_S)
     ]
+
+
+def lasting_act(
+    kind: str, spell: Spell, probability: float, edge_s: float, evidence: Mapping[str, float]
+) -> Achievement:
+    """A spell as a lasting achievement with its duration, whose ends are off by ``edge_s`` each."""
+    duration = Amount(spell.seconds, 1.5 * edge_s)
+    return Achievement(
+        kind, spell.start_s, spell.end_s, probability, {"duration_s": duration}, evidence, True
+    )
 
 
 def sureness(spell: Spell, usable: Flags, margins: Array, best: float = 1.0) -> float:

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inhand_outcomes.achievement import Achievement, Amount
+from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.arrays import Array
-from inhand_outcomes.measures.face import find_face, hand_distances
+from inhand_outcomes.measures.face import find_face, nearest_hands
 from inhand_outcomes.measures.spells import (
     find_spells,
+    lasting_act,
     lasting_spells,
     smoothed,
     sureness,
@@ -76,23 +77,21 @@ def wearing(track: Track, thing: Thing) -> list[Achievement]:
         outer = (distance < parameters.away_m) & before
     spread = np.hypot(track.point_deviations(bridge), parameters.deviation_m)
     margins = (parameters.away_m - distance) / spread
-    hands = hand_distances(track, place)
+    hands = nearest_hands(track, place)
     found = []
     spells = find_spells(track.times, inner, outer, usable, parameters.longest_gap_s)
     for spell in lasting_spells(spells, parameters.least_s):
         sure = sureness(spell, usable, margins)
         found.append(
-            Achievement(
+            lasting_act(
                 "worn",
-                spell.start_s,
-                spell.end_s,
+                spell,
                 sure,
-                amounts={"duration_s": Amount(spell.seconds, 1.5 * parameters.edge_s)},
-                evidence={
+                parameters.edge_s,
+                {
                     "head_to_bridge_m": float(np.nanmedian(distance[spell.frames])),
                     "seen_share": float(np.mean(usable[spell.frames])),
                 },
-                lasting=True,
             )
         )
         for kind, happened, at in (

@@ -27,22 +27,35 @@ MACROBLOCK = 16
 _DIGEST_BITS = (1 << 63) - 1
 
 
+class _Codec(msgspec.Struct):
+    codec: str
+
+
+class _Look(msgspec.Struct):
+    """As much of a frame as tells whether its colour is H.264: no pixels are copied for it."""
+
+    colour: _Codec | None = None
+
+
 class _Coloured(msgspec.Struct):
-    """As much of a frame as is read to find H.264 in it."""
+    """A frame's colour."""
 
     colour: ColourImage | None = None
 
 
+_look = msgspec.msgpack.Decoder(_Look)
 _coloured = msgspec.msgpack.Decoder(_Coloured)
 
 
 def coded_image(payload: bytes) -> ColourImage | None:
     """Return the colour of an encoded frame where that is H.264."""
     try:
-        colour = _coloured.decode(payload).colour
+        look = _look.decode(payload).colour
+        if look is None or look.codec != "h264":
+            return None
+        return _coloured.decode(payload).colour
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
         return None  # it cannot be decoded, which its reader finds
-    return colour if colour is not None and colour.codec == "h264" else None
 
 
 def digest_of(image: ColourImage) -> int:
