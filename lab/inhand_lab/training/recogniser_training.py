@@ -114,7 +114,7 @@ def learn_movements(
     People whose action is ``NOTHING`` teach, as simulated idle ones do, what none is.
     """
     actions = tuple(dict.fromkeys(one.action for one in people if one.action != NOTHING))
-    _check_enough(people, actions, origin)
+    people = _apart(people, origin)
     usual = usual_poses(people)
     poses, labels, sequences = [], [], list(_idle_movements(len(actions)))
     for one in people:
@@ -136,14 +136,24 @@ def learn_movements(
     )
 
 
-def _check_enough(people: Sequence[JointSequence], actions: Sequence[str], origin: str) -> None:
-    participants = {one.participant for one in people}
-    if len(actions) < 2 or len(participants) < 2:
-        raise DatasetError(
-            f"{origin}: {counted(len(actions), 'action')} by "
-            f"{counted(len(participants), 'participant')}: recognition compares "
-            "two actions at the least, by two participants at the least"
-        )
+def _apart(people: Sequence[JointSequence], origin: str) -> list[JointSequence]:
+    """The recordings such that each participant can be left out once; where there is one alone,
+    whose recordings must stand for others, each counts as somebody's.
+
+    Raises DatasetError where nobody would be left who does an action.
+    """
+    if len({one.participant for one in people}) > 1:
+        return list(people)
+    for action in dict.fromkeys(one.action for one in people if one.action != NOTHING):
+        if sum(one.action == action for one in people) < 2:
+            raise DatasetError(
+                f"{origin}: one recording of {action!r} by one person: what is learned is checked "
+                "on a recording that was left out, so make another one"
+            )
+    return [
+        replace(one, participant=f"{one.participant}, recording {number}")
+        for number, one in enumerate(people)
+    ]
 
 
 @lru_cache(maxsize=4)

@@ -26,7 +26,14 @@ LARGEST_EXPONENT = 500.0
 def train_svm(
     poses: Array, actions: Indices, parameters: TrainingParameters = DEFAULT_TRAINING
 ) -> PairwiseSvm:
-    """Train on body poses (N, 60) of actions (N,) numbered from 0, each with five or more."""
+    """Train on body poses (N, 60) of actions (N,) numbered from 0, each with five or more.
+
+    Of one action alone there is no machine: every pose is of it.
+    """
+    if not actions.any():
+        return PairwiseSvm(
+            np.empty((0, poses.shape[1])), np.empty((0, 0)), np.empty(0), 1.0, np.empty((0, 2))
+        )
     chosen = np.linspace(0, len(poses) - 1, min(len(poses), parameters.svm_poses)).astype(np.int64)
     poses, actions = poses[chosen], actions[chosen]
     gamma = 1.0 / (poses.shape[1] * poses.var())

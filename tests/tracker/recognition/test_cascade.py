@@ -9,7 +9,7 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
-from inhand_tracker.people.watching import RecognisedObjects
+from inhand_tracker.people.watching import CameraFrame, RecognisedObjects
 from inhand_tracker.recognition import cascade as cascade_module
 from inhand_tracker.recognition.cascade import Cascade, worth_following
 from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
@@ -41,6 +41,7 @@ class AtPixel:
 
     def restart(self) -> None:
         self.seen: list[int] = []
+        self.images: list[object] = []
         self.remembered: list[int] = []
         self.efforts: list[float] = []
 
@@ -49,9 +50,13 @@ class AtPixel:
 
     def step_body(self, body: object, time_ns: int, image: object = None) -> Estimate:
         self.seen.append(time_ns)
+        self.images.append(image)
         self.efforts.append(self.effort)
         unturned = np.array([1.0, 0.0, 0.0, 0.0])
         return Estimate("tracked", self.confidence, np.zeros(3), unturned, np.eye(6))
+
+    def step(self, joints: object, time_ns: int, image: object = None) -> Estimate:
+        return self.step_body(None, time_ns, image)
 
     def outline(self, estimate: Estimate, camera: Intrinsics) -> np.ndarray:
         return np.array([[self.left, 0.0], [self.left + 10.0, 10.0]])
@@ -98,6 +103,10 @@ def new_cascade() -> tuple[Cascade, list[AtPixel]]:
     return Cascade(learned, trackers), trackers
 
 
+def fail(name: str, error: Exception) -> None:
+    raise AssertionError(name) from error
+
+
 def run(cascade: Cascade, frames: int, *, image: Image | None = None, first: int = 0) -> list:
     return [
         cascade.step(STANDING, (first + frame + 1) * FRAME_NS, image, CAMERA)
@@ -141,6 +150,29 @@ def test_the_object_that_was_used_last_is_followed_while_others_are_likelier(scr
     assert [answer.known for answer in answers] == [0, *[None] * 30, 0]
     assert len(trackers[0].seen) == 32
     assert [len(tracker.seen) for tracker in trackers[1:]] == [30, 30, 0]
+
+
+def test_what_is_doubted_for_a_moment_keeps_its_pose_and_is_not_known(script) -> None:
+    script += [[0.9, 0.0, 0.0, 0.0], [0.3, 0.3, 0.0, 0.0], [0.1, 0.0, 0.0, 0.0]]
+    cascade, _ = new_cascade()
+    watcher = RecognisedObjects(cascade, ["mug", "phone", "broom", "shoe"])
+    answers = run(cascade, 3)
+    assert [answer.known for answer in answers] == [0, None, None]
+    assert [answer.estimate.state for answer in answers] == ["tracked", "tracked", "lost"]
+    script += [[0.9, 0.0, 0.0, 0.0], [0.3, 0.3, 0.0, 0.0]]
+    for frame in (4, 5):
+        seen = watcher.see(STANDING, CameraFrame(frame * FRAME_NS), fail)
+    assert [one.estimate.state for one in seen] == ["tracked", "lost", "lost", "lost"]
+
+
+def test_what_is_used_is_followed_in_the_image_while_no_body_is_seen(script) -> None:
+    script += [[0.9, 0.0, 0.0, 0.0]]
+    cascade, trackers = new_cascade()
+    run(cascade, 1)
+    image = Image(None, CAMERA)
+    answer = cascade.step(None, 2 * FRAME_NS, image, CAMERA)
+    assert (answer.known, answer.estimate.state) == (0, "tracked")
+    assert trackers[0].images == [None, image]
 
 
 def test_where_nothing_is_in_use_the_box_is_where_the_last_object_was_left(script) -> None:

@@ -176,11 +176,11 @@ class RecognisedObjects(Watcher):
             self._cascade.restart()
 
     def _objects_of(self, recognition: Recognition, outline: Array | None) -> list[WatchedObject]:
-        """All objects with their probabilities; the recognised one has a pose."""
+        """All objects with their probabilities; the one in use has a pose."""
         probabilities = dict.fromkeys(self.names, 0.0)
         for name, probability in zip(self._objects, recognition.probabilities, strict=True):
             probabilities[name] = min(probabilities[name] + float(probability), 1.0)
-        used = None if recognition.known is None else self._objects[recognition.known]
+        used = None if recognition.used is None else self._objects[recognition.used]
         return [
             WatchedObject(name, recognition.estimate, outline, probabilities)
             if name == used

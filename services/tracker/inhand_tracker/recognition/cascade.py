@@ -9,6 +9,7 @@ is, and its tracker forgets nothing of it while recognition wavers.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -71,17 +72,17 @@ class Cascade(ObjectRecogniser):
             self._remember({}, body, time_ns)
 
     def outline(self, recognition: Recognition, camera: Intrinsics) -> Array | None:
-        """Pixels (B, 2) of the boundary of the recognised object; None where none is."""
-        if recognition.known is None:
+        """Pixels (B, 2) of the boundary of the object in use; None where none is."""
+        if recognition.used is None:
             return None
-        return self._trackers[recognition.known].outline(recognition.estimate, camera)
+        return self._trackers[recognition.used].outline(recognition.estimate, camera)
 
     def considered(self) -> tuple[int, Considered] | None:
-        """The action that was recognised last, and what its object's pose was chosen from."""
-        if (known := self._last.known) is None:
+        """The action in use, and what its object's pose was chosen from."""
+        if (used := self._last.used) is None:
             return None
-        considered = self._trackers[known].considered()
-        return None if considered is None else (known, considered)
+        considered = self._trackers[used].considered()
+        return None if considered is None else (used, considered)
 
     def _recognise(
         self, body: Body, time_ns: int, image: Image | None, camera: Intrinsics | None
@@ -100,19 +101,26 @@ class Cascade(ObjectRecogniser):
             if known not in estimates:
                 estimates |= self._track([known], body, time_ns, image)
         self._remember(estimates, body, time_ns)
-        estimate = LOST if known is None else estimates[known]
+        doubted = self._doubted(probabilities) if known is None else None
+        there = doubted if known is None else known
+        estimate = LOST if there is None else estimates[there]
         box = None if camera is None else self._box(estimates, probabilities, camera)
-        return Recognition(probabilities, known, estimate, box)
+        return Recognition(probabilities, known, estimate, box, doubted)
 
-    def _without_body(self, time_ns: int) -> Recognition:
-        """The recognised object ages as its tracker's estimate does, until it is lost."""
-        known = self._last.known
-        if known is None:
-            return Recognition(self._last.probabilities, None, LOST, self._last.box)
-        estimate = self._trackers[known].step(None, time_ns)
+    def _without_body(self, time_ns: int, image: Image | None) -> Recognition:
+        """The object that is used is followed by what the image shows, or ages until it is lost."""
+        last = self._last
+        if last.used is None:
+            return replace(last, estimate=LOST)
+        estimate = self._trackers[last.used].step(None, time_ns, image)
         if estimate.translation is None:
-            known = None
-        return Recognition(self._last.probabilities, known, estimate, self._last.box)
+            return replace(last, known=None, doubted=None, estimate=estimate)
+        return replace(last, estimate=estimate)
+
+    def _doubted(self, probabilities: Array) -> int | None:
+        """The action that was recognised last, where it is not unlikely by probabilities (K,)."""
+        least = self._parameters.doubted_probability
+        return self._used if self._used is not None and probabilities[self._used] >= least else None
 
     def _probabilities(self, body: Body, time_ns: int) -> Array:
         """Probabilities (K,) of the actions, by the movement and by the last looks."""

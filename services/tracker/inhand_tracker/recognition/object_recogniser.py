@@ -53,7 +53,7 @@ class ObjectRecogniser(ABC):
         """
         body = None if joints is None else self._reader.read(joints, self.convention)
         if body is None:
-            return self._without_body(time_ns)
+            return self._without_body(time_ns, image)
         camera = camera if image is None else image.camera
         self._last = self._recognise(body, time_ns, image, camera)
         return self._last
@@ -70,5 +70,5 @@ class ObjectRecogniser(ABC):
         """Recognise in a frame in which the body is seen."""
 
     @abstractmethod
-    def _without_body(self, time_ns: int) -> Recognition:
+    def _without_body(self, time_ns: int, image: Image | None) -> Recognition:
         """Give what stands of the last recognition while the body is not seen."""

@@ -80,6 +80,9 @@ class RecognitionParameters:
 
     recognised_probability: float = 0.5
     """Probability from which an action is recognised (Darby et al. 2012, section 5)."""
+    doubted_probability: float = 0.2
+    """Probability down to which the action that was recognised last may well go on: in the midst of
+    the fastest swings of people who were not learned from it falls to 0.4."""
 
     # What is read of a movement (movement_window). A recogniser is trained with these numbers:
     # with others, train it again.

@@ -13,8 +13,9 @@ from inhand_tracker.recognition.parameters import DEFAULT_RECOGNITION
 class Recognition:
     """``probabilities`` (K,) of the actions: what is missing from 1 is that of none of them.
 
-    ``known`` is the number of the recognised action, None while none is; ``estimate`` is the pose
-    of its object, lost while none is. ``box`` (4,) is where an object would be in the image,
+    ``known`` is the number of the recognised action, None while none is; ``doubted`` that of the
+    one that was recognised last and may well go on, None while another is or it is unlikely.
+    ``estimate`` is the pose of the object of either, lost while there is neither. ``box`` (4,) is where an object would be in the image,
     recognised or not: left, top, right and bottom in pixels; None where there is none.
     """
 
@@ -22,6 +23,12 @@ class Recognition:
     known: int | None = None
     estimate: Estimate = LOST
     box: Array | None = None
+    doubted: int | None = None
+
+    @property
+    def used(self) -> int | None:
+        """The number of the action whose object has the estimate: it is known, or doubted."""
+        return self.doubted if self.known is None else self.known
 
 
 def recognised_action(

@@ -93,7 +93,7 @@ class Cascade2012(ObjectRecogniser):
             estimate = _expected(translations[ours], orientations[ours], weights[ours])
         return Recognition(masses, known, estimate, _mean_box(boxes, weights))
 
-    def _without_body(self, time_ns: int) -> Recognition:
+    def _without_body(self, time_ns: int, image: Image | None) -> Recognition:
         return Recognition(self._last.probabilities, None, LOST, self._last.box)
 
     def _propose(self, body: Body, time_ns: int) -> ActionParticles:
