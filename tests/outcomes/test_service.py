@@ -9,6 +9,7 @@ import pytest
 from carried_cup import START_NS, write_model
 from inhand_outcomes.store.database import open_database
 from inhand_outcomes.store.queries import KeptOutcome, latest
+from kept_outcomes import S, new_saver, sip
 from running_rig import Process, RunningRig, eventually
 
 pytestmark = pytest.mark.long
@@ -60,6 +61,25 @@ def test_what_is_achieved_is_published_and_kept(rig: RunningRig) -> None:
     assert kinds(rig) == ["taken_up", "put_down"]
     assert [one.outcome.id for one in kept(rig)] == [event["id"] for event in events]
     assert events[1]["amounts"].keys() == {"place_x_m", "place_y_m", "place_z_m"}
+
+
+def test_what_was_saved_before_a_kill_and_not_published_is_published_once(
+    rig: RunningRig,
+) -> None:
+    saver = new_saver(rig.folder)
+    saver.save([sip(START_NS), sip(START_NS + 10 * S)])
+    saver.database.close()
+    echo = rig.inhand("echo", "event", "--json", "--config", rig.config)
+    start(rig)
+    ids = [sip(START_NS).id, sip(START_NS + 10 * S).id]
+
+    def said() -> list[str]:
+        return [json.loads(line)["message"]["id"] for line in echo.stdout.splitlines()]
+
+    eventually("both", lambda: len(said()) == 2)
+    carry(rig, "--start-ns", str(START_NS + 60 * S), "--speed", "9")
+    eventually("the next acts", lambda: len(said()) == 4)
+    assert said()[:2] == ids
 
 
 def test_a_killed_daemon_counts_nothing_twice_and_loses_nothing(rig: RunningRig) -> None:

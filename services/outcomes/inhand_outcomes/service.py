@@ -32,8 +32,9 @@ from inhand_outcomes.store.failures import StoreError
 from inhand_outcomes.store.floor_maps import floor_maps, keep_floor_map
 from inhand_outcomes.store.forgetting import Forget, forget
 from inhand_outcomes.store.goal_marks import events_to_publish, judge_goals, mark_published
+from inhand_outcomes.store.queries import outcomes_to_publish
 from inhand_outcomes.store.retention import Retention, remove_old
-from inhand_outcomes.store.saving import Saver, read_journal
+from inhand_outcomes.store.saving import Saver, mark_outcomes_published, read_journal
 from inhand_outcomes.store.waiting import WaitingOutcomes
 from inhand_outcomes.things import load_things, models_of
 from inhand_outcomes.watching import Watcher
@@ -42,6 +43,8 @@ IDLE_S = 0.25
 SAVE_PERIOD_S = 2.0
 """An end at any moment loses what came in this time."""
 QUEUE_SAMPLES = 4096
+MOST_AT_ONCE = 1000
+"""Number of outcomes that are published after one saving; the others follow after the next."""
 
 
 def run(settings: Settings[OutcomesSettings]) -> None:
@@ -213,22 +216,36 @@ class OutcomesLoop:
     def _save(self, settled: Sequence[Outcome]) -> None:
         """Keep what is settled with the watcher's memory, and publish what is new."""
         saved = self.waiting.save(settled, self._memory.entries(), time.monotonic())
-        if saved is not None:
-            if saved.forget:
-                self.watcher.forget()
-                self._memory = Memory(self.watcher)
-                if self.home is not None:
-                    self.home.forget()
+        if saved is not None and saved.forget:
+            self.watcher.forget()
+            self._memory = Memory(self.watcher)
             if self.home is not None:
-                self.home.say(saved.added)
-            for outcome in saved.added:
-                self._publish(outcome.message(self._published))
+                self.home.forget()
         if self.waiting.saver is not None:
+            added = () if saved is None else saved.added
             try:
+                self._publish_kept(self.waiting.saver.database, added)
                 self._look_after(self.waiting.saver.database)
             except StoreError as error:
                 self.daemon.health.error(str(error))
         self._show()
+
+    def _publish_kept(self, database: Database, added: Sequence[Outcome]) -> None:
+        """Publish what is kept and was not published, by a process before this one either; raises
+        StoreError.
+
+        What was ``added`` just now is known with all its evidence, the rest as it is kept.
+        """
+        whole = {outcome.id: outcome for outcome in added}
+        waiting = outcomes_to_publish(database, MOST_AT_ONCE)
+        if not waiting:
+            return
+        outcomes = [whole.get(outcome.id, outcome) for outcome in waiting]
+        for outcome in outcomes:
+            self._publish(outcome.message(self._published))
+        if self.home is not None:
+            self.home.say(outcomes)
+        mark_outcomes_published(database, [outcome.id for outcome in outcomes])
 
     def _look_after(self, database: Database) -> None:
         """Judge the goals, and once a day remove what is old; raises StoreError."""

@@ -18,7 +18,7 @@ from inhand_outcomes.store.database import open_database
 from inhand_outcomes.store.failures import StoreError
 from inhand_outcomes.store.models import Base
 from inhand_outcomes.store.parameters import StoreParameters
-from inhand_outcomes.store.queries import latest
+from inhand_outcomes.store.queries import latest, outcomes_to_publish
 from kept_outcomes import at, new_saver, sip
 
 FULL_DISK = """
@@ -68,6 +68,20 @@ def test_a_database_of_a_later_release_is_refused_and_left_as_it_is(tmp_path: Pa
     with pytest.raises(StoreError, match=r"outcomes\.db is of a later release .*: update Inhand"):
         open_database(file)
     assert file.read_bytes() == before
+
+
+def test_what_an_earlier_release_kept_is_not_published_again(tmp_path: Path) -> None:
+    saver = new_saver(tmp_path)
+    saver.save([sip(at("2026-05-05 12:00"))])
+    saver.database.close()
+    file = tmp_path / "outcomes.db"
+    _sql(file, "DROP INDEX ix_outcomes_published")
+    _sql(file, "ALTER TABLE outcomes DROP COLUMN published")
+    _sql(file, "UPDATE alembic_version SET version_num = '0001'")
+    database = open_database(file)
+    assert len(latest(database, 9)) == 1
+    assert outcomes_to_publish(database, 9) == []
+    database.close()
 
 
 def test_a_migration_that_ends_half_way_is_begun_again(
