@@ -13,6 +13,7 @@ from inhand_outcomes.homeassistant.parameters import HomeParameters
 from inhand_outcomes.homeassistant.settings import HomeAssistantSettings
 from inhand_outcomes.homeassistant.shape import GoalShape, Shape, object_shape
 from inhand_outcomes.homeassistant.state import GoalProgress, HomeState, KindTotal
+from inhand_outcomes.pausing import Pausing
 from inhand_outcomes.store.queries import LastPlace
 from inhand_outcomes.totals import AmountTotal
 from inhand_runtime.health import HealthBoard
@@ -83,6 +84,7 @@ class Shown:
     handover: Handover
     health: HealthBoard
     client: HomeAssistantClient
+    pausing: Pausing
     forgotten: list[date] = field(default_factory=list)
 
     @property
@@ -106,11 +108,13 @@ def showing(
     file.write_text(password + "\n")
     chosen = {"host": "127.0.0.1", "port": port, "user": USER, "password_file": file, **settings}
     handover, health, forgotten = Handover(parameters), HealthBoard("outcomes", "home"), []
+    pausing = Pausing()
     client = HomeAssistantClient(
         HomeAssistantSettings.model_validate(chosen),
         handover,
         health,
         forgotten.append,
+        pausing,
         "1.2.3",
         parameters,
     )
@@ -118,6 +122,6 @@ def showing(
         handover.show(state, ())
     client.start()
     try:
-        yield Shown(handover, health, client, forgotten)
+        yield Shown(handover, health, client, pausing, forgotten)
     finally:
         client.stop()

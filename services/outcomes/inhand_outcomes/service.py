@@ -14,6 +14,12 @@ from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import Event, RgbdFrame
+from inhand_schemas.procedures import (
+    PAUSE_MEASURING,
+    RESUME_MEASURING,
+    OutcomesReply,
+    OutcomesRequest,
+)
 from inhand_schemas.topics import EVENT, INFO, POSE, RGBD, SKELETONS, topic_of
 from msgspec.structs import replace
 
@@ -25,6 +31,7 @@ from inhand_outcomes.homeassistant.home import Home, Place
 from inhand_outcomes.keeping import open_kept
 from inhand_outcomes.memory import Memory
 from inhand_outcomes.outcome import Outcome
+from inhand_outcomes.pausing import Pausing
 from inhand_outcomes.rules import Rules
 from inhand_outcomes.settings import OutcomesSettings, check
 from inhand_outcomes.store.database import Database
@@ -64,13 +71,15 @@ def run(settings: Settings[OutcomesSettings]) -> None:
         place = f"{settings.site.realm}/{settings.site.rig}"
         waiting = WaitingOutcomes(lambda: Saver(open_kept(chosen), chosen.keeping))
         watcher = Watcher(things, place)
+        pausing = Pausing()
         home = None
         if chosen.homeassistant is not None:
             site = settings.site
             uses = {name: thing.use for name, thing in things.items()}
             of = Place(site.realm, site.rig, settings.instance)
-            home = Home(chosen.homeassistant, of, uses, chosen.rules, chosen.sure)
-        loop = OutcomesLoop(daemon, watcher, waiting, chosen.rules, chosen.retention, home)
+            home = Home(chosen.homeassistant, of, uses, chosen.rules, chosen.sure, pausing)
+        rules, retention = chosen.rules, chosen.retention
+        loop = OutcomesLoop(daemon, watcher, waiting, rules, retention, pausing, home)
         with _telling_home(home, chosen, daemon.health):
             loop.run()
 
@@ -90,7 +99,7 @@ def _telling_home(
             forget(database, Forget(day=day), time.time_ns())
 
     client = HomeAssistantClient(
-        settings.homeassistant, home.handover, health, forget_day, version("inhand")
+        settings.homeassistant, home.handover, health, forget_day, home.pausing, version("inhand")
     )
     client.start()
     try:
@@ -114,6 +123,7 @@ class OutcomesLoop:
     waiting: WaitingOutcomes
     rules: Rules
     retention: Retention
+    pausing: Pausing
     home: Home | None = None
 
     def __post_init__(self) -> None:
@@ -128,14 +138,16 @@ class OutcomesLoop:
     def run(self) -> None:
         """Measure until stopped; what is open then is remembered for the next process."""
         self._recall()
+        self._answer()
         for topic in (INFO, SKELETONS, POSE):
             self.daemon.subscribe(topic, samples=QUEUE_SAMPLES)
         settled: list[Outcome] = []
         next_save = time.monotonic() + SAVE_PERIOD_S
         while not self.daemon.stop.is_set():
             sample = self.daemon.receive(IDLE_S)
-            if self.home is not None and self.home.take_wanted_pause() and self.home.paused:
-                settled += self._done_until_pause()
+            if self.pausing.take_wanted():
+                settled += self._pause_or_go_on()
+                next_save = time.monotonic()
             if sample is not None:
                 settled += self._hear(sample)
             if time.monotonic() >= next_save:
@@ -149,7 +161,7 @@ class OutcomesLoop:
 
     def _look_for_floor(self) -> None:
         """Let frames arrive while one is to be looked at, and no longer: they are large."""
-        wanted = not self._paused and self._floors.wants_frame(self._clock.now_ns())
+        wanted = not self.pausing.paused and self._wants_frame()
         if wanted and self._frames is None:
             self._frames = self.daemon.subscribe(RGBD, samples=1)
         elif not wanted and self._frames is not None:
@@ -166,12 +178,12 @@ class OutcomesLoop:
             if pose is None:
                 return []
             self._clock.hear(pose.time_ns)
-            return [] if self._paused else self.watcher.hear_pose(pose)
+            return [] if self.pausing.paused else self.watcher.hear_pose(pose)
         if topic is SKELETONS:
             skeletons = self.daemon.decode(SKELETONS, sample)
             if skeletons is not None:
                 self._clock.hear(skeletons.time_ns)
-                if self._paused:
+                if self.pausing.paused:
                     return []
                 self._floors.hear_skeletons(key.name, skeletons)
                 return self.watcher.hear_skeletons(key.name, skeletons)
@@ -180,18 +192,34 @@ class OutcomesLoop:
             if info is not None:
                 self.watcher.hear_info(key.name, info)
                 self._floors.hear_info(key.name, info)
-        if topic is RGBD and not self._paused and self._floors.wants_frame(self._clock.now_ns()):
+        if topic is RGBD and not self.pausing.paused and self._wants_frame():
             frame = self.daemon.decode(RGBD, sample)
             if frame is not None:
                 self._look_at(key.name, frame, sample.key)
         return []
 
-    @property
-    def _paused(self) -> bool:
-        return self.home is not None and self.home.paused
+    def _wants_frame(self) -> bool:
+        return self._floors.wants_frame(self._clock.now_ns())
 
-    def _done_until_pause(self) -> list[Outcome]:
-        """End what is under way: what was achieved counts, and nothing is left in use by it."""
+    def _answer(self) -> None:
+        """Let whoever asks pause, and go on."""
+
+        def pause(request: OutcomesRequest) -> OutcomesReply | None:
+            return self.pausing.ask(self.daemon.instance, request, paused=True)
+
+        def resume(request: OutcomesRequest) -> OutcomesReply | None:
+            return self.pausing.ask(self.daemon.instance, request, paused=False)
+
+        self.daemon.answer(PAUSE_MEASURING, pause)
+        self.daemon.answer(RESUME_MEASURING, resume)
+
+    def _pause_or_go_on(self) -> list[Outcome]:
+        """At a pause end what is under way: what was achieved counts, and nothing is left in use by
+        it."""
+        if self.home is not None:
+            self.home.look_anew()
+        if not self.pausing.paused:
+            return []
         return [outcome for outcome in self.watcher.end_all() if outcome.kind != LEFT_IN_USE]
 
     def _look_at(self, camera: str, frame: RgbdFrame, key: str) -> None:
@@ -209,6 +237,7 @@ class OutcomesLoop:
             if remembered := self.watcher.followed.values():
                 # It waits for the next captures as if its last had just come.
                 self._clock.hear(max(one.gathering.last_ns for one in remembered))
+            self.pausing.keep(self.waiting.saver.database)
             if self.home is not None:
                 self.home.recall(self.waiting.saver.database)
         self._show()
@@ -220,10 +249,11 @@ class OutcomesLoop:
             self.watcher.forget()
             self._memory = Memory(self.watcher)
             if self.home is not None:
-                self.home.forget()
+                self.home.look_anew()
         if self.waiting.saver is not None:
             added = () if saved is None else saved.added
             try:
+                self.pausing.keep(self.waiting.saver.database)
                 self._publish_kept(self.waiting.saver.database, added)
                 self._look_after(self.waiting.saver.database)
             except StoreError as error:
@@ -280,5 +310,5 @@ class OutcomesLoop:
         else:
             lost = f"; {self.waiting.lost} outcomes were lost" if self.waiting.lost else ""
             health.trouble("database", self.waiting.problem + lost)
-        health.paused = self.home.paused if self.home is not None else None
+        health.paused = self.pausing.paused
         health.state = "running" if self.waiting.problem is None else "degraded"
