@@ -27,7 +27,7 @@ def start(rig: RunningRig, more: str = "") -> Process:
     """A daemon that measures the cup, and is up."""
     model = write_model(rig.folder / "cup.model")
     rig.configure(f'[outcomes.home]\nmodels = ["{model}"]\ntime_zone = "Europe/Zurich"\n{more}')
-    daemon = rig.inhand("outcomes", "--config", rig.config)
+    daemon = rig.inhand("outcomes", "--config", rig.config, "--name", "home")
     daemon.said("is up")
     return daemon
 
@@ -138,6 +138,13 @@ def test_what_is_kept_can_be_looked_at_and_forgotten_while_the_daemon_runs(rig: 
     # What the daemon sees before it hears of it is forgotten as well: the first may be.
     carry(rig, "--start-ns", str(START_NS + 60 * 10**9), "--times", "2")
     eventually("the next acts", lambda: kinds(rig)[-2:] == ["taken_up", "put_down"])
+
+
+def test_a_second_daemon_of_one_database_is_refused_and_told_by_whom(rig: RunningRig) -> None:
+    daemon = start(rig, "[outcomes.shed]\n")
+    other = rig.inhand("outcomes", "--config", rig.config, "--name", "shed")
+    assert other.wait() == 1
+    assert f"another daemon, outcomes home of inhand/rig, process {daemon.pid}" in other.stderr
 
 
 def test_without_objects_the_daemon_says_so_in_its_health(rig: RunningRig) -> None:

@@ -140,9 +140,10 @@ def person_number(text: str, people: Mapping[int, str]) -> int:
     raise ValueError(f"nobody is named {text!r}" + suggestion(text, people.values()))
 
 
-def open_kept(settings: KeepingSettings) -> Database:
-    """Open the database that the settings name; a file is made with its folder where there is none,
-    for its owner alone. Raises StoreError, and SettingsError where the password cannot be read."""
+def open_kept(settings: KeepingSettings, owner: str | None = None) -> Database:
+    """Open the database that the settings name, as its ``owner`` or to look at it; a file is made
+    with its folder where there is none, for this user alone. Raises StoreError, and SettingsError
+    where the password cannot be read."""
     file = settings.database_file
     if file is not None:
         try:
@@ -151,7 +152,7 @@ def open_kept(settings: KeepingSettings) -> Database:
                 file.touch(PRIVATE_FILE)
         except OSError as error:
             raise StoreError(f"the database {file} cannot be made: {error.strerror}") from None
-        return open_database(file)
+        return open_database(file, owner=owner)
     password = None
     if settings.password_file is not None:
         try:
@@ -159,4 +160,4 @@ def open_kept(settings: KeepingSettings) -> Database:
         except (OSError, UnicodeDecodeError) as error:
             reason = error.strerror if isinstance(error, OSError) else "it is no text"
             raise SettingsError(f"cannot read {settings.password_file}: {reason}") from None
-    return open_database(settings.database, password)
+    return open_database(settings.database, password, owner=owner)

@@ -1,5 +1,6 @@
 """The daemon of outcomes: what it is made of, and its loop."""
 
+import os
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
@@ -57,19 +58,25 @@ MOST_AT_ONCE = 1000
 def run(settings: Settings[OutcomesSettings]) -> None:
     """Measure until SIGTERM or SIGINT.
 
-    Raises SettingsError before anything starts, and InhandError when there is no session.
+    Raises SettingsError before anything starts, and InhandError when there is no session, or
+    another daemon owns the database.
     """
     check(settings)
     chosen = settings.service
     models = chosen.models or models_of(settings.origin.path)
     things, problems = load_things(models, chosen.objects)
-    with running_daemon("outcomes", settings) as daemon:
+    place = f"{settings.site.realm}/{settings.site.rig}"
+    owner = f"outcomes {settings.instance} of {place}, process {os.getpid()}"
+    waiting = WaitingOutcomes(lambda: _saver(chosen, owner))
+
+    def own_database() -> None:
+        waiting.begin(time.monotonic())
+
+    with running_daemon("outcomes", settings, prepare=own_database) as daemon:
         for problem in problems:
             daemon.health.trouble(f"object {problem}", problem)
         if not things:
             daemon.health.trouble("objects", NO_OBJECTS)
-        place = f"{settings.site.realm}/{settings.site.rig}"
-        waiting = WaitingOutcomes(lambda: Saver(open_kept(chosen), chosen.keeping))
         watcher = Watcher(things, place)
         pausing = Pausing()
         home = None
@@ -82,6 +89,16 @@ def run(settings: Settings[OutcomesSettings]) -> None:
         loop = OutcomesLoop(daemon, watcher, waiting, rules, retention, pausing, home)
         with _telling_home(home, chosen, daemon.health):
             loop.run()
+
+
+def _saver(settings: OutcomesSettings, owner: str) -> Saver:
+    """The database that the settings name, as its owner."""
+    database = open_kept(settings, owner)
+    try:
+        return Saver(database, settings.keeping)
+    except BaseException:
+        database.close()
+        raise
 
 
 @contextmanager
