@@ -6,10 +6,21 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from carried_cup import START_NS, write_model
+from carried_cup import CUP, START_NS, Carrying, write_model
+from inhand_outcomes.memory import Memory
+from inhand_outcomes.pausing import Pausing
+from inhand_outcomes.rules import Rules
+from inhand_outcomes.service import OutcomesLoop
+from inhand_outcomes.settings import OutcomesSettings
 from inhand_outcomes.store.database import open_database
 from inhand_outcomes.store.queries import KeptOutcome, latest
-from kept_outcomes import S, new_saver, sip
+from inhand_outcomes.store.retention import Retention
+from inhand_outcomes.store.saving import read_journal
+from inhand_outcomes.store.waiting import WaitingOutcomes
+from inhand_outcomes.watching import Watcher
+from inhand_runtime.daemon import running_daemon
+from inhand_runtime.settings import load_settings
+from kept_outcomes import ZURICH, S, new_saver, sip
 from running_rig import Process, RunningRig, eventually
 
 pytestmark = pytest.mark.long
@@ -96,12 +107,26 @@ def test_a_killed_daemon_counts_nothing_twice_and_loses_nothing(rig: RunningRig)
     assert kinds(rig) == ["taken_up", "put_down"] * 2
 
 
+def test_what_is_remembered_at_a_start_waits_for_the_next_captures(rig: RunningRig) -> None:
+    before, again = (Watcher({"cup": CUP}, "inhand/rig") for _ in range(2))
+    for skeletons, pose in Carrying().messages(4.5):  # of another time than the host's
+        before.hear_skeletons("front", skeletons)
+        before.hear_pose(pose)
+    saver = new_saver(rig.folder)
+    saver.save([], Memory(before).entries())
+    rig.configure("[outcomes.home]")
+    settings = load_settings(rig.config, "outcomes", OutcomesSettings)
+    with running_daemon("outcomes", settings) as daemon:
+        waiting, rules = WaitingOutcomes(lambda: saver), Rules([], ZURICH)
+        loop = OutcomesLoop(daemon, again, waiting, rules, Retention(), Pausing())
+        loop.recall()
+        assert again.end_quiet(loop.clock.now_ns()) == []
+        assert len(again.followed) == 1
+    saver.database.close()
+
+
 def journal_until(rig: RunningRig) -> float:
     """Until which second of the publisher the daemon's memory is written."""
-    from inhand_outcomes.memory import Memory
-    from inhand_outcomes.store.saving import read_journal
-    from inhand_outcomes.watching import Watcher
-
     database = open_database(rig.folder / "outcomes.db")
     try:
         watcher = Watcher({}, "inhand/rig")

@@ -144,7 +144,7 @@ class OutcomesLoop:
     home: Home | None = None
 
     def __post_init__(self) -> None:
-        self._clock = CaptureClock()
+        self.clock = CaptureClock()
         self._floors = FloorWatch(self.watcher.floors.see)
         self._frames: Arrivals | None = None
         self._memory = Memory(self.watcher)
@@ -154,7 +154,7 @@ class OutcomesLoop:
 
     def run(self) -> None:
         """Measure until stopped; what is open then is remembered for the next process."""
-        self._recall()
+        self.recall()
         self._answer()
         for topic in (INFO, SKELETONS, POSE):
             self.daemon.subscribe(topic, samples=QUEUE_SAMPLES)
@@ -169,7 +169,7 @@ class OutcomesLoop:
                 settled += self._hear(sample)
             if time.monotonic() >= next_save:
                 self._look_for_floor()
-                settled += self.watcher.end_quiet(self._clock.now_ns())
+                settled += self.watcher.end_quiet(self.clock.now_ns())
                 self._save(settled)
                 settled = []
                 next_save = time.monotonic() + SAVE_PERIOD_S
@@ -194,12 +194,12 @@ class OutcomesLoop:
             pose = self.daemon.decode(POSE, sample)
             if pose is None:
                 return []
-            self._clock.hear(pose.time_ns)
+            self.clock.hear(pose.time_ns)
             return [] if self.pausing.paused else self.watcher.hear_pose(pose)
         if topic is SKELETONS:
             skeletons = self.daemon.decode(SKELETONS, sample)
             if skeletons is not None:
-                self._clock.hear(skeletons.time_ns)
+                self.clock.hear(skeletons.time_ns)
                 if self.pausing.paused:
                     return []
                 self._floors.hear_skeletons(key.name, skeletons)
@@ -216,7 +216,7 @@ class OutcomesLoop:
         return []
 
     def _wants_frame(self) -> bool:
-        return self._floors.wants_frame(self._clock.now_ns())
+        return self._floors.wants_frame(self.clock.now_ns())
 
     def _answer(self) -> None:
         """Let whoever asks pause, and go on."""
@@ -246,14 +246,14 @@ class OutcomesLoop:
         except MessageError as error:
             self.daemon.health.malformed(key, error)
 
-    def _recall(self) -> None:
+    def recall(self) -> None:
         """Go on where the last process of this database ended, if it can be read."""
         self.waiting.save((), {}, time.monotonic())
         if self.waiting.saver is not None:
             self._memory.recall(read_journal(self.waiting.saver.database))
             if remembered := self.watcher.followed.values():
                 # It waits for the next captures as if its last had just come.
-                self._clock.hear(max(one.gathering.last_ns for one in remembered))
+                self.clock.hear(max(one.gathering.last_ns for one in remembered))
             self.pausing.keep(self.waiting.saver.database)
             if self.home is not None:
                 self.home.recall(self.waiting.saver.database)
@@ -296,7 +296,7 @@ class OutcomesLoop:
 
     def _look_after(self, database: Database) -> None:
         """Judge the goals, and once a day remove what is old; raises StoreError."""
-        now_ns = self._clock.now_ns()
+        now_ns = self.clock.now_ns()
         judge_goals(database, self.rules, now_ns)
         events = events_to_publish(database)
         for event in events:
