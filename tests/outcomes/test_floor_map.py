@@ -1,5 +1,7 @@
 """Maps of a floor: areas by formula, regions, furniture, the picture."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -67,6 +69,23 @@ def test_tells_floor_from_what_is_beneath_a_table_and_what_was_missed_in_a_regio
     share = region_shares(floor_map, under)["under the table"]
     assert share.swept_m2 == 0.0
     assert share.missed_m2 == pytest.approx(1.0, rel=0.05)
+
+
+def test_what_cannot_be_swept_is_not_missed():
+    floor_map = empty_map()
+    wall = np.abs(floor_map.centres()[..., 0]) < 0.25
+    floor_map = replace(
+        floor_map,
+        things=np.where(wall, 2, 0).astype(np.int32),
+        lowest=np.where(wall, 0.0, np.inf),
+        highest=np.where(wall, 2.4, -np.inf),
+        swept=np.where(floor_map.centres()[..., 0] > 0.5, 1.0, 0.0),
+    )
+    square = {"square": np.array([[-1.0, 2.0], [1.0, 2.0], [1.0, 4.0], [-1.0, 4.0]])}
+    share = region_shares(floor_map, square)["square"]
+    assert share.swept_m2 == pytest.approx(1.0)
+    assert share.missed_m2 == pytest.approx(2.0)
+    assert share.share == pytest.approx(1 / 3)
 
 
 def test_a_map_that_was_kept_goes_on_as_it_was():

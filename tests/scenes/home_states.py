@@ -7,6 +7,7 @@ from datetime import date, datetime
 from pathlib import Path
 from zoneinfo import ZoneInfo
 
+from inhand_outcomes.floor_map import RegionShare
 from inhand_outcomes.homeassistant.client import HomeAssistantClient
 from inhand_outcomes.homeassistant.handover import Handover
 from inhand_outcomes.homeassistant.parameters import HomeParameters
@@ -33,6 +34,7 @@ SHAPE = Shape(
     ),
     goals=(GoalShape("drink", "volume_ml"),),
     floor=True,
+    regions=("under_the_table",),
 )
 STATE = HomeState(
     shape=SHAPE,
@@ -53,6 +55,7 @@ STATE = HomeState(
     floor_png=b"\x89PNG not looked at",
     zone=ZURICH,
     paused=False,
+    regions={"under_the_table": RegionShare(0.75, 0.05, 0.25)},
 )
 QUICK = HomeParameters(
     refresh_s=2.0,

@@ -84,7 +84,15 @@ def run(settings: Settings[OutcomesSettings]) -> None:
             site = settings.site
             uses = {name: thing.use for name, thing in things.items()}
             of = Place(site.realm, site.rig, settings.instance)
-            home = Home(chosen.homeassistant, of, uses, chosen.rules, chosen.sure, pausing)
+            home = Home(
+                chosen.homeassistant,
+                of,
+                uses,
+                chosen.rules,
+                chosen.sure,
+                pausing,
+                chosen.regions,
+            )
         rules, retention = chosen.rules, chosen.retention
         loop = OutcomesLoop(daemon, watcher, waiting, rules, retention, pausing, home)
         with _telling_home(home, chosen, daemon.health):

@@ -99,6 +99,8 @@ def test_values_are_json_with_their_attributes() -> None:
     assert place["attributes"]["x_m"] == 0.4
     assert json.loads(values["broom-place"])["value"] == "None"
     assert values["goal--drink-reached"] == b"OFF"
+    assert json.loads(values["region--under_the_table-swept"]) == {"value": 75.0}
+    assert json.loads(values["region--under_the_table-missed"]) == {"value": 0.25}
 
 
 def test_a_removed_object_is_what_the_message_for_the_device_removes() -> None:

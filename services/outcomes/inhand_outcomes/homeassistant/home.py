@@ -11,6 +11,7 @@ import msgspec
 from inhand_schemas.messages import Event
 
 from inhand_outcomes.days import first_day, local_day, local_time
+from inhand_outcomes.floor_map import RegionShare
 from inhand_outcomes.handling import DROPPED, LEFT_IN_USE, PUT_DOWN
 from inhand_outcomes.homeassistant.handover import Handover
 from inhand_outcomes.homeassistant.parameters import DEFAULT_HOME, HomeParameters
@@ -19,6 +20,7 @@ from inhand_outcomes.homeassistant.shape import Shape, goal_shape, new_node, obj
 from inhand_outcomes.homeassistant.state import GoalProgress, HomeEvent, HomeState, KindTotal
 from inhand_outcomes.outcome import Outcome
 from inhand_outcomes.pausing import Pausing
+from inhand_outcomes.regions import Region, shares_of
 from inhand_outcomes.rules import PersonsGoal, Rules, progress
 from inhand_outcomes.store.database import Database
 from inhand_outcomes.store.floor_maps import KeptFloorMap, floor_maps
@@ -55,10 +57,11 @@ class Home:
         rules: Rules,
         sure: float,
         pausing: Pausing,
+        regions: Sequence[Region] = (),
         parameters: HomeParameters = DEFAULT_HOME,
     ) -> None:
         """``uses`` are those of the objects by name, ``sure`` the probability from which an outcome
-        counts."""
+        counts, and ``regions`` parts of the floor."""
         self.handover = Handover(parameters)
         self.pausing = pausing
         self._settings = settings
@@ -66,6 +69,7 @@ class Home:
         self._uses = uses
         self._rules = rules
         self._sure = sure
+        self._regions = regions
         self._parameters = parameters
         self._node = ""
         self._old: tuple[Shape, ...] = ()
@@ -169,6 +173,7 @@ class Home:
             floor_png=self._floor_png(maps),
             zone=self._rules.zone,
             paused=self.pausing.paused,
+            regions=self._shares(maps),
         )
 
     def _shape_of(self, seen: Sequence[DayTotal], *, floor: bool) -> Shape:
@@ -185,6 +190,7 @@ class Home:
             ),
             goals=tuple(goal_shape(one.goal) for one in self._rules.goals),
             floor=floor or SWEPT in self._uses.values(),
+            regions=tuple(one.name for one in self._regions),
         )
 
     def _progress(
@@ -200,6 +206,15 @@ class Home:
         """The first moment of a local day."""
         return datetime.combine(day, clock_time.min, self._rules.zone)
 
+    def _shares(self, maps: Sequence[KeptFloorMap]) -> dict[str, RegionShare]:
+        """How much of each region was swept."""
+        if not self._regions:
+            return {}
+        try:
+            return shares_of(maps, self._regions)
+        except ValueError:  # as the picture
+            return shares_of(maps[-1:], self._regions)
+
     def _floor_png(self, maps: Sequence[KeptFloorMap]) -> bytes:
         """The picture of the floor, drawn anew where the maps are others; empty where nothing is
         ever swept."""
@@ -213,9 +228,9 @@ class Home:
             digest.update(repr((one.day, one.header)).encode() + one.cells.tobytes())
         if self._floor[0] != digest.digest():
             try:
-                picture = kept_floor_png(maps) if maps else unswept_png()
+                picture = kept_floor_png(maps, self._regions) if maps else unswept_png()
             except ValueError:  # a rig that was moved on that day: the newer one's
-                picture = kept_floor_png(maps[-1:])
+                picture = kept_floor_png(maps[-1:], self._regions)
             self._floor = (digest.digest(), picture)
         return self._floor[1]
 

@@ -40,6 +40,8 @@ class Shape(msgspec.Struct, frozen=True):
     objects: tuple[ObjectShape, ...]
     goals: tuple[GoalShape, ...]
     floor: bool
+    regions: tuple[str, ...] = ()
+    """Names of parts of the floor."""
 
 
 def new_node(realm: str, rig: str, instance: str) -> str:
