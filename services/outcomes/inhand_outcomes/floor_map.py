@@ -190,6 +190,17 @@ def with_depth(
     )
 
 
+def with_furniture(floor_map: FloorMap, other: FloorMap) -> FloorMap:
+    """Return the map with what another of the same cells knows of floor and furniture."""
+    return replace(
+        floor_map,
+        floor=floor_map.floor + other.floor,
+        things=floor_map.things + other.things,
+        lowest=np.minimum(floor_map.lowest, other.lowest),
+        highest=np.maximum(floor_map.highest, other.highest),
+    )
+
+
 def region_shares(
     floor_map: FloorMap, regions: Mapping[str, Array], parameters: MapParameters = DEFAULT_MAP
 ) -> dict[str, RegionShare]:
