@@ -8,6 +8,7 @@ import pytest
 from carried_cup import CUP, START_NS, Carrying
 from inhand_outcomes.memory import Memory
 from inhand_outcomes.outcome import Outcome
+from inhand_outcomes.room import Room
 from inhand_outcomes.watching import Watcher
 from inhand_schemas.messages import ObjectPose, Pose, Skeletons
 
@@ -140,6 +141,15 @@ def test_who_ends_at_any_moment_goes_on_as_if_it_had_not(killed_s: float) -> Non
     assert [one.id for one in outcomes] == [
         one.id for one in watch(a_watcher(), Carrying().messages())
     ]
+
+
+def test_another_process_knows_up_and_the_floor_at_once() -> None:
+    before, after = a_watcher(), a_watcher()
+    before.room = Room(np.array([0.0, -0.8, -0.6]), -1.25)
+    entries = Memory(before).entries()
+    Memory(after).recall({name: data for name, data in entries.items() if data is not None})
+    assert after.room.up.tolist() == [0.0, -0.8, -0.6]
+    assert after.room.floor_height == -1.25
 
 
 def test_the_memory_holds_no_more_than_the_window() -> None:
