@@ -4,7 +4,7 @@ import argparse
 import contextlib
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,6 +13,7 @@ from inhand_runtime.inbox import Inbox, Received
 from inhand_runtime.questions import ask
 from inhand_runtime.session import Session, connected, open_session, subscribe, watch_instances
 from inhand_runtime.settings import load_rig_file
+from inhand_runtime.settings_errors import suggestion
 from inhand_runtime.signals import set_on_signals
 from inhand_schemas.errors import KeyFormatError, MessageError
 from inhand_schemas.keys import VERSION, Site, require_name
@@ -135,6 +136,20 @@ def open_look(config: Path | None) -> Iterator[Look]:
     with set_on_signals(stop), open_session(rig_file.zenoh) as session:
         site, needs_hub = Site(rig_file.realm, rig_file.rig), rig_file.zenoh.mode == "client"
         yield Look(session, site, stop, needs_hub=needs_hub)
+
+
+def expected_instances(
+    service: str, tables: Mapping[str, object], name: str | None
+) -> tuple[str, ...]:
+    """Names of the instances that must answer, all of the settings' tables or one; raises
+    SettingsError for one that is not there."""
+    if name is None:
+        return tuple(tables)
+    if tables and name not in tables:
+        raise SettingsError(
+            f"there is no table [{service}.{name}]" + suggestion(name, sorted(tables))
+        )
+    return (name,)
 
 
 def add_looking_arguments(

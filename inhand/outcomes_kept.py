@@ -11,6 +11,7 @@ from typing import Any
 
 from inhand_outcomes.days import first_day, local_day
 from inhand_outcomes.keeping import KeepingSettings, open_kept
+from inhand_outcomes.regions import shares_of
 from inhand_outcomes.store.database import Database
 from inhand_outcomes.store.floor_maps import floor_maps
 from inhand_outcomes.store.queries import last_places, latest, totals
@@ -30,6 +31,8 @@ from inhand.outcomes_tables import (
     outcome_row,
     place_row,
     place_text,
+    region_rows,
+    regions_table,
     total_row,
     totals_table,
 )
@@ -121,6 +124,9 @@ def _show_today(kept: Kept, arguments: argparse.Namespace) -> dict[str, Any]:
         print(f"{today}: nothing was done")
     if goals:
         output().print(goals_table(goals))
+    regions = _regions(kept, today)
+    if regions:
+        output().print(regions_table(regions))
     if arguments.map is not None:
         _draw_map(kept, today, arguments.map)
     return {
@@ -128,8 +134,20 @@ def _show_today(kept: Kept, arguments: argparse.Namespace) -> dict[str, Any]:
         "time_zone": kept.settings.time_zone,
         "totals": [total_row(total, kept.settings.people) for total in found],
         "goals": goals,
+        "regions": regions,
         "latest": [outcome_row(one, kept.settings) for one in last],
     }
+
+
+def _regions(kept: Kept, day: date) -> list[dict[str, Any]]:
+    """How much of each region of the floor was swept on a day."""
+    if not kept.settings.regions:
+        return []
+    try:
+        shares = shares_of(floor_maps(kept.database, day), kept.settings.regions)
+    except ValueError as error:
+        raise InhandError(str(error)) from None
+    return region_rows(shares)
 
 
 def _show_history(kept: Kept, arguments: argparse.Namespace) -> dict[str, Any]:
@@ -175,7 +193,7 @@ def _draw_map(kept: Kept, day: date, path: Path) -> None:
     # OpenCV draws it, and no other verb of these needs it.
     from inhand.outcomes_map import draw_floor_maps
 
-    draw_floor_maps(maps, path)
+    draw_floor_maps(maps, kept.settings.regions, path)
     print(f"drawn in {path}")
 
 

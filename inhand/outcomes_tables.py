@@ -7,6 +7,7 @@ from typing import Any
 import msgspec
 from inhand_outcomes.achievement import Amount
 from inhand_outcomes.days import first_day, local_time
+from inhand_outcomes.floor_map import RegionShare
 from inhand_outcomes.keeping import KeepingSettings
 from inhand_outcomes.rules import Rules, progress
 from inhand_outcomes.store.queries import KeptOutcome, LastPlace
@@ -122,6 +123,33 @@ def goals_table(goals: Sequence[Mapping[str, Any]]) -> Table:
         what, unit = _name_and_unit(row["amount"])
         table.add_row(
             words(row["goal"]), row["per"], what, _number(row["value"]) + unit, wanted + unit
+        )
+    return table
+
+
+def region_rows(shares: Mapping[str, RegionShare]) -> list[dict[str, Any]]:
+    """Return how much of each region was swept, as ``--json`` writes it."""
+    return [
+        {
+            "region": name,
+            "share": one.share,
+            "swept_m2": one.swept_m2,
+            "swept_deviation_m2": one.deviation_m2,
+            "missed_m2": one.missed_m2,
+        }
+        for name, one in shares.items()
+    ]
+
+
+def regions_table(regions: Sequence[Mapping[str, Any]]) -> Table:
+    """Make a table of regions of the floor."""
+    table = listing(("region",), ("swept", "m²", "missed m²"), "floor")
+    for row in regions:
+        table.add_row(
+            words(row["region"]),
+            f"{100.0 * row['share']:.0f} %",
+            f"{row['swept_m2']:.2f} ± {row['swept_deviation_m2']:.2f}",
+            f"{row['missed_m2']:.2f}",
         )
     return table
 

@@ -6,16 +6,20 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import msgspec
-from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED
 from inhand_runtime.roll import short_key
-from inhand_runtime.settings import RigFile, load_rig_file
-from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.settings import load_rig_file
 from inhand_runtime.wording import counted, sized
 from inhand_runtime.writable import require_writable_file
 from inhand_schemas.procedures import RecorderReply, RecorderRequest
 
-from inhand.looking import UNREACHED, add_looking_arguments, nothing_heard, open_look
+from inhand.looking import (
+    UNREACHED,
+    add_looking_arguments,
+    expected_instances,
+    nothing_heard,
+    open_look,
+)
 from inhand.recorder import COMMANDS, HELP
 from inhand.results import write_json
 
@@ -41,7 +45,9 @@ def ask(given: Sequence[str]) -> int:
     arguments = _parser().parse_args(given)
     if arguments.json is not None:
         require_writable_file(arguments.json)
-    expected = _expected(load_rig_file(arguments.config), arguments.name)
+    expected = expected_instances(
+        "recorder", load_rig_file(arguments.config).recorder, arguments.name
+    )
     request = RecorderRequest(id=uuid.uuid4().hex, recorder=arguments.name)
 
     def complete(replies: list[RecorderReply]) -> bool:
@@ -69,17 +75,6 @@ def ask(given: Sequence[str]) -> int:
         rows = [msgspec.to_builtins(reply) for _, reply in sorted(replies.items())]
         write_json(arguments.json, {"recorders": rows, "problems": problems})
     return FAILED if problems else DONE
-
-
-def _expected(rig_file: RigFile, name: str | None) -> tuple[str, ...]:
-    """Names of the recorders that must answer; raises SettingsError for one that is not there."""
-    if name is None:
-        return tuple(rig_file.recorder)
-    if rig_file.recorder and name not in rig_file.recorder:
-        raise SettingsError(
-            f"there is no table [recorder.{name}]" + suggestion(name, sorted(rig_file.recorder))
-        )
-    return (name,)
 
 
 def reply_text(reply: RecorderReply) -> str:

@@ -6,15 +6,20 @@ While it is closed no picture and no skeleton leaves the cameras, also after a r
 import argparse
 
 from inhand_capture.shutter import ShutterFile
-from inhand_runtime.errors import InhandError, SettingsError
+from inhand_runtime.errors import InhandError
 from inhand_runtime.exit_codes import DONE, FAILED
-from inhand_runtime.settings import RigFile, load_rig_file
-from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.settings import load_rig_file
 from inhand_runtime.wording import printable
 from inhand_schemas.keys import Site
 from inhand_schemas.procedures import SHUTTER, ShutterReply, ShutterRequest
 
-from inhand.looking import UNREACHED, add_looking_arguments, nothing_heard, open_look
+from inhand.looking import (
+    UNREACHED,
+    add_looking_arguments,
+    expected_instances,
+    nothing_heard,
+    open_look,
+)
 
 SECONDS = 3.0
 
@@ -30,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Ask all cameras, or one; exit code 1 unless each one that is meant has done it for good."""
     rig_file = load_rig_file(arguments.config)
     closed: bool = arguments.move == "close"
-    expected = _expected(rig_file, arguments.camera)
+    expected = expected_instances("capture", rig_file.capture, arguments.camera)
     request = ShutterRequest(closed=closed, camera=arguments.camera)
 
     def complete(replies: list[ShutterReply]) -> bool:
@@ -49,17 +54,6 @@ def run(arguments: argparse.Namespace) -> int:
     for line in problems:
         print(f"WRONG: {line}")
     return FAILED if problems else DONE
-
-
-def _expected(rig_file: RigFile, camera: str | None) -> tuple[str, ...]:
-    """Names of the cameras that must answer; raises SettingsError for one that is not there."""
-    if camera is None:
-        return tuple(rig_file.capture)
-    if rig_file.capture and camera not in rig_file.capture:
-        raise SettingsError(
-            f"there is no table [capture.{camera}]" + suggestion(camera, sorted(rig_file.capture))
-        )
-    return (camera,)
 
 
 def _report(replies: dict[str, ShutterReply]) -> list[str]:

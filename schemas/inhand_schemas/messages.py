@@ -362,7 +362,7 @@ class Health(Message, frozen=True, kw_only=True):
     in a frame, so that frames do not come faster than they are tracked. While ``shutter_closed``
     a camera captures nothing, because somebody wants it so; None where there is no shutter.
     ``recording`` is what a recorder does. While outcomes are ``paused`` nothing is measured,
-    because somebody wants it so; None where nobody can.
+    because somebody wants it so; None where nothing is measured anyway.
     """
 
     service: Name

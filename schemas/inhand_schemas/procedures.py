@@ -126,6 +126,22 @@ class RecorderReply(Struct, frozen=True, kw_only=True):
     problem: Text | None = None
 
 
+class OutcomesRequest(Struct, frozen=True, kw_only=True):
+    """Measure nothing until asked to go on, or go on, as the verb says, of one daemon of outcomes
+    or of all."""
+
+    outcomes: Name | None = None
+
+
+class OutcomesReply(Struct, frozen=True, kw_only=True):
+    """Whether a daemon of outcomes is paused from now on; ``problem`` is why a restart may forget
+    it."""
+
+    outcomes: Name
+    paused: bool
+    problem: Text | None = None
+
+
 SHUTTER = Procedure("capture", "shutter", ShutterRequest, ShutterReply, "camera")
 CONTROL = Procedure("capture", "control", ControlRequest, ControlReply, "camera")
 HYPOTHESES = Procedure("tracker", "hypotheses", HypothesesRequest, HypothesesReply, "tracker")
@@ -137,6 +153,9 @@ SPLIT = Procedure("recorder", "split", RecorderRequest, RecorderReply, "recorder
 SNAPSHOT = Procedure("recorder", "snapshot", RecorderRequest, RecorderReply, "recorder")
 STATUS = Procedure("recorder", "status", RecorderRequest, RecorderReply, "recorder")
 
+PAUSE_MEASURING = Procedure("outcomes", "pause", OutcomesRequest, OutcomesReply, "outcomes")
+RESUME_MEASURING = Procedure("outcomes", "resume", OutcomesRequest, OutcomesReply, "outcomes")
+
 RECORDER_PROCEDURES = (PAUSE, RESUME, SPLIT, SNAPSHOT, STATUS)
 PROCEDURES: tuple[Procedure[Any, Any], ...] = (
     SHUTTER,
@@ -145,4 +164,6 @@ PROCEDURES: tuple[Procedure[Any, Any], ...] = (
     HYPOTHESES,
     RELOAD,
     *RECORDER_PROCEDURES,
+    PAUSE_MEASURING,
+    RESUME_MEASURING,
 )

@@ -55,7 +55,9 @@ def test_the_tutorials_rig_is_valid_and_follows_whom_the_model_does_not_know() -
 
 
 def test_the_outcomes_page_shows_what_is_so_without_a_word() -> None:
-    measured, text = blocks("outcomes.md", "toml")
+    measured, swept, text = blocks("outcomes.md", "toml")
+    (region,) = OutcomesSettings.model_validate(tomllib.loads(swept)["outcomes"]["home"]).regions
+    assert region.name == "under_the_table"
     OutcomesSettings.model_validate(tomllib.loads(measured)["outcomes"]["kitchen"])
     table = tomllib.loads(text)["outcomes"]["home"]
     chosen, defaults = OutcomesSettings.model_validate(table), OutcomesSettings()

@@ -37,6 +37,12 @@ kind = "sip"
 amount = "volume_ml"
 at_least = 1500
 """
+TABLE = """
+[[outcomes.home.regions]]
+name = "under_the_table"
+from = [1.0, 1.5]
+to = [2.0, 1.0]
+"""
 PNG = b"\x89PNG"
 
 
@@ -191,6 +197,14 @@ def test_the_map_of_today_is_drawn(config: Path) -> None:
     answer(config, "today", "--map", config.with_name("floor.png"))
     picture = cv2.imread(str(config.with_name("floor.png")))
     assert picture is not None
+    # The table reaches from 0.5 m beyond what was swept to 0.5 m within it, all of the floor.
+    with config.open("a") as settings:
+        settings.write(TABLE)
+    (region,) = answer(config, "today", "--map", config.with_name("table.png"))["regions"]
+    assert region["region"] == "under_the_table"
+    assert region["share"] == pytest.approx(0.5, abs=0.01)
+    assert (region["swept_m2"], region["missed_m2"]) == pytest.approx((0.25, 0.25))
+    assert config.with_name("table.png").read_bytes() != config.with_name("floor.png").read_bytes()
     # Both swept 600 of the cells of 5 cm, which are drawn eight pixels wide.
     swept = (picture[: 60 * PIXELS] == SWEPT).all(axis=2)
     assert swept.sum() == 2 * 600 * PIXELS**2

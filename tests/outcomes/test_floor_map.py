@@ -1,5 +1,7 @@
 """Maps of a floor: areas by formula, regions, furniture, the picture."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -13,30 +15,14 @@ from inhand_outcomes.floor_map import (
 from inhand_outcomes.floor_picture import floor_png
 from inhand_outcomes.measures.footprint import Footprint, swept_cells
 from inhand_outcomes.room import Room
-from inhand_schemas.messages import CameraInfo
+from seen_table import INFO, ROOM, table_depth
 
 HEAD = Footprint(np.zeros(3), np.array([0.0, 1.0, 0.0]), 0.30, 0.06)
-INFO = CameraInfo(
-    sequence=0, time_ns=0, width=640, height=480, fx=525.0, fy=525.0, cx=319.5, cy=239.5
-)
-ROOM = Room(np.array([0.0, -1.0, 0.0]), -1.2)
-"""A level camera, 1.2 m above the floor."""
 
 
 def stroke(x_from, x_to, y, error=0.01, chance=1.0):
     places = np.column_stack([np.linspace(x_from, x_to, 20), np.full(20, y)])
     return places, np.tile([0.0, 1.0], (20, 1)), np.full(20, error), chance
-
-
-def table_depth():
-    """A level camera's depth of the floor, and of a plate 0.7 m high, 1 m square, 2 m ahead."""
-    v, u = np.mgrid[0:480, 0:640]
-    rays = np.stack([(u - 319.5) / 525.0, (v - 239.5) / 525.0, np.ones(u.shape)], axis=-1)
-    with np.errstate(divide="ignore"):
-        floor, top = 1.2 / rays[..., 1], 0.5 / rays[..., 1]
-    on_top = (top > 2.0) & (top < 3.0) & (np.abs(rays[..., 0] * top) < 0.5)
-    depth = np.where(on_top, top, np.where((floor > 0.0) & (floor < 6.0), floor, 0.0))
-    return np.rint(1000.0 * depth).astype(np.uint16)
 
 
 def test_a_stroke_covers_its_length_times_the_width_of_the_head():
@@ -67,6 +53,23 @@ def test_tells_floor_from_what_is_beneath_a_table_and_what_was_missed_in_a_regio
     share = region_shares(floor_map, under)["under the table"]
     assert share.swept_m2 == 0.0
     assert share.missed_m2 == pytest.approx(1.0, rel=0.05)
+
+
+def test_what_cannot_be_swept_is_not_missed():
+    floor_map = empty_map()
+    wall = np.abs(floor_map.centres()[..., 0]) < 0.25
+    floor_map = replace(
+        floor_map,
+        things=np.where(wall, 2, 0).astype(np.int32),
+        lowest=np.where(wall, 0.0, np.inf),
+        highest=np.where(wall, 2.4, -np.inf),
+        swept=np.where(floor_map.centres()[..., 0] > 0.5, 1.0, 0.0),
+    )
+    square = {"square": np.array([[-1.0, 2.0], [1.0, 2.0], [1.0, 4.0], [-1.0, 4.0]])}
+    share = region_shares(floor_map, square)["square"]
+    assert share.swept_m2 == pytest.approx(1.0)
+    assert share.missed_m2 == pytest.approx(2.0)
+    assert share.share == pytest.approx(1 / 3)
 
 
 def test_a_map_that_was_kept_goes_on_as_it_was():

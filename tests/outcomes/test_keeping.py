@@ -10,6 +10,7 @@ from inhand_runtime.errors import SettingsError
 from pydantic import ValidationError
 
 DRINK = {"name": "drink", "kind": "sip", "at_least": 8}
+HALL = {"name": "hall", "from": [1.0, 2.0], "to": [2.0, 3.0]}
 PEOPLE = {"0": "anna", "1": "ben"}
 
 
@@ -30,6 +31,9 @@ PEOPLE = {"0": "anna", "1": "ben"}
         ({"goals": [DRINK, DRINK]}, "two have one name"),
         ({"people": PEOPLE, "goals": [{**DRINK, "person": "bne"}]}, r"did you mean ben\?"),
         ({"goals": [{**DRINK, "person": "ben"}]}, "or name people in the settings"),
+        ({"regions": [HALL, HALL]}, "two have one name"),
+        ({"regions": [{**HALL, "to": [1.0, 3.0]}]}, "hall has no area"),
+        ({"regions": [{**HALL, "to": [9.0, 3.0]}]}, "less than or equal to 6"),
         ({"quiet": {"from": "07:00", "to": "07:00"}}, "leave quiet out"),
         (
             {

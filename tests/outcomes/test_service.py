@@ -6,9 +6,21 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from carried_cup import START_NS, write_model
+from carried_cup import CUP, START_NS, Carrying, write_model
+from inhand_outcomes.memory import Memory
+from inhand_outcomes.pausing import Pausing
+from inhand_outcomes.rules import Rules
+from inhand_outcomes.service import OutcomesLoop
+from inhand_outcomes.settings import OutcomesSettings
 from inhand_outcomes.store.database import open_database
 from inhand_outcomes.store.queries import KeptOutcome, latest
+from inhand_outcomes.store.retention import Retention
+from inhand_outcomes.store.saving import read_journal
+from inhand_outcomes.store.waiting import WaitingOutcomes
+from inhand_outcomes.watching import Watcher
+from inhand_runtime.daemon import running_daemon
+from inhand_runtime.settings import load_settings
+from kept_outcomes import ZURICH, S, new_saver, sip
 from running_rig import Process, RunningRig, eventually
 
 pytestmark = pytest.mark.long
@@ -26,7 +38,7 @@ def start(rig: RunningRig, more: str = "") -> Process:
     """A daemon that measures the cup, and is up."""
     model = write_model(rig.folder / "cup.model")
     rig.configure(f'[outcomes.home]\nmodels = ["{model}"]\ntime_zone = "Europe/Zurich"\n{more}')
-    daemon = rig.inhand("outcomes", "--config", rig.config)
+    daemon = rig.inhand("outcomes", "--config", rig.config, "--name", "home")
     daemon.said("is up")
     return daemon
 
@@ -62,6 +74,25 @@ def test_what_is_achieved_is_published_and_kept(rig: RunningRig) -> None:
     assert events[1]["amounts"].keys() == {"place_x_m", "place_y_m", "place_z_m"}
 
 
+def test_what_was_saved_before_a_kill_and_not_published_is_published_once(
+    rig: RunningRig,
+) -> None:
+    saver = new_saver(rig.folder)
+    saver.save([sip(START_NS), sip(START_NS + 10 * S)])
+    saver.database.close()
+    echo = rig.inhand("echo", "event", "--json", "--config", rig.config)
+    start(rig)
+    ids = [sip(START_NS).id, sip(START_NS + 10 * S).id]
+
+    def said() -> list[str]:
+        return [json.loads(line)["message"]["id"] for line in echo.stdout.splitlines()]
+
+    eventually("both", lambda: len(said()) == 2)
+    carry(rig, "--start-ns", str(START_NS + 60 * S), "--speed", "9")
+    eventually("the next acts", lambda: len(said()) == 4)
+    assert said()[:2] == ids
+
+
 def test_a_killed_daemon_counts_nothing_twice_and_loses_nothing(rig: RunningRig) -> None:
     daemon = start(rig)
     carry(rig, "--until", "4.5")
@@ -76,12 +107,26 @@ def test_a_killed_daemon_counts_nothing_twice_and_loses_nothing(rig: RunningRig)
     assert kinds(rig) == ["taken_up", "put_down"] * 2
 
 
+def test_what_is_remembered_at_a_start_waits_for_the_next_captures(rig: RunningRig) -> None:
+    before, again = (Watcher({"cup": CUP}, "inhand/rig") for _ in range(2))
+    for skeletons, pose in Carrying().messages(4.5):  # of another time than the host's
+        before.hear_skeletons("front", skeletons)
+        before.hear_pose(pose)
+    saver = new_saver(rig.folder)
+    saver.save([], Memory(before).entries())
+    rig.configure("[outcomes.home]")
+    settings = load_settings(rig.config, "outcomes", OutcomesSettings)
+    with running_daemon("outcomes", settings) as daemon:
+        waiting, rules = WaitingOutcomes(lambda: saver), Rules([], ZURICH)
+        loop = OutcomesLoop(daemon, again, waiting, rules, Retention(), Pausing())
+        loop.recall()
+        assert again.end_quiet(loop.clock.now_ns()) == []
+        assert len(again.followed) == 1
+    saver.database.close()
+
+
 def journal_until(rig: RunningRig) -> float:
     """Until which second of the publisher the daemon's memory is written."""
-    from inhand_outcomes.memory import Memory
-    from inhand_outcomes.store.saving import read_journal
-    from inhand_outcomes.watching import Watcher
-
     database = open_database(rig.folder / "outcomes.db")
     try:
         watcher = Watcher({}, "inhand/rig")
@@ -118,6 +163,13 @@ def test_what_is_kept_can_be_looked_at_and_forgotten_while_the_daemon_runs(rig: 
     # What the daemon sees before it hears of it is forgotten as well: the first may be.
     carry(rig, "--start-ns", str(START_NS + 60 * 10**9), "--times", "2")
     eventually("the next acts", lambda: kinds(rig)[-2:] == ["taken_up", "put_down"])
+
+
+def test_a_second_daemon_of_one_database_is_refused_and_told_by_whom(rig: RunningRig) -> None:
+    daemon = start(rig, "[outcomes.shed]\n")
+    other = rig.inhand("outcomes", "--config", rig.config, "--name", "shed")
+    assert other.wait() == 1
+    assert f"another daemon, outcomes home of inhand/rig, process {daemon.pid}" in other.stderr
 
 
 def test_without_objects_the_daemon_says_so_in_its_health(rig: RunningRig) -> None:

@@ -5,6 +5,7 @@ from datetime import date
 
 from inhand_outcomes.gathering import Holding
 from inhand_outcomes.swept_floors import SweptFloors
+from seen_table import INFO, ROOM, table_depth
 from swept_by_hand import BROOM, broom
 
 TODAY, TOMORROW = date(2026, 11, 30), date(2026, 12, 1)
@@ -36,6 +37,21 @@ def test_another_process_goes_on_with_what_is_kept() -> None:
     (both,) = again.to_keep()
     assert ((both.cells & 31) >= (kept.cells & 31)).all()
     assert (both.cells & 31 > 15).sum() > 1.3 * (kept.cells & 31 > 15).sum()
+
+
+def test_furniture_that_was_seen_before_a_restart_is_known_after_it() -> None:
+    floors = SweptFloors()
+    floors.begin(TODAY)
+    for _ in range(2):
+        floors.see(table_depth(), INFO, ROOM, ())
+    floors.sweep(ANNA, broom(), BROOM, 0.0, 20.0)
+    (kept,) = floors.to_keep()
+    assert (kept.cells >> 5 == 2).sum() > 200  # a table of 1 m2
+    again = SweptFloors()
+    again.begin(TODAY, [kept])
+    again.sweep(ANNA, broom(turn=1.0), BROOM, 0.0, 20.0)
+    (both,) = again.to_keep()
+    assert (both.cells >> 5 == kept.cells >> 5).all()
 
 
 def test_a_new_day_begins_with_nothing_swept() -> None:

@@ -8,8 +8,9 @@ import pytest
 from carried_cup import CUP, START_NS, Carrying
 from inhand_outcomes.memory import Memory
 from inhand_outcomes.outcome import Outcome
+from inhand_outcomes.room import Room
 from inhand_outcomes.watching import Watcher
-from inhand_schemas.messages import ObjectPose, Skeletons
+from inhand_schemas.messages import ObjectPose, Pose, Skeletons
 
 Frames = Iterable[tuple[Skeletons, ObjectPose]]
 
@@ -38,6 +39,21 @@ def test_each_act_is_said_once_and_when_it_is_settled() -> None:
     assert (outcomes[1].end_ns - START_NS) * 1e-9 == pytest.approx(6.0, abs=0.5)
     assert outcomes[1].rig_from_object is not None
     np.testing.assert_allclose(outcomes[1].rig_from_object.translation, [0.1, 0.2, 2.3], atol=0.03)
+
+
+def test_a_thing_was_put_where_most_frames_show_it_to_lie() -> None:
+    frames = []
+    for skeletons, pose in Carrying().messages():
+        second = (pose.time_ns - START_NS) * 1e-9
+        if 5.9 < second < 6.6:  # the tracker is off as the hand leaves
+            assert pose.camera_from_object is not None
+            x, y, z = pose.camera_from_object.translation
+            off = Pose((x + 0.03, y, z), pose.camera_from_object.rotation)
+            pose = msgspec.structs.replace(pose, camera_from_object=off)
+        frames.append((skeletons, pose))
+    _, put_down = watch(a_watcher(), frames)
+    assert put_down.rig_from_object is not None
+    np.testing.assert_allclose(put_down.rig_from_object.translation, [0.1, 0.2, 2.3], atol=0.005)
 
 
 def test_an_act_is_not_said_before_it_is_settled() -> None:
@@ -125,6 +141,15 @@ def test_who_ends_at_any_moment_goes_on_as_if_it_had_not(killed_s: float) -> Non
     assert [one.id for one in outcomes] == [
         one.id for one in watch(a_watcher(), Carrying().messages())
     ]
+
+
+def test_another_process_knows_up_and_the_floor_at_once() -> None:
+    before, after = a_watcher(), a_watcher()
+    before.room = Room(np.array([0.0, -0.8, -0.6]), -1.25)
+    entries = Memory(before).entries()
+    Memory(after).recall({name: data for name, data in entries.items() if data is not None})
+    assert after.room.up.tolist() == [0.0, -0.8, -0.6]
+    assert after.room.floor_height == -1.25
 
 
 def test_the_memory_holds_no_more_than_the_window() -> None:

@@ -7,12 +7,14 @@ from datetime import date, datetime
 from pathlib import Path
 from zoneinfo import ZoneInfo
 
+from inhand_outcomes.floor_map import RegionShare
 from inhand_outcomes.homeassistant.client import HomeAssistantClient
 from inhand_outcomes.homeassistant.handover import Handover
 from inhand_outcomes.homeassistant.parameters import HomeParameters
 from inhand_outcomes.homeassistant.settings import HomeAssistantSettings
 from inhand_outcomes.homeassistant.shape import GoalShape, Shape, object_shape
 from inhand_outcomes.homeassistant.state import GoalProgress, HomeState, KindTotal
+from inhand_outcomes.pausing import Pausing
 from inhand_outcomes.store.queries import LastPlace
 from inhand_outcomes.totals import AmountTotal
 from inhand_runtime.health import HealthBoard
@@ -32,6 +34,7 @@ SHAPE = Shape(
     ),
     goals=(GoalShape("drink", "volume_ml"),),
     floor=True,
+    regions=("under_the_table",),
 )
 STATE = HomeState(
     shape=SHAPE,
@@ -52,6 +55,7 @@ STATE = HomeState(
     floor_png=b"\x89PNG not looked at",
     zone=ZURICH,
     paused=False,
+    regions={"under_the_table": RegionShare(0.75, 0.05, 0.25)},
 )
 QUICK = HomeParameters(
     refresh_s=2.0,
@@ -83,6 +87,7 @@ class Shown:
     handover: Handover
     health: HealthBoard
     client: HomeAssistantClient
+    pausing: Pausing
     forgotten: list[date] = field(default_factory=list)
 
     @property
@@ -106,11 +111,13 @@ def showing(
     file.write_text(password + "\n")
     chosen = {"host": "127.0.0.1", "port": port, "user": USER, "password_file": file, **settings}
     handover, health, forgotten = Handover(parameters), HealthBoard("outcomes", "home"), []
+    pausing = Pausing()
     client = HomeAssistantClient(
         HomeAssistantSettings.model_validate(chosen),
         handover,
         health,
         forgotten.append,
+        pausing,
         "1.2.3",
         parameters,
     )
@@ -118,6 +125,6 @@ def showing(
         handover.show(state, ())
     client.start()
     try:
-        yield Shown(handover, health, client, forgotten)
+        yield Shown(handover, health, client, pausing, forgotten)
     finally:
         client.stop()

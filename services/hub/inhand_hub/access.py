@@ -66,7 +66,7 @@ ROLES: dict[RoleName, Role] = {
     "tracker": Role("tracker", (POSE,), (INFO, RGBD, SKELETONS), answers=_of("tracker")),
     "recorder": Role("recorder", (EVENT,), EVERYTHING_ELSE, answers=_of("recorder")),
     "studio": Role("studio", reads=EVERYTHING_ELSE, asks=PROCEDURES),
-    "outcomes": Role("outcomes", (EVENT,), (INFO, RGBD, SKELETONS, POSE)),
+    "outcomes": Role("outcomes", (EVENT,), (INFO, RGBD, SKELETONS, POSE), answers=_of("outcomes")),
     "viewer": Role(None, reads=(PREVIEW, POSE, SKELETONS, INFO)),
 }
 

@@ -105,6 +105,10 @@ class FloorMap:
         near = rows[:, :-2] + rows[:, 1:-1] + rows[:, 2:]
         return flags | (free & (near >= 3))
 
+    def is_solid(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
+        """Cells (X, Y) with something above them that one cannot sweep beneath."""
+        return (self.things >= parameters.looks) & ~self.is_under(parameters)
+
     def is_missed(self, parameters: MapParameters = DEFAULT_MAP) -> Flags:
         """Cells (X, Y) that can be swept and were not."""
         return (self.is_floor(parameters) | self.is_under(parameters)) & ~self.is_swept(parameters)
@@ -113,11 +117,16 @@ class FloorMap:
 @dataclass(frozen=True)
 class RegionShare:
     """Of a named region: the area that was swept, with its deviation, and that was missed, square
-    metres."""
+    metres. What cannot be swept is neither."""
 
     swept_m2: float
     deviation_m2: float
     missed_m2: float
+
+    @property
+    def share(self) -> float:
+        """The share that was swept of what can be."""
+        return self.swept_m2 / max(self.swept_m2 + self.missed_m2, CELL_M**2)
 
 
 def empty_map(parameters: MapParameters = DEFAULT_MAP) -> FloorMap:
@@ -181,19 +190,31 @@ def with_depth(
     )
 
 
+def with_furniture(floor_map: FloorMap, other: FloorMap) -> FloorMap:
+    """Return the map with what another of the same cells knows of floor and furniture."""
+    return replace(
+        floor_map,
+        floor=floor_map.floor + other.floor,
+        things=floor_map.things + other.things,
+        lowest=np.minimum(floor_map.lowest, other.lowest),
+        highest=np.maximum(floor_map.highest, other.highest),
+    )
+
+
 def region_shares(
     floor_map: FloorMap, regions: Mapping[str, Array], parameters: MapParameters = DEFAULT_MAP
 ) -> dict[str, RegionShare]:
     """Return how much of each region, a polygon (N, 2) of the room by its name, was swept."""
     centres, cell = floor_map.centres(), CELL_M**2
+    swept, solid = floor_map.is_swept(parameters), floor_map.is_solid(parameters)
     shares = {}
     for name, polygon in regions.items():
         inside = _inside(centres, polygon)
         chances = floor_map.swept[inside]
         shares[name] = RegionShare(
-            float(np.sum(floor_map.is_swept(parameters)[inside])) * cell,
+            float(np.sum(swept[inside])) * cell,
             float(np.sum(chances * (1.0 - chances))) * cell,
-            float(np.sum(inside & ~floor_map.is_swept(parameters))) * cell,
+            float(np.sum(inside & ~swept & ~solid)) * cell,
         )
     return shares
 

@@ -27,11 +27,12 @@ def floor_png(
 ) -> bytes:
     """Draw a map with its regions, polygons (N, 2) of the room by name, as PNG.
 
-    Green was swept, light is floor and orange floor under furniture that were not.
+    Green was swept, light is floor and orange floor under furniture that were not. Whole metres
+    are marked at the edges.
     """
     swept, under = floor_map.is_swept(parameters), floor_map.is_under(parameters)
     floor = floor_map.is_floor(parameters)
-    solid = (floor_map.things >= parameters.looks) & ~under
+    solid = floor_map.is_solid(parameters)
     image = np.empty((*floor_map.size, 3), np.uint8)
     image[:] = UNKNOWN
     for where, colour in (
@@ -48,6 +49,7 @@ def floor_png(
     picture = np.ascontiguousarray(
         np.repeat(np.repeat(part.transpose(1, 0, 2)[::-1], PIXELS, axis=0), PIXELS, axis=1)
     )
+    _draw_metres(picture, floor_map.corner + low * CELL_M)
     for name, polygon in (regions or {}).items():
         cells = (polygon - floor_map.corner) / CELL_M - low
         corners = np.stack([cells[:, 0], (high - low)[1] - cells[:, 1]], axis=1) * PIXELS
@@ -57,6 +59,19 @@ def floor_png(
     whole = np.concatenate([picture, _legend(picture.shape[1], floor_map, parameters)])
     _, data = cv2.imencode(".png", whole)
     return data.tobytes()
+
+
+def _draw_metres(picture: NDArray[np.uint8], corner: Array) -> None:
+    """Write where x and y are whole metres, at the lower and the left edge."""
+    height, width = picture.shape[:2]
+    for x in range(int(np.ceil(corner[0])), int(corner[0] + width * CELL_M / PIXELS) + 1):
+        column = round((x - corner[0]) / CELL_M * PIXELS)
+        cv2.line(picture, (column, height - 6), (column, height), REGION, 2)
+        _write(picture, f"x {x}", (column + 3, height - 3), REGION)
+    for y in range(int(np.ceil(corner[1])), int(corner[1] + height * CELL_M / PIXELS) + 1):
+        row = height - round((y - corner[1]) / CELL_M * PIXELS)
+        cv2.line(picture, (0, row), (6, row), REGION, 2)
+        _write(picture, f"y {y}", (8, row + 5), REGION)
 
 
 def _bounds(known: Flags) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

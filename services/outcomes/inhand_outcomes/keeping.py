@@ -11,6 +11,7 @@ from inhand_runtime.settings import FilePath, Section
 from inhand_runtime.settings_errors import suggestion
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
+from inhand_outcomes.regions import Region
 from inhand_outcomes.rules import Goal, PersonsGoal, QuietHours, Rules
 from inhand_outcomes.store.database import Database, open_database
 from inhand_outcomes.store.failures import StoreError
@@ -59,8 +60,8 @@ class KeepingSettings(Section):
     ``password_file``. Days are local ones of ``time_zone``, the host's unless said. Outcomes are
     counted from the probability ``sure`` on. Details are kept for ``keep_days``, with the kinds of
     evidence that ``keep`` names, and the totals of days for ``keep_totals_days``; 0 is for ever.
-    ``people`` are names of the numbers that people have, ``goals`` what is to be reached, and
-    ``quiet`` the hours without reminders.
+    ``people`` are names of the numbers that people have, ``goals`` what is to be reached,
+    ``quiet`` the hours without reminders, and ``regions`` named parts of the floor.
     """
 
     database: Annotated[str, AfterValidator(_database)] = Field(
@@ -75,6 +76,7 @@ class KeepingSettings(Section):
     people: Mapping[Annotated[int, Field(ge=0)], Annotated[str, Field(min_length=1)]] = {}
     goals: tuple[Goal, ...] = ()
     quiet: QuietHours | None = None
+    regions: tuple[Region, ...] = ()
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -89,6 +91,9 @@ class KeepingSettings(Section):
         names = [goal.name for goal in self.goals]
         if len(set(names)) < len(names):
             raise ValueError("goals: two have one name")
+        names = [region.name for region in self.regions]
+        if len(set(names)) < len(names):
+            raise ValueError("regions: two have one name")
         for goal in self.goals:
             if isinstance(goal.person, str):
                 person_number(goal.person, self.people)
@@ -140,9 +145,10 @@ def person_number(text: str, people: Mapping[int, str]) -> int:
     raise ValueError(f"nobody is named {text!r}" + suggestion(text, people.values()))
 
 
-def open_kept(settings: KeepingSettings) -> Database:
-    """Open the database that the settings name; a file is made with its folder where there is none,
-    for its owner alone. Raises StoreError, and SettingsError where the password cannot be read."""
+def open_kept(settings: KeepingSettings, owner: str | None = None) -> Database:
+    """Open the database that the settings name, as its ``owner`` or to look at it; a file is made
+    with its folder where there is none, for this user alone. Raises StoreError, and SettingsError
+    where the password cannot be read."""
     file = settings.database_file
     if file is not None:
         try:
@@ -151,7 +157,7 @@ def open_kept(settings: KeepingSettings) -> Database:
                 file.touch(PRIVATE_FILE)
         except OSError as error:
             raise StoreError(f"the database {file} cannot be made: {error.strerror}") from None
-        return open_database(file)
+        return open_database(file, owner=owner)
     password = None
     if settings.password_file is not None:
         try:
@@ -159,4 +165,4 @@ def open_kept(settings: KeepingSettings) -> Database:
         except (OSError, UnicodeDecodeError) as error:
             reason = error.strerror if isinstance(error, OSError) else "it is no text"
             raise SettingsError(f"cannot read {settings.password_file}: {reason}") from None
-    return open_database(settings.database, password)
+    return open_database(settings.database, password, owner=owner)

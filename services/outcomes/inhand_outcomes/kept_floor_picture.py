@@ -1,30 +1,22 @@
 """The picture of what was swept of the floor on a day, from the maps that are kept."""
 
-from collections.abc import Sequence
-from functools import reduce
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from inhand_outcomes.floor_map import map_of_cells
-from inhand_outcomes.store.floor_maps import Cells, KeptFloorMap
-
-SWEPT_BITS, KIND_BITS = 0x1F, 0xE0
-"""The bits of a cell that say how surely it was swept, and what it is (``cells_to_keep``)."""
+from inhand_outcomes.regions import Region, polygons, whole_floor
+from inhand_outcomes.store.floor_maps import KeptFloorMap
 
 UNSWEPT, UNSWEPT_SIZE = "Nothing was swept yet", (180, 360)
 """What is written where there is no map, and the size of that picture, rows and columns."""
 
 
-def kept_floor_png(maps: Sequence[KeptFloorMap]) -> bytes:
-    """Draw the maps of a day, one at least, as one (PNG), whoever swept; raises ValueError where
-    they do not lie on each other."""
+def kept_floor_png(maps: Sequence[KeptFloorMap], regions: Iterable[Region] = ()) -> bytes:
+    """Draw the maps of a day, one at least, as one (PNG) with its regions, whoever swept; raises
+    ValueError where they do not lie on each other."""
     from inhand_outcomes.floor_picture import floor_png
 
-    header = maps[0].header
-    if any(one.header != header for one in maps):
-        raise ValueError(f"the maps of {maps[0].day} do not lie on each other: forget that day")
-    cells = reduce(_together, (one.cells for one in maps))
-    return floor_png(map_of_cells(cells, np.array([header.x_m, header.y_m])))
+    return floor_png(whole_floor(maps), polygons(regions))
 
 
 def unswept_png() -> bytes:
@@ -38,9 +30,3 @@ def unswept_png() -> bytes:
     )
     _, data = cv2.imencode(".png", picture)
     return data.tobytes()
-
-
-def _together(first: Cells, second: Cells) -> Cells:
-    """Cells as the two together show them: what either swept, and the larger kind of the two."""
-    swept = np.maximum(first & SWEPT_BITS, second & SWEPT_BITS)
-    return np.asarray(swept | np.maximum(first & KIND_BITS, second & KIND_BITS), np.uint8)

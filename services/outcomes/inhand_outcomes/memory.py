@@ -1,7 +1,7 @@
 """What a watcher has in its head as bytes, so that an end at any moment loses next to nothing.
 
 Sightings are kept in pieces that are written once, and removed when no measure needs them any more;
-what was said and what goes on is one small entry.
+what was said, what goes on, and where up and the floor are is one small entry.
 """
 
 from collections.abc import Mapping
@@ -12,6 +12,7 @@ import zstandard
 
 from inhand_outcomes.gathering import Holding, Sighting
 from inhand_outcomes.outcome import Outcome
+from inhand_outcomes.room import Room
 from inhand_outcomes.watching import Followed, Watcher
 
 STATE = "state"
@@ -32,6 +33,8 @@ class _Remembered(msgspec.Struct, frozen=True):
 class _State(msgspec.Struct, frozen=True):
     followed: list[_Remembered]
     told: dict[str, dict[str, Outcome]]
+    up: tuple[float, float, float] | None = None
+    floor_height: float | None = None
 
 
 class _Piece(msgspec.Struct, frozen=True):
@@ -67,10 +70,14 @@ class Memory:
                 del self._pieces[name]
         for holding in self._written_ns.keys() - self._watcher.followed.keys():
             del self._written_ns[holding]
+        room = self._watcher.room
+        x, y, z = room.up.tolist()
         state = msgspec.msgpack.encode(
             _State(
                 [_remembered(holding, one) for holding, one in self._watcher.followed.items()],
                 self._watcher.told,
+                (x, y, z),
+                room.floor_height,
             )
         )
         if state != self._state:
@@ -89,6 +96,8 @@ class Memory:
             return
         state = msgspec.msgpack.decode(entries[STATE], type=_State)
         self._watcher.told.update(state.told)
+        if state.up is not None:
+            self._watcher.room = Room(np.array(state.up), state.floor_height)
         followed: dict[Holding, Followed] = {}
         for one in state.followed:
             holding = Holding(one.object, one.person)

@@ -1,5 +1,6 @@
 """The daemon of outcomes: what it is made of, and its loop."""
 
+import os
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
@@ -14,6 +15,12 @@ from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import Event, RgbdFrame
+from inhand_schemas.procedures import (
+    PAUSE_MEASURING,
+    RESUME_MEASURING,
+    OutcomesReply,
+    OutcomesRequest,
+)
 from inhand_schemas.topics import EVENT, INFO, POSE, RGBD, SKELETONS, topic_of
 from msgspec.structs import replace
 
@@ -25,6 +32,7 @@ from inhand_outcomes.homeassistant.home import Home, Place
 from inhand_outcomes.keeping import open_kept
 from inhand_outcomes.memory import Memory
 from inhand_outcomes.outcome import Outcome
+from inhand_outcomes.pausing import Pausing
 from inhand_outcomes.rules import Rules
 from inhand_outcomes.settings import OutcomesSettings, check
 from inhand_outcomes.store.database import Database
@@ -32,8 +40,9 @@ from inhand_outcomes.store.failures import StoreError
 from inhand_outcomes.store.floor_maps import floor_maps, keep_floor_map
 from inhand_outcomes.store.forgetting import Forget, forget
 from inhand_outcomes.store.goal_marks import events_to_publish, judge_goals, mark_published
+from inhand_outcomes.store.queries import outcomes_to_publish
 from inhand_outcomes.store.retention import Retention, remove_old
-from inhand_outcomes.store.saving import Saver, read_journal
+from inhand_outcomes.store.saving import Saver, mark_outcomes_published, read_journal
 from inhand_outcomes.store.waiting import WaitingOutcomes
 from inhand_outcomes.things import load_things, models_of
 from inhand_outcomes.watching import Watcher
@@ -42,34 +51,62 @@ IDLE_S = 0.25
 SAVE_PERIOD_S = 2.0
 """An end at any moment loses what came in this time."""
 QUEUE_SAMPLES = 4096
+MOST_AT_ONCE = 1000
+"""Number of outcomes that are published after one saving; the others follow after the next."""
 
 
 def run(settings: Settings[OutcomesSettings]) -> None:
     """Measure until SIGTERM or SIGINT.
 
-    Raises SettingsError before anything starts, and InhandError when there is no session.
+    Raises SettingsError before anything starts, and InhandError when there is no session, or
+    another daemon owns the database.
     """
     check(settings)
     chosen = settings.service
     models = chosen.models or models_of(settings.origin.path)
     things, problems = load_things(models, chosen.objects)
-    with running_daemon("outcomes", settings) as daemon:
+    place = f"{settings.site.realm}/{settings.site.rig}"
+    owner = f"outcomes {settings.instance} of {place}, process {os.getpid()}"
+    waiting = WaitingOutcomes(lambda: _saver(chosen, owner))
+
+    def own_database() -> None:
+        waiting.begin(time.monotonic())
+
+    with running_daemon("outcomes", settings, prepare=own_database) as daemon:
         for problem in problems:
             daemon.health.trouble(f"object {problem}", problem)
         if not things:
             daemon.health.trouble("objects", NO_OBJECTS)
-        place = f"{settings.site.realm}/{settings.site.rig}"
-        waiting = WaitingOutcomes(lambda: Saver(open_kept(chosen), chosen.keeping))
         watcher = Watcher(things, place)
+        pausing = Pausing()
         home = None
         if chosen.homeassistant is not None:
             site = settings.site
             uses = {name: thing.use for name, thing in things.items()}
             of = Place(site.realm, site.rig, settings.instance)
-            home = Home(chosen.homeassistant, of, uses, chosen.rules, chosen.sure)
-        loop = OutcomesLoop(daemon, watcher, waiting, chosen.rules, chosen.retention, home)
+            home = Home(
+                chosen.homeassistant,
+                of,
+                uses,
+                chosen.rules,
+                chosen.sure,
+                pausing,
+                chosen.regions,
+            )
+        rules, retention = chosen.rules, chosen.retention
+        loop = OutcomesLoop(daemon, watcher, waiting, rules, retention, pausing, home)
         with _telling_home(home, chosen, daemon.health):
             loop.run()
+
+
+def _saver(settings: OutcomesSettings, owner: str) -> Saver:
+    """The database that the settings name, as its owner."""
+    database = open_kept(settings, owner)
+    try:
+        return Saver(database, settings.keeping)
+    except BaseException:
+        database.close()
+        raise
 
 
 @contextmanager
@@ -87,7 +124,7 @@ def _telling_home(
             forget(database, Forget(day=day), time.time_ns())
 
     client = HomeAssistantClient(
-        settings.homeassistant, home.handover, health, forget_day, version("inhand")
+        settings.homeassistant, home.handover, health, forget_day, home.pausing, version("inhand")
     )
     client.start()
     try:
@@ -111,10 +148,11 @@ class OutcomesLoop:
     waiting: WaitingOutcomes
     rules: Rules
     retention: Retention
+    pausing: Pausing
     home: Home | None = None
 
     def __post_init__(self) -> None:
-        self._clock = CaptureClock()
+        self.clock = CaptureClock()
         self._floors = FloorWatch(self.watcher.floors.see)
         self._frames: Arrivals | None = None
         self._memory = Memory(self.watcher)
@@ -124,20 +162,22 @@ class OutcomesLoop:
 
     def run(self) -> None:
         """Measure until stopped; what is open then is remembered for the next process."""
-        self._recall()
+        self.recall()
+        self._answer()
         for topic in (INFO, SKELETONS, POSE):
             self.daemon.subscribe(topic, samples=QUEUE_SAMPLES)
         settled: list[Outcome] = []
         next_save = time.monotonic() + SAVE_PERIOD_S
         while not self.daemon.stop.is_set():
             sample = self.daemon.receive(IDLE_S)
-            if self.home is not None and self.home.take_wanted_pause() and self.home.paused:
-                settled += self._done_until_pause()
+            if self.pausing.take_wanted():
+                settled += self._pause_or_go_on()
+                next_save = time.monotonic()
             if sample is not None:
                 settled += self._hear(sample)
             if time.monotonic() >= next_save:
                 self._look_for_floor()
-                settled += self.watcher.end_quiet(self._clock.now_ns())
+                settled += self.watcher.end_quiet(self.clock.now_ns())
                 self._save(settled)
                 settled = []
                 next_save = time.monotonic() + SAVE_PERIOD_S
@@ -146,7 +186,7 @@ class OutcomesLoop:
 
     def _look_for_floor(self) -> None:
         """Let frames arrive while one is to be looked at, and no longer: they are large."""
-        wanted = not self._paused and self._floors.wants_frame(self._clock.now_ns())
+        wanted = not self.pausing.paused and self._wants_frame()
         if wanted and self._frames is None:
             self._frames = self.daemon.subscribe(RGBD, samples=1)
         elif not wanted and self._frames is not None:
@@ -162,13 +202,13 @@ class OutcomesLoop:
             pose = self.daemon.decode(POSE, sample)
             if pose is None:
                 return []
-            self._clock.hear(pose.time_ns)
-            return [] if self._paused else self.watcher.hear_pose(pose)
+            self.clock.hear(pose.time_ns)
+            return [] if self.pausing.paused else self.watcher.hear_pose(pose)
         if topic is SKELETONS:
             skeletons = self.daemon.decode(SKELETONS, sample)
             if skeletons is not None:
-                self._clock.hear(skeletons.time_ns)
-                if self._paused:
+                self.clock.hear(skeletons.time_ns)
+                if self.pausing.paused:
                     return []
                 self._floors.hear_skeletons(key.name, skeletons)
                 return self.watcher.hear_skeletons(key.name, skeletons)
@@ -177,18 +217,34 @@ class OutcomesLoop:
             if info is not None:
                 self.watcher.hear_info(key.name, info)
                 self._floors.hear_info(key.name, info)
-        if topic is RGBD and not self._paused and self._floors.wants_frame(self._clock.now_ns()):
+        if topic is RGBD and not self.pausing.paused and self._wants_frame():
             frame = self.daemon.decode(RGBD, sample)
             if frame is not None:
                 self._look_at(key.name, frame, sample.key)
         return []
 
-    @property
-    def _paused(self) -> bool:
-        return self.home is not None and self.home.paused
+    def _wants_frame(self) -> bool:
+        return self._floors.wants_frame(self.clock.now_ns())
 
-    def _done_until_pause(self) -> list[Outcome]:
-        """End what is under way: what was achieved counts, and nothing is left in use by it."""
+    def _answer(self) -> None:
+        """Let whoever asks pause, and go on."""
+
+        def pause(request: OutcomesRequest) -> OutcomesReply | None:
+            return self.pausing.ask(self.daemon.instance, request, paused=True)
+
+        def resume(request: OutcomesRequest) -> OutcomesReply | None:
+            return self.pausing.ask(self.daemon.instance, request, paused=False)
+
+        self.daemon.answer(PAUSE_MEASURING, pause)
+        self.daemon.answer(RESUME_MEASURING, resume)
+
+    def _pause_or_go_on(self) -> list[Outcome]:
+        """At a pause end what is under way: what was achieved counts, and nothing is left in use by
+        it."""
+        if self.home is not None:
+            self.home.look_anew()
+        if not self.pausing.paused:
+            return []
         return [outcome for outcome in self.watcher.end_all() if outcome.kind != LEFT_IN_USE]
 
     def _look_at(self, camera: str, frame: RgbdFrame, key: str) -> None:
@@ -198,14 +254,15 @@ class OutcomesLoop:
         except MessageError as error:
             self.daemon.health.malformed(key, error)
 
-    def _recall(self) -> None:
+    def recall(self) -> None:
         """Go on where the last process of this database ended, if it can be read."""
         self.waiting.save((), {}, time.monotonic())
         if self.waiting.saver is not None:
             self._memory.recall(read_journal(self.waiting.saver.database))
             if remembered := self.watcher.followed.values():
                 # It waits for the next captures as if its last had just come.
-                self._clock.hear(max(one.gathering.last_ns for one in remembered))
+                self.clock.hear(max(one.gathering.last_ns for one in remembered))
+            self.pausing.keep(self.waiting.saver.database)
             if self.home is not None:
                 self.home.recall(self.waiting.saver.database)
         self._show()
@@ -213,26 +270,41 @@ class OutcomesLoop:
     def _save(self, settled: Sequence[Outcome]) -> None:
         """Keep what is settled with the watcher's memory, and publish what is new."""
         saved = self.waiting.save(settled, self._memory.entries(), time.monotonic())
-        if saved is not None:
-            if saved.forget:
-                self.watcher.forget()
-                self._memory = Memory(self.watcher)
-                if self.home is not None:
-                    self.home.forget()
+        if saved is not None and saved.forget:
+            self.watcher.forget()
+            self._memory = Memory(self.watcher)
             if self.home is not None:
-                self.home.say(saved.added)
-            for outcome in saved.added:
-                self._publish(outcome.message(self._published))
+                self.home.look_anew()
         if self.waiting.saver is not None:
+            added = () if saved is None else saved.added
             try:
+                self.pausing.keep(self.waiting.saver.database)
+                self._publish_kept(self.waiting.saver.database, added)
                 self._look_after(self.waiting.saver.database)
             except StoreError as error:
                 self.daemon.health.error(str(error))
         self._show()
 
+    def _publish_kept(self, database: Database, added: Sequence[Outcome]) -> None:
+        """Publish what is kept and was not published, by a process before this one either; raises
+        StoreError.
+
+        What was ``added`` just now is known with all its evidence, the rest as it is kept.
+        """
+        whole = {outcome.id: outcome for outcome in added}
+        waiting = outcomes_to_publish(database, MOST_AT_ONCE)
+        if not waiting:
+            return
+        outcomes = [whole.get(outcome.id, outcome) for outcome in waiting]
+        for outcome in outcomes:
+            self._publish(outcome.message(self._published))
+        if self.home is not None:
+            self.home.say(outcomes)
+        mark_outcomes_published(database, [outcome.id for outcome in outcomes])
+
     def _look_after(self, database: Database) -> None:
         """Judge the goals, and once a day remove what is old; raises StoreError."""
-        now_ns = self._clock.now_ns()
+        now_ns = self.clock.now_ns()
         judge_goals(database, self.rules, now_ns)
         events = events_to_publish(database)
         for event in events:
@@ -263,5 +335,5 @@ class OutcomesLoop:
         else:
             lost = f"; {self.waiting.lost} outcomes were lost" if self.waiting.lost else ""
             health.trouble("database", self.waiting.problem + lost)
-        health.paused = self.home.paused if self.home is not None else None
+        health.paused = self.pausing.paused
         health.state = "running" if self.waiting.problem is None else "degraded"

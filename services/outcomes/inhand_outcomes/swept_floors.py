@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from datetime import date
+from functools import reduce
 
 import numpy as np
 from inhand_schemas.messages import CameraInfo
@@ -15,6 +16,7 @@ from inhand_outcomes.floor_map import (
     empty_map,
     map_of_cells,
     with_depth,
+    with_furniture,
     with_sweeping,
 )
 from inhand_outcomes.gathering import Holding
@@ -35,17 +37,20 @@ class SweptFloors:
         self._changed: set[Holding] = set()
 
     def begin(self, day: date, kept: Iterable[KeptFloorMap] = ()) -> None:
-        """Begin a day, with what is kept of it; what stands on the floor stays."""
+        """Begin a day, with what is kept of it; what stands on the floor stays, at the first with
+        what a process before this one saw of it."""
         if day == self._day:
             return
-        self._day = day
-        self._changed.clear()
-        self._swept = {
+        maps = {
             Holding(one.object, one.person): map_of_cells(
                 one.cells, np.array([one.header.x_m, one.header.y_m])
             )
             for one in kept
         }
+        if self._day is None:
+            self._seen = reduce(with_furniture, maps.values(), self._seen)
+        self._day, self._swept = day, maps
+        self._changed.clear()
 
     def forget(self) -> None:
         """Know nothing of what was swept, until a day begins with what is still kept of it."""

@@ -42,27 +42,38 @@ class Use:
 
     measure: Measure
     interaction: str
+    kinds: Mapping[str, tuple[str, ...]]
+    """The kinds of its outcomes, each with the amounts of which there are totals."""
     complete: Completion | None = None
     in_hand: bool = True
     """Whether it takes a hand that holds the thing."""
 
 
+DURATION, VOLUME, AREA, STROKES = "duration_s", "volume_ml", "area_m2", "stroke_count"
+
 USES: Mapping[str, Use] = {
-    "golf": Use(golf, "hitGolfBall"),
-    "hammering": Use(hammering, "hammerNail"),
-    "lifting": Use(lifting, "liftWeights"),
-    "painting": Use(painting, "paintWall"),
-    "shaking": Use(shaking, "shakeVinegar"),
-    "sweeping": Use(sweeping, "sweepFloor"),
-    "tennis": Use(tennis, "hitTennisBall"),
-    "drinking": Use(drinking, "drinkFromMug", sip_volumes),
-    "pouring": Use(pouring, "pourCream", pour_volumes),
-    "phoning": Use(phoning, "answerPhone"),
-    "filming": Use(filming, "recordVideo"),
-    "playing": Use(playing, "playFlute"),
-    "wearing": Use(wearing, "putOnGlasses", in_hand=False),
-    "reading": Use(reading, "magnifyText"),
-    "shoes": Use(shoes, "putOnShoe", in_hand=False),
+    "golf": Use(golf, "hitGolfBall", {"swing": ()}),
+    "hammering": Use(hammering, "hammerNail", {"strike": ()}),
+    "lifting": Use(lifting, "liftWeights", {"repetition": (DURATION,)}),
+    "painting": Use(painting, "paintWall", {"painting": (AREA, DURATION, STROKES)}),
+    "shaking": Use(shaking, "shakeVinegar", {"shake": (STROKES, DURATION)}),
+    "sweeping": Use(sweeping, "sweepFloor", {"sweeping": (AREA, DURATION, STROKES)}),
+    "tennis": Use(tennis, "hitTennisBall", {"stroke": ()}),
+    "drinking": Use(drinking, "drinkFromMug", {"sip": (VOLUME,), "refill": (VOLUME,)}, sip_volumes),
+    "pouring": Use(
+        pouring, "pourCream", {"pour": (VOLUME, DURATION), "refill": (VOLUME,)}, pour_volumes
+    ),
+    "phoning": Use(phoning, "answerPhone", {"call": (DURATION,)}),
+    "filming": Use(filming, "recordVideo", {"filming": (DURATION,)}),
+    "playing": Use(playing, "playFlute", {"playing": (DURATION,)}),
+    "wearing": Use(
+        wearing,
+        "putOnGlasses",
+        {"put_on": (), "taken_off": (), "worn": (DURATION,)},
+        in_hand=False,
+    ),
+    "reading": Use(reading, "magnifyText", {"reading": (DURATION,)}),
+    "shoes": Use(shoes, "putOnShoe", {"shoe_on": (), "shoe_off": ()}, in_hand=False),
 }
 """The uses by name."""
 

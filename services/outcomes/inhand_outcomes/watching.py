@@ -246,10 +246,24 @@ class Watcher:
             probability=achievement.probability,
             amounts=achievement.amounts,
             evidence=achievement.evidence,
-            rig_from_object=_pose_message(last),
+            rig_from_object=_pose_message(self._where(sightings, achievement, last)),
             first_sequence=sightings[first].sequence if first < end else last.sequence,
             last_sequence=last.sequence,
         )
+
+    def _where(
+        self, sightings: Sequence[Sighting], achievement: Achievement, last: Sighting
+    ) -> Sighting:
+        """The sighting that says where the thing was at the end: of one that was left where it
+        lies the nearest to that place, of others the last."""
+        place = [achievement.amounts.get(f"place_{axis}_m") for axis in "xyz"]
+        after = [one for one in sightings if one.seen and one.time_ns >= last.time_ns]
+        known = [amount.value for amount in place if amount is not None]
+        if len(known) < 3 or not after:
+            return last
+        in_rig = np.array([one.pose[:3] for one in after])
+        in_room = in_rig @ self.room.matrix.T + self.room.translation
+        return after[int(np.linalg.norm(in_room - known, axis=1).argmin())]
 
 
 def _time_of(sighting: Sighting) -> int:

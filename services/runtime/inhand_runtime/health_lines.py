@@ -41,8 +41,8 @@ def stilled_instances(living: dict[Instance, Heard | None]) -> list[str]:
             )
         if heard.health.paused:
             lines.append(
-                f"{service} {name}: paused: nothing is measured until the switch in Home Assistant "
-                "is off"
+                f"{service} {name}: paused: nothing is measured until `inhand outcomes resume "
+                f"--name {name}`, or the switch in Home Assistant is off"
             )
     return lines
 

@@ -106,9 +106,11 @@ def test_the_switch_and_the_button_reach_the_daemon(
     with showing(broker.port, tmp_path) as shown:
         eventually("the device", lambda: status(reader) == b"online")
         reader.send(f"{BASE}/pause/set", "ON")
-        assert eventually("the pause", lambda: shown.handover.take_wanted_pause() is True)
+        assert eventually("the pause", shown.pausing.take_wanted)
+        assert shown.pausing.paused
         reader.send(f"{BASE}/pause/set", "OFF")
-        assert eventually("its end", lambda: shown.handover.take_wanted_pause() is False)
+        assert eventually("its end", shown.pausing.take_wanted)
+        assert not shown.pausing.paused
         reader.send(f"{BASE}/forget_today/set", "PRESS")
         eventually("the day", lambda: shown.forgotten == [date(2026, 11, 30)])
 
@@ -131,7 +133,7 @@ def test_what_strangers_send_as_commands_is_dropped_and_counted(
             return topics["homeassistant/commands"].malformed if topics else 0
 
         eventually("all to be counted", lambda: dropped() == 7)
-        assert (shown.handover.take_wanted_pause(), shown.forgotten) == (None, [])
+        assert (shown.pausing.take_wanted(), shown.forgotten) == (False, [])
     reader.send(f"{BASE}/forget_today/set", b"", retain=True)
 
 

@@ -13,10 +13,8 @@ from inhand_outcomes.homeassistant.discovery import (
     state_topics,
     unit_of,
 )
-from inhand_outcomes.homeassistant.kinds import KINDS
 from inhand_outcomes.homeassistant.shape import GoalShape, object_shape
 from inhand_outcomes.homeassistant.values import refreshed_values, retained_values
-from inhand_outcomes.uses import USES
 
 SINGLE = replace_shape(SHAPE, single_components=True)
 
@@ -24,10 +22,6 @@ SINGLE = replace_shape(SHAPE, single_components=True)
 def components(shape=SHAPE):
     ((_, payload),) = announcement(shape, "1.0")
     return json.loads(payload)["components"]
-
-
-def test_every_use_says_its_kinds() -> None:
-    assert USES.keys() <= KINDS.keys()
 
 
 @pytest.mark.parametrize(
@@ -99,6 +93,8 @@ def test_values_are_json_with_their_attributes() -> None:
     assert place["attributes"]["x_m"] == 0.4
     assert json.loads(values["broom-place"])["value"] == "None"
     assert values["goal--drink-reached"] == b"OFF"
+    assert json.loads(values["region--under_the_table-swept"]) == {"value": 75.0}
+    assert json.loads(values["region--under_the_table-missed"]) == {"value": 0.25}
 
 
 def test_a_removed_object_is_what_the_message_for_the_device_removes() -> None:

@@ -1,6 +1,6 @@
 """What is handed over of what is kept, and what stays over restarts."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
@@ -13,6 +13,8 @@ from inhand_outcomes.homeassistant.home import Home, Place
 from inhand_outcomes.homeassistant.settings import HomeAssistantSettings
 from inhand_outcomes.homeassistant.state import HomeState
 from inhand_outcomes.outcome import Outcome
+from inhand_outcomes.pausing import Pausing
+from inhand_outcomes.regions import Region
 from inhand_outcomes.rules import Goal, PersonsGoal, Rules
 from inhand_outcomes.store.database import Database, open_database
 from inhand_outcomes.store.floor_maps import FloorMapHeader, KeptFloorMap, keep_floor_map
@@ -45,9 +47,10 @@ def database(tmp_path: Path) -> Iterator[Database]:
     opened.close()
 
 
-def a_home(**uses: str) -> Home:
+def a_home(regions: Sequence[Region] = (), **uses: str) -> Home:
     rules = Rules([PersonsGoal(GOAL, None)], ZURICH)
-    return Home(SETTINGS, Place("inhand", "rig", "home"), uses or {"mug": "drinking"}, rules, 0.5)
+    place = Place("inhand", "rig", "home")
+    return Home(SETTINGS, place, uses or {"mug": "drinking"}, rules, 0.5, Pausing(), regions)
 
 
 def keep(database: Database, *outcomes: Outcome) -> None:
@@ -109,20 +112,6 @@ def test_only_what_is_sure_is_an_event(database: Database) -> None:
     assert event.numbers == {"probability": 0.9, "volume_ml": 31.0}
 
 
-def test_a_pause_stays_over_restarts_and_when_all_is_forgotten(database: Database) -> None:
-    home = a_home()
-    home.handover.want_pause(paused=True)
-    assert home.take_wanted_pause()
-    assert shown(home, database).paused
-    forget(database, Forget(everything=True), NOW_NS)
-    again = a_home()
-    assert shown(again, database).paused
-    again.handover.want_pause(paused=False)
-    assert again.take_wanted_pause()
-    shown(again, database)
-    assert not shown(a_home(), database).paused
-
-
 def test_what_was_announced_is_removed_with_its_object_also_after_a_restart(
     database: Database,
 ) -> None:
@@ -141,7 +130,9 @@ def test_what_was_announced_is_removed_with_its_object_also_after_a_restart(
 def test_the_device_is_the_same_whatever_the_rig_is_called_later(database: Database) -> None:
     node = shown(a_home(), database).shape.node
     rules = Rules([], ZURICH)
-    renamed = Home(SETTINGS, Place("inhand", "kitchen", "house"), {"mug": ""}, rules, 0.5)
+    renamed = Home(
+        SETTINGS, Place("inhand", "kitchen", "house"), {"mug": ""}, rules, 0.5, Pausing()
+    )
     state = shown(renamed, database)
     assert (state.shape.node, state.shape.label) == (node, "Inhand house")
 
@@ -153,18 +144,24 @@ def test_an_entity_stays_when_its_outcomes_are_forgotten(database: Database) -> 
     shape = shown(home, database).shape
     assert ("stirring", ("duration_s",)) in shape.objects[0].kinds
     forget(database, Forget(day=date(2026, 11, 30)), NOW_NS)
-    home.forget()
+    home.look_anew()
     assert shown(home, database).shape == shape
     assert shown(a_home(), database).shape == shape
 
 
 def test_the_floor_is_shown_where_something_is_swept(database: Database) -> None:
-    home = a_home(broom="sweeping")
+    hall = Region.model_validate({"name": "hall", "from": [-1.0, 0.5], "to": [1.0, 2.5]})
+    home = a_home(broom="sweeping", regions=[hall])
     before = shown(home, database)
+    assert before.regions["hall"].share == 0.0
     assert before.floor_png.startswith(b"\x89PNG")
     header = FloorMapHeader(cell_m=0.05, x_m=-1.0, y_m=0.5, rows=40, columns=40)
-    cells = np.full((40, 40), 0x20 | 0x1F, np.uint8)
+    cells = np.full((40, 40), 0x20, np.uint8)
+    cells[:20] |= 0x1F  # swept
     keep_floor_map(database, KeptFloorMap(date(2026, 11, 30), "broom", 0, header, cells))
-    home.forget()
+    home.look_anew()
     after = shown(home, database)
     assert after.floor_png not in (before.floor_png, b"")
+    assert after.shape.regions == ("hall",)
+    assert after.regions["hall"].share == pytest.approx(0.5)
+    assert after.regions["hall"].missed_m2 == pytest.approx(2.0)

@@ -51,7 +51,11 @@ def test_pausing_and_forgetting_reach_what_is_kept(rig: RunningRig) -> None:
         carry(rig, 0)
         eventually("the cup", lambda: put_down() == 1)
         node = next(topic for topic in reader.retained if topic.endswith("/status")).split("/")[1]
-        reader.send(f"inhand/{node}/pause/set", "ON")
+        paused = rig.done("outcomes", "pause", "--config", rig.config)
+        assert (paused.popen.returncode, paused.stdout) == (
+            0,
+            "home: paused: nothing is measured\n",
+        )
         eventually("the pause", lambda: reader.value("/pause/state") == b"ON")
         carry(rig, 1)
         assert daemon.stop() == 0
@@ -59,7 +63,7 @@ def test_pausing_and_forgetting_reach_what_is_kept(rig: RunningRig) -> None:
         start(rig, broker)
         eventually("the daemon", lambda: reader.value("/status") == b"online")
         status = rig.done("status", "--config", rig.config, "--seconds", "10")
-        assert "nothing is measured until the switch" in status.stdout
+        assert "nothing is measured until `inhand outcomes resume --name home`" in status.stdout
         assert (put_down(), reader.value("/pause/state")) == (1, b"ON")
         reader.send(f"inhand/{node}/pause/set", "OFF")
         eventually("the pause's end", lambda: reader.value("/pause/state") == b"OFF")

@@ -17,8 +17,9 @@ from inhand_outcomes.store import migrating
 from inhand_outcomes.store.database import open_database
 from inhand_outcomes.store.failures import StoreError
 from inhand_outcomes.store.models import Base
+from inhand_outcomes.store.owning import TakenError
 from inhand_outcomes.store.parameters import StoreParameters
-from inhand_outcomes.store.queries import latest
+from inhand_outcomes.store.queries import latest, outcomes_to_publish
 from kept_outcomes import at, new_saver, sip
 
 FULL_DISK = """
@@ -70,6 +71,20 @@ def test_a_database_of_a_later_release_is_refused_and_left_as_it_is(tmp_path: Pa
     assert file.read_bytes() == before
 
 
+def test_what_an_earlier_release_kept_is_not_published_again(tmp_path: Path) -> None:
+    saver = new_saver(tmp_path)
+    saver.save([sip(at("2026-05-05 12:00"))])
+    saver.database.close()
+    file = tmp_path / "outcomes.db"
+    _sql(file, "DROP INDEX ix_outcomes_published")
+    _sql(file, "ALTER TABLE outcomes DROP COLUMN published")
+    _sql(file, "UPDATE alembic_version SET version_num = '0001'")
+    database = open_database(file)
+    assert len(latest(database, 9)) == 1
+    assert outcomes_to_publish(database, 9) == []
+    database.close()
+
+
 def test_a_migration_that_ends_half_way_is_begun_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -92,6 +107,36 @@ def test_a_migration_that_ends_half_way_is_begun_again(
     assert _sql(file, "SELECT name FROM sqlite_master") == []
     open_database(file).close()
     assert ("totals",) in _sql(file, "SELECT name FROM sqlite_master")
+
+
+def test_a_database_has_one_owner_and_whoever_looks(tmp_path: Path) -> None:
+    file = tmp_path / "outcomes.db"
+    mine = open_database(file, owner="home")
+    with pytest.raises(TakenError, match=r"outcomes\.db belongs to another daemon, home: end that"):
+        open_database(file, owner="shed")
+    looking = open_database(file)
+    assert latest(looking, 1) == []
+    looking.close()
+    mine.close()
+    open_database(file, owner="shed").close()
+
+
+def test_an_owner_that_is_killed_owns_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "outcomes.db"
+    program = (
+        "import sys, time; from pathlib import Path\n"
+        "from inhand_outcomes.store.database import open_database\n"
+        "mine = open_database(Path(sys.argv[1]), owner='killed')\n"
+        "print('owns', flush=True); time.sleep(600)"
+    )
+    command = [sys.executable, "-c", program, file]
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == b"owns\n"
+        with pytest.raises(TakenError, match="killed"):
+            open_database(file, owner="next")
+        other.kill()
+    open_database(file, owner="next").close()
 
 
 @pytest.mark.long

@@ -22,6 +22,7 @@ from inhand_outcomes.store.floor_maps import (
 from inhand_outcomes.store.forgetting import Forget, forget
 from inhand_outcomes.store.goal_marks import events_to_publish, judge_goals
 from inhand_outcomes.store.models import Base
+from inhand_outcomes.store.owning import OWNERS_LOCK, TakenError
 from inhand_outcomes.store.parameters import StoreParameters
 from inhand_outcomes.store.queries import last_places, latest
 from inhand_outcomes.store.retention import Retention, remove_old
@@ -128,6 +129,22 @@ def test_what_fails_is_one_line_without_a_password(address: str, database: Datab
     ):
         pass
     impatient.close()
+
+
+def test_it_has_one_owner_until_its_session_ends(database: Database, address: str) -> None:
+    mine = open_database(address, owner="outcomes home of inhand/rig")
+    with pytest.raises(TakenError, match="another daemon, outcomes home of inhand/rig: end"):
+        open_database(address, owner="shed")
+    with database.engine.begin() as connection:  # as where the owner's host is gone
+        end = f"SELECT pg_terminate_backend(pid) FROM pg_locks WHERE objid = {OWNERS_LOCK}"
+        assert connection.execute(text(end)).all() == [(True,)]
+    other = open_database(address, owner="shed")
+    with pytest.raises(StoreError), mine.writing():
+        pass
+    with other.writing():
+        pass
+    mine.close()
+    other.close()
 
 
 def test_a_connection_that_ended_is_made_again(database: Database, address: str) -> None:

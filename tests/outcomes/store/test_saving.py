@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 from inhand_outcomes.achievement import Amount
 from inhand_outcomes.outcome import Outcome
 from inhand_outcomes.store.database import Database
-from inhand_outcomes.store.queries import last_places, latest
-from inhand_outcomes.store.saving import Keeping, read_journal
+from inhand_outcomes.store.forgetting import Forget, forget
+from inhand_outcomes.store.queries import last_places, latest, outcomes_to_publish
+from inhand_outcomes.store.saving import Keeping, mark_outcomes_published, read_journal
 from kept_outcomes import KEEPING, ZURICH, S, all_totals, at, new_saver, sip
 
 NOON = at("2026-05-05 12:00")
@@ -180,3 +181,16 @@ def test_a_daemon_that_is_killed_has_kept_what_it_saved_with_its_journal(tmp_pat
     assert number > 40
     assert len(latest(saver.database, 1000)) == number
     _assert_sums(saver.database)
+
+
+def test_what_is_saved_waits_until_it_is_published_also_over_restarts(tmp_path: Path) -> None:
+    saver = new_saver(tmp_path)
+    saver.save([sip(NOON + 10 * S), sip(NOON)])
+    saver.database.close()
+    database = new_saver(tmp_path).database
+    waiting = outcomes_to_publish(database, 1)
+    assert [one.id for one in waiting] == [sip(NOON).id]
+    mark_outcomes_published(database, [sip(NOON).id])
+    assert [one.id for one in outcomes_to_publish(database, 9)] == [sip(NOON + 10 * S).id]
+    forget(database, Forget(person=0), NOON + 3600 * S)
+    assert outcomes_to_publish(database, 9) == []

@@ -40,6 +40,7 @@ from inhand_outcomes.homeassistant.settings import HomeAssistantSettings
 from inhand_outcomes.homeassistant.shape import Shape
 from inhand_outcomes.homeassistant.state import HomeState
 from inhand_outcomes.homeassistant.values import event_message, refreshed_values, retained_values
+from inhand_outcomes.pausing import Pausing
 
 log = logging.getLogger(__name__)
 
@@ -65,6 +66,7 @@ class HomeAssistantClient:
         handover: Handover,
         health: HealthBoard,
         forget_day: ForgetDay,
+        pausing: Pausing,
         version: str,
         parameters: HomeParameters = DEFAULT_HOME,
     ) -> None:
@@ -73,6 +75,7 @@ class HomeAssistantClient:
         self._handover = handover
         self._health = health
         self._forget_day = forget_day
+        self._pausing = pausing
         self._version = version
         self._parameters = parameters
         self._ready = threading.Event()
@@ -237,7 +240,7 @@ class HomeAssistantClient:
     def _do(self, component: str, payload: object) -> bool:
         """Do what a command says; whether it is one."""
         if component == PAUSE and payload in (ON.encode(), OFF.encode()):
-            self._handover.want_pause(paused=payload == ON.encode())
+            self._pausing.want(paused=payload == ON.encode())
             return True
         if component == FORGET and payload == PRESS.encode():
             return self._start_forgetting()

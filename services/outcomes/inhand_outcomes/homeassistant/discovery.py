@@ -101,6 +101,11 @@ def goal_id(goal: str, what: str) -> str:
     return f"goal--{goal}-{what}"
 
 
+def region_id(region: str, what: str) -> str:
+    """Return the id of ``swept`` or ``missed`` of a part of the floor."""
+    return f"region--{region}-{what}"
+
+
 def entities(shape: Shape) -> list[Entity]:
     """Return all entities of a shape, by id."""
     topics = Topics(shape.node)
@@ -109,6 +114,8 @@ def entities(shape: Shape) -> list[Entity]:
         found += _of_object(thing, topics)
     for goal in shape.goals:
         found += _of_goal(goal, topics)
+    for region in shape.regions:
+        found += _of_region(region, topics)
     return sorted(found, key=lambda entity: entity.component)
 
 
@@ -290,6 +297,24 @@ def _of_goal(goal: GoalShape, topics: Topics) -> Iterator[Entity]:
             "event_types": list(GOAL_EVENTS),
         },
     )
+
+
+def _of_region(region: str, topics: Topics) -> Iterator[Entity]:
+    for what, unit in (("swept", "%"), ("missed", "m²")):
+        component = region_id(region, what)
+        yield Entity(
+            component,
+            "sensor",
+            {
+                "name": _words(f"{region} {what}"),
+                "icon": "mdi:broom",
+                "state_topic": topics.state(component),
+                "value_template": "{{ value_json.value }}",
+                "state_class": "measurement",
+                "unit_of_measurement": unit,
+                "suggested_display_precision": 0 if unit == "%" else 2,
+            },
+        )
 
 
 def _total(name: str, amount: str, topic: str) -> Json:

@@ -15,7 +15,7 @@ from inhand_outcomes.homeassistant.state import HomeEvent, HomeState
 
 
 class Handover:
-    """The newest state and the events to be sent, and what somebody wants of the daemon."""
+    """The newest state and the events to be sent."""
 
     def __init__(self, parameters: HomeParameters = DEFAULT_HOME) -> None:
         self._lock = threading.Lock()
@@ -23,7 +23,6 @@ class Handover:
         self._old: tuple[Shape, ...] = ()
         self._events: deque[tuple[float, HomeEvent]] = deque(maxlen=parameters.events)
         self._events_last_s = parameters.events_last_s
-        self._wanted_pause: bool | None = None
         self._announced: Shape | None = None
         self._wake: Callable[[], object] = lambda: None
 
@@ -40,12 +39,6 @@ class Handover:
         with self._lock:
             self._events.extend((now_s, event) for event in events)
         self._wake()
-
-    def take_wanted_pause(self) -> bool | None:
-        """Return whether somebody wants measuring to pause, True, or to go on, False, once."""
-        with self._lock:
-            wanted, self._wanted_pause = self._wanted_pause, None
-        return wanted
 
     def take_announced(self) -> Shape | None:
         """Return the shape that is all that is retained now, once."""
@@ -71,11 +64,6 @@ class Handover:
             events = [event for said_s, event in self._events if said_s >= oldest_s]
             self._events.clear()
         return events
-
-    def want_pause(self, *, paused: bool) -> None:
-        """Ask the daemon to pause, or to go on."""
-        with self._lock:
-            self._wanted_pause = paused
 
     def announce(self, shape: Shape) -> None:
         """Say that nothing but this shape is retained now."""

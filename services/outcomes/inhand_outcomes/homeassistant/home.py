@@ -11,6 +11,7 @@ import msgspec
 from inhand_schemas.messages import Event
 
 from inhand_outcomes.days import first_day, local_day, local_time
+from inhand_outcomes.floor_map import RegionShare
 from inhand_outcomes.handling import DROPPED, LEFT_IN_USE, PUT_DOWN
 from inhand_outcomes.homeassistant.handover import Handover
 from inhand_outcomes.homeassistant.parameters import DEFAULT_HOME, HomeParameters
@@ -18,6 +19,8 @@ from inhand_outcomes.homeassistant.settings import HomeAssistantSettings
 from inhand_outcomes.homeassistant.shape import Shape, goal_shape, new_node, object_shape
 from inhand_outcomes.homeassistant.state import GoalProgress, HomeEvent, HomeState, KindTotal
 from inhand_outcomes.outcome import Outcome
+from inhand_outcomes.pausing import Pausing
+from inhand_outcomes.regions import Region, shares_of
 from inhand_outcomes.rules import PersonsGoal, Rules, progress
 from inhand_outcomes.store.database import Database
 from inhand_outcomes.store.floor_maps import KeptFloorMap, floor_maps
@@ -25,9 +28,9 @@ from inhand_outcomes.store.queries import days_kept, last_places, latest, totals
 from inhand_outcomes.store.saving import STANDING, read_journal, write_journal
 from inhand_outcomes.totals import AmountTotal, DayTotal
 
-NODE, SHAPES, PAUSED = (f"{STANDING}homeassistant/{name}" for name in ("node", "shapes", "paused"))
-"""Entries of the journal: the device's id, all shapes of which something may be retained by the
-broker, and whether measuring is paused."""
+NODE, SHAPES = (f"{STANDING}homeassistant/{name}" for name in ("node", "shapes"))
+"""Entries of the journal: the device's id, and all shapes of which something may be retained by the
+broker."""
 SWEPT = "sweeping"
 NOT_IN_USE = (PUT_DOWN, DROPPED)
 LAST_OUTCOMES = 50
@@ -53,36 +56,27 @@ class Home:
         uses: Mapping[str, str],
         rules: Rules,
         sure: float,
+        pausing: Pausing,
+        regions: Sequence[Region] = (),
         parameters: HomeParameters = DEFAULT_HOME,
     ) -> None:
         """``uses`` are those of the objects by name, ``sure`` the probability from which an outcome
-        counts."""
+        counts, and ``regions`` parts of the floor."""
         self.handover = Handover(parameters)
-        self.paused = False
-        """Whether somebody wants nothing to be measured now."""
+        self.pausing = pausing
         self._settings = settings
         self._place = place
         self._uses = uses
         self._rules = rules
         self._sure = sure
+        self._regions = regions
         self._parameters = parameters
         self._node = ""
         self._old: tuple[Shape, ...] = ()
         self._shape: Shape | None = None
         self._last_use: dict[str, tuple[int, bool | None]] = {}
         self._floor = (b"", b"")
-        self._kept_pause: bool | None = None
         self._next_look_s = float("-inf")
-
-    def take_wanted_pause(self) -> bool:
-        """Take what somebody wants; whether it is another than before."""
-        wanted = self.handover.take_wanted_pause()
-        if wanted is None or wanted == self.paused:
-            return False
-        self.paused = wanted
-        self._last_use.clear()
-        self._look_soon()
-        return True
 
     def say(self, outcomes: Iterable[Outcome]) -> None:
         """Say what is new of objects: what is too uncertain to count is passed over."""
@@ -95,17 +89,14 @@ class Home:
         """Say what is new of goals."""
         self._say(self._event(event, goal=event.description) for event in events)
 
-    def forget(self) -> None:
-        """Look again at what is kept: something was forgotten."""
+    def look_anew(self) -> None:
+        """Look again at what is kept: something was forgotten, or is measured no more or again."""
         self._last_use.clear()
         self._look_soon()
 
     def show(self, database: Database, now_ns: int) -> None:
         """Hand over what is kept, if it may have changed; raises StoreError."""
         self.recall(database)
-        if self._kept_pause != self.paused:
-            write_journal(database, {PAUSED: b"1" if self.paused else None})
-            self._kept_pause = self.paused
         announced = self.handover.take_announced()
         if announced is not None and self._old != (announced,) and announced == self._shape:
             self._keep_shapes(database, (announced,))
@@ -138,8 +129,6 @@ class Home:
         if NODE not in entries:
             write_journal(database, {NODE: node.encode()})
         self._old = msgspec.msgpack.decode(entries.get(SHAPES, b"\x90"), type=tuple[Shape, ...])
-        self._kept_pause = PAUSED in entries
-        self.paused = self.paused or self._kept_pause
         for name in self._uses:
             for kept in reversed(latest(database, LAST_OUTCOMES, object_name=name)):
                 if kept.counted:
@@ -183,7 +172,8 @@ class Home:
             goals={one.goal.name: self._progress(one, counted, today) for one in self._rules.goals},
             floor_png=self._floor_png(maps),
             zone=self._rules.zone,
-            paused=self.paused,
+            paused=self.pausing.paused,
+            regions=self._shares(maps),
         )
 
     def _shape_of(self, seen: Sequence[DayTotal], *, floor: bool) -> Shape:
@@ -200,6 +190,7 @@ class Home:
             ),
             goals=tuple(goal_shape(one.goal) for one in self._rules.goals),
             floor=floor or SWEPT in self._uses.values(),
+            regions=tuple(one.name for one in self._regions),
         )
 
     def _progress(
@@ -215,6 +206,15 @@ class Home:
         """The first moment of a local day."""
         return datetime.combine(day, clock_time.min, self._rules.zone)
 
+    def _shares(self, maps: Sequence[KeptFloorMap]) -> dict[str, RegionShare]:
+        """How much of each region was swept."""
+        if not self._regions:
+            return {}
+        try:
+            return shares_of(maps, self._regions)
+        except ValueError:  # as the picture
+            return shares_of(maps[-1:], self._regions)
+
     def _floor_png(self, maps: Sequence[KeptFloorMap]) -> bytes:
         """The picture of the floor, drawn anew where the maps are others; empty where nothing is
         ever swept."""
@@ -228,9 +228,9 @@ class Home:
             digest.update(repr((one.day, one.header)).encode() + one.cells.tobytes())
         if self._floor[0] != digest.digest():
             try:
-                picture = kept_floor_png(maps) if maps else unswept_png()
+                picture = kept_floor_png(maps, self._regions) if maps else unswept_png()
             except ValueError:  # a rig that was moved on that day: the newer one's
-                picture = kept_floor_png(maps[-1:])
+                picture = kept_floor_png(maps[-1:], self._regions)
             self._floor = (digest.digest(), picture)
         return self._floor[1]
 

@@ -6,9 +6,10 @@ from collections.abc import Iterable
 import msgspec
 
 from inhand_outcomes.handling import DROPPED, LEFT_IN_USE, PUT_DOWN, TAKEN_UP
-from inhand_outcomes.homeassistant.kinds import KINDS, is_shown
+from inhand_outcomes.outcome import adds_up
 from inhand_outcomes.rules import Goal
 from inhand_outcomes.totals import DayTotal
+from inhand_outcomes.uses import DURATION, USES
 from inhand_outcomes.watching import HANDED_OVER
 
 HANDLED = (TAKEN_UP, PUT_DOWN, DROPPED, HANDED_OVER, LEFT_IN_USE)
@@ -40,6 +41,8 @@ class Shape(msgspec.Struct, frozen=True):
     objects: tuple[ObjectShape, ...]
     goals: tuple[GoalShape, ...]
     floor: bool
+    regions: tuple[str, ...] = ()
+    """Names of parts of the floor."""
 
 
 def new_node(realm: str, rig: str, instance: str) -> str:
@@ -54,7 +57,7 @@ def object_shape(
     """Return the shape of an object by its use, by what was seen of it, and by what was announced
     of it before: an entity stays as long as its object does."""
     kinds: dict[str, set[str]] = {kind: set() for kind in HANDLED}
-    for kind, amounts in KINDS.get(use, {}).items():
+    for kind, amounts in USES[use].kinds.items() if use in USES else ():
         kinds.setdefault(kind, set()).update(amounts)
     for kind, amounts in before.kinds if before is not None else ():
         kinds.setdefault(kind, set()).update(amounts)
@@ -62,6 +65,11 @@ def object_shape(
         if total.object == name:
             kinds.setdefault(total.kind, set()).update(filter(is_shown, total.amounts))
     return ObjectShape(name, tuple((kind, tuple(sorted(kinds[kind]))) for kind in sorted(kinds)))
+
+
+def is_shown(amount: str) -> bool:
+    """Whether an amount has a total of its own: what adds up, of times the whole duration."""
+    return amount == DURATION or (adds_up(amount) and not amount.endswith("_s"))
 
 
 def goal_shape(goal: Goal) -> GoalShape:

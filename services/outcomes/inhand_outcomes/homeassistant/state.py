@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from zoneinfo import ZoneInfo
 
+from inhand_outcomes.floor_map import RegionShare
 from inhand_outcomes.homeassistant.shape import Shape
 from inhand_outcomes.store.queries import LastPlace
 from inhand_outcomes.totals import AmountTotal
@@ -31,7 +32,8 @@ class GoalProgress:
 @dataclass(frozen=True)
 class HomeState:
     """All values at once, immutable: totals by object and kind, where objects were last, whether
-    each is in use (None where that is not known), goals by name, and the floor's map (PNG).
+    each is in use (None where that is not known), goals by name, the floor's map (PNG), and how
+    much of its regions was swept today, by name.
 
     ``since`` is the local beginning of the day of the totals.
     """
@@ -45,6 +47,7 @@ class HomeState:
     floor_png: bytes
     zone: ZoneInfo
     paused: bool
+    regions: Mapping[str, RegionShare] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from inhand_outcomes.homeassistant.discovery import (
     goal_id,
     in_use_id,
     place_id,
+    region_id,
     total_id,
 )
 from inhand_outcomes.homeassistant.state import HomeEvent, HomeState, KindTotal
@@ -46,6 +47,10 @@ def retained_values(state: HomeState) -> dict[str, bytes]:
             value, {"wanted": progress.wanted}, last_reset=progress.since.isoformat()
         )
         values[goal_id(goal.name, "reached")] = _switch(progress.reached)
+    for name in state.shape.regions:
+        share = state.regions[name]
+        values[region_id(name, "swept")] = _value(round(100.0 * share.share, 1))
+        values[region_id(name, "missed")] = _value(round(share.missed_m2, 2))
     return {topics.state(component): payload for component, payload in values.items()}
 
 

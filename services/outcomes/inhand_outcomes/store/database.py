@@ -14,6 +14,7 @@ from sqlalchemy.orm import Session
 
 from inhand_outcomes.store.failures import explained
 from inhand_outcomes.store.migrating import migrate
+from inhand_outcomes.store.owning import Claim, claim_file, claim_session
 from inhand_outcomes.store.parameters import DEFAULT_STORE, StoreParameters
 
 WRITERS_LOCK = 0x1A4A11D
@@ -27,6 +28,8 @@ class Database:
     engine: Engine
     name: str
     """The file, or the address without its password."""
+    claim: Claim | None = None
+    """What its owner has of it, None for those that look at it, or remove some of it."""
 
     @contextmanager
     def reading(self) -> Iterator[Session]:
@@ -41,6 +44,8 @@ class Database:
         What is not ``durable`` survives the end of any process, but perhaps not of the power.
         """
         with explained(self.name), _writer(self.engine, durable=durable) as connection:
+            if self.claim is not None:
+                self.claim.check()
             session = Session(connection, expire_on_commit=False)
             yield session
             session.flush()
@@ -48,28 +53,45 @@ class Database:
     def close(self) -> None:
         """Give back its files and connections."""
         self.engine.dispose()
+        if self.claim is not None:
+            self.claim.release()
 
 
 def open_database(
-    place: Path | str, password: str | None = None, parameters: StoreParameters = DEFAULT_STORE
+    place: Path | str,
+    password: str | None = None,
+    parameters: StoreParameters = DEFAULT_STORE,
+    owner: str | None = None,
 ) -> Database:
     """Open a file of SQLite, which is made where there is none, or ``postgresql+psycopg://…``.
 
-    Its tables are brought to the form of this release, all or nothing. Raises StoreError, also for
-    a database of a later release.
+    Its tables are brought to the form of this release, all or nothing. Whoever adds to it names
+    itself as its ``owner``, until the database is closed. Raises StoreError, also for a database of
+    a later release, and TakenError where it has another owner.
     """
     url = _url(place, password)
     sqlite = url.get_backend_name() == "sqlite"
     name = str(place) if sqlite else url.set(password=None).render_as_string()
     with explained(name):
         engine = _sqlite(url, parameters) if sqlite else _postgresql(url, parameters)
+    database = Database(engine, name)
     try:
         with explained(name):
+            if owner is not None:
+                database = Database(engine, name, _claim(place, url, name, parameters, owner))
             migrate(engine, partial(_writer, engine), name)
     except BaseException:
-        engine.dispose()
+        database.close()
         raise
-    return Database(engine, name)
+    return database
+
+
+def _claim(
+    place: Path | str, url: URL, name: str, parameters: StoreParameters, owner: str
+) -> Claim:
+    if isinstance(place, Path):
+        return claim_file(place, owner)
+    return claim_session(_postgresql(url, parameters), name, owner)
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from sqlalchemy import Connection, Engine, inspect, text
 from inhand_outcomes.store.failures import StoreError
 
 MIGRATIONS = Path(__file__).with_name("migrations")
-HEAD = "0001"
+HEAD = "0002"
 """The newest migration, so that alembic is loaded only where there is something to do."""
 
 

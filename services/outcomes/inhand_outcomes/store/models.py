@@ -3,7 +3,7 @@
 from datetime import date
 from typing import Any
 
-from sqlalchemy import JSON, BigInteger, ForeignKey, Index, LargeBinary, MetaData
+from sqlalchemy import JSON, BigInteger, ForeignKey, Index, LargeBinary, MetaData, text
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
 
 NOBODY = -1
@@ -25,12 +25,19 @@ class Base(DeclarativeBase):
 
 
 class OutcomeRow(Base):
-    """One outcome in detail; ``day`` is the local date of its end, ``pose`` x y z, w x y z."""
+    """One outcome in detail; ``day`` is the local date of its end, ``pose`` x y z, w x y z, and
+    ``published`` whether its event went out."""
 
     __tablename__ = "outcomes"
     __table_args__ = (
         Index("ix_outcomes_act", "object", "kind", "person", "end_ns"),
         Index("ix_outcomes_day", "day"),
+        Index(
+            "ix_outcomes_published",
+            "published",
+            sqlite_where=text("published = 0"),
+            postgresql_where=text("NOT published"),
+        ),
     )
 
     id: Mapped[str] = mapped_column(primary_key=True)
@@ -46,6 +53,7 @@ class OutcomeRow(Base):
     evidence: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
     first_sequence: Mapped[int | None]
     last_sequence: Mapped[int | None]
+    published: Mapped[bool]
     amounts: Mapped[list["AmountRow"]] = relationship(
         cascade="all, delete-orphan", passive_deletes=True, lazy="selectin"
     )

@@ -90,6 +90,15 @@ def latest(
         return [_kept(row) for row in session.scalars(question)]
 
 
+def outcomes_to_publish(database: Database, most: int) -> list[Outcome]:
+    """Return outcomes that were saved and not published yet, as they are kept, the earliest first;
+    raises StoreError."""
+    waiting = select(OutcomeRow).where(~OutcomeRow.published)
+    question = waiting.order_by(OutcomeRow.end_ns, OutcomeRow.id).limit(most)
+    with database.reading() as session:
+        return [_kept(row).outcome for row in session.scalars(question)]
+
+
 def last_places(database: Database, objects: Iterable[str] | None = None) -> list[LastPlace]:
     """Return where each object was last, or those of ``objects`` that are known, by name; raises
     StoreError."""

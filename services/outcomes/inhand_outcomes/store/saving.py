@@ -10,7 +10,7 @@ from typing import Any, Literal
 from zoneinfo import ZoneInfo
 
 from inhand_schemas.messages import Pose
-from sqlalchemy import delete, func, or_, select
+from sqlalchemy import delete, func, or_, select, update
 from sqlalchemy.orm import Session
 
 from inhand_outcomes.days import NS_PER_S, local_day
@@ -108,6 +108,13 @@ class Saver:
                 _write_journal(session, journal or {})
         self._heard = heard
         return Saved(added, known, refused, bool(forgotten))
+
+
+def mark_outcomes_published(database: Database, ids: Iterable[str]) -> None:
+    """Take note that the events of outcomes went out; raises StoreError."""
+    with database.writing() as session:
+        went_out = update(OutcomeRow).where(OutcomeRow.id.in_(list(ids)))
+        session.execute(went_out.values(published=True))
 
 
 def read_journal(database: Database) -> dict[str, bytes]:
@@ -248,6 +255,7 @@ def _row(outcome: Outcome, day: date, keeping: Keeping) -> OutcomeRow:
         evidence=evidence if evidence and "numbers" in keep else None,
         first_sequence=outcome.first_sequence,
         last_sequence=outcome.last_sequence,
+        published=False,
         amounts=[
             AmountRow(name=name, value=amount.value, deviation=amount.deviation)
             for name, amount in outcome.amounts.items()

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from inhand_runtime.errors import InhandError
 
 from inhand_outcomes.outcome import Outcome
+from inhand_outcomes.store.owning import TakenError
 from inhand_outcomes.store.parameters import DEFAULT_WAITING, WaitingParameters
 from inhand_outcomes.store.saving import Saved, Saver
 
@@ -38,6 +39,15 @@ class WaitingOutcomes:
     def saver(self) -> Saver | None:
         """The open database, None while it takes nothing."""
         return self._saver
+
+    def begin(self, now_s: float) -> None:
+        """Open the database, if it can be opened now; raises TakenError where another owns it."""
+        try:
+            self._saver = self.opened()
+        except TakenError:
+            raise
+        except InhandError as error:
+            self._fail(str(error), now_s)
 
     def save(
         self,
