@@ -93,6 +93,21 @@ def test_what_was_saved_before_a_kill_and_not_published_is_published_once(
     assert said()[:2] == ids
 
 
+def test_what_a_tracker_takes_as_always_in_use_counts_only_where_settings_say_so(
+    rig: RunningRig,
+) -> None:
+    unsaid = ("--without-recogniser", "--speed", "9")
+    daemon = start(rig)
+    carry(rig, *unsaid, "--until", "3")
+    troubles = rig.health("home")["troubles"]
+    assert [one.partition(":")[0] for one in troubles] == ["nothing is measured of cup"]
+    daemon.stop()
+    start(rig, 'always_in_use = ["cup"]\n')
+    carry(rig, *unsaid)
+    eventually("both acts", lambda: kinds(rig) == ["taken_up", "put_down"])
+    assert rig.health("home")["troubles"] == []
+
+
 def test_a_killed_daemon_counts_nothing_twice_and_loses_nothing(rig: RunningRig) -> None:
     daemon = start(rig)
     carry(rig, "--until", "4.5")

@@ -95,6 +95,7 @@ def a_pose(
         person=person,
         camera_from_object=Pose((x, y, z), (1.0, 0.0, 0.0, 0.0)),
         covariance=COVARIANCE,
+        class_probabilities={name: 0.9},
     )
 
 

@@ -1,13 +1,15 @@
 """Publishes somebody who carries a cup, as a camera and a tracker would: ``carrying_publisher.py``.
 
 Frames from ``--from`` to ``--until``, seconds, are sent ``--speed`` times as fast as they were
-captured, again and again ``--times``, each ten seconds later.
+captured, again and again ``--times``, each ten seconds later. With ``--without-recogniser`` poses
+say nothing of whether the cup is in use.
 """
 
 import argparse
 import sys
 import time
 
+import msgspec
 from carried_cup import START_NS, Carrying
 from inhand_runtime.session import Publisher, open_session
 from inhand_runtime.settings import ZenohSettings
@@ -30,6 +32,7 @@ def main() -> int:
     parser.add_argument("--until", type=float, default=9.0)
     parser.add_argument("--times", type=int, default=1)
     parser.add_argument("--speed", type=float, default=3.0)
+    parser.add_argument("--without-recogniser", action="store_true")
     chosen = parser.parse_args()
     with open_session(ZenohSettings(meeting=chosen.meeting)) as session:
 
@@ -49,6 +52,8 @@ def main() -> int:
                     continue
                 ahead_s = (second - chosen.first) / chosen.speed - (time.monotonic() - began)
                 time.sleep(max(ahead_s, 0.0))
+                if chosen.without_recogniser:
+                    pose = msgspec.structs.replace(pose, class_probabilities={})
                 people.put(skeletons)
                 poses.put(pose)
         print("done", flush=True)

@@ -39,7 +39,7 @@ def _prepare(rig: RunningRig, folder: Path) -> None:
     rig.configure(
         '[capture.capture]\nsource = "simulator"\noptions = { participant = 5 }\n'
         f'[tracker.tracker]\ncamera = "capture"\nmodel = "{model}"\n'
-        f'[outcomes.outcomes]\ndatabase = "{folder}/outcomes.db"\n'
+        f'[outcomes.outcomes]\ndatabase = "{folder}/outcomes.db"\nalways_in_use = ["mug"]\n'
         f'[recorder.recorder]\nfolder = "{folder}/disk"'
     )
 

@@ -6,7 +6,6 @@ from functools import lru_cache
 
 import numpy as np
 from inhand_runtime.recording import RecordingError
-from inhand_runtime.wording import counted
 from inhand_tracker.geometry.arrays import Array, Indices
 from inhand_tracker.recognition.movement_classes import MovementClasses
 from inhand_tracker.recognition.presence import usual_presence

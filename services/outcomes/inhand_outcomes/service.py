@@ -13,8 +13,9 @@ from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import Received
 from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
+from inhand_runtime.settings_errors import suggestion
 from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import Event, RgbdFrame
+from inhand_schemas.messages import Event, ObjectPose, RgbdFrame
 from inhand_schemas.procedures import (
     PAUSE_MEASURING,
     RESUME_MEASURING,
@@ -77,6 +78,9 @@ def run(settings: Settings[OutcomesSettings]) -> None:
             daemon.health.trouble(f"object {problem}", problem)
         if not things:
             daemon.health.trouble("objects", NO_OBJECTS)
+        for name in set(chosen.always_in_use) - set(things):
+            unknown = f"always_in_use names {name!r}, which is not measured"
+            daemon.health.trouble(f"object {name}", unknown + suggestion(name, things))
         watcher = Watcher(things, place)
         pausing = Pausing()
         home = None
@@ -94,7 +98,8 @@ def run(settings: Settings[OutcomesSettings]) -> None:
                 chosen.regions,
             )
         rules, retention = chosen.rules, chosen.retention
-        loop = OutcomesLoop(daemon, watcher, waiting, rules, retention, pausing, home)
+        always = frozenset(chosen.always_in_use)
+        loop = OutcomesLoop(daemon, watcher, waiting, rules, retention, pausing, home, always)
         with _telling_home(home, chosen, daemon.health):
             loop.run()
 
@@ -139,6 +144,13 @@ NO_OBJECTS = (
 )
 
 
+NO_RECOGNISER = (
+    "nothing is measured of {0}: its tracker has no recogniser, and takes it as always in use. "
+    "Train one (inhand train DATASET -o FILE --recogniser --models MODEL), or write "
+    'always_in_use = ["{0}"] in the settings of outcomes if it is'
+)
+
+
 @dataclass
 class OutcomesLoop:
     """Takes what arrives one by one, and every two seconds keeps and publishes what is settled."""
@@ -150,6 +162,7 @@ class OutcomesLoop:
     retention: Retention
     pausing: Pausing
     home: Home | None = None
+    always_in_use: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         self.clock = CaptureClock()
@@ -203,7 +216,9 @@ class OutcomesLoop:
             if pose is None:
                 return []
             self.clock.hear(pose.time_ns)
-            return [] if self.pausing.paused else self.watcher.hear_pose(pose)
+            if self.pausing.paused or not self._tells_use(pose):
+                return []
+            return self.watcher.hear_pose(pose)
         if topic is SKELETONS:
             skeletons = self.daemon.decode(SKELETONS, sample)
             if skeletons is not None:
@@ -222,6 +237,17 @@ class OutcomesLoop:
             if frame is not None:
                 self._look_at(key.name, frame, sample.key)
         return []
+
+    def _tells_use(self, pose: ObjectPose) -> bool:
+        """Whether a pose is told of a thing because it is in use: without a recogniser a tracker
+        tells poses of what lies somewhere, or is not there, as if a hand held it."""
+        trouble = f"use of {pose.object}"
+        if pose.class_probabilities or pose.object in self.always_in_use:
+            self.daemon.health.well(trouble)
+            return True
+        if pose.object in self.watcher.things:
+            self.daemon.health.trouble(trouble, NO_RECOGNISER.format(pose.object))
+        return False
 
     def _wants_frame(self) -> bool:
         return self._floors.wants_frame(self.clock.now_ns())

@@ -32,11 +32,13 @@ class OutcomesSettings(KeepingSettings):
     """``[outcomes.NAME]``: what is measured, beside what is kept of it.
 
     Measured are the objects of ``models``; without any, those that trackers of the same file
-    follow. ``homeassistant`` shows it in Home Assistant.
+    follow. Those of ``always_in_use`` count though their tracker has no recogniser, which would
+    tell when they are used. ``homeassistant`` shows it in Home Assistant.
     """
 
     models: tuple[FilePath, ...] = ()
     objects: dict[Name, ObjectUse] = {}
+    always_in_use: tuple[Name, ...] = ()
     homeassistant: HomeAssistantSettings | None = None
 
 

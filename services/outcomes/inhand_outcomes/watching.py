@@ -54,7 +54,7 @@ class Watcher:
     ) -> None:
         self.room: Room = LEVEL
         self.floors = SweptFloors()
-        self._things = things
+        self.things = things
         self._place = place
         self._parameters = parameters
         self._sightings = Sightings(parameters)
@@ -194,7 +194,7 @@ class Watcher:
         self, holding: Holding, followed: Followed, track: Track, *, ended: bool
     ) -> Iterator[Achievement]:
         """What the measures find in a track, times counted from its first frame."""
-        thing = self._things.get(holding.object)
+        thing = self.things.get(holding.object)
         if thing is None:
             return
         yield from handling(track, thing, ended=ended)

@@ -15,8 +15,9 @@ class Recognition:
 
     ``known`` is the number of the recognised action, None while none is; ``doubted`` that of the
     one that was recognised last and may well go on, None while another is or it is unlikely.
-    ``estimate`` is the pose of the object of either, lost while there is neither. ``box`` (4,) is where an object would be in the image,
-    recognised or not: left, top, right and bottom in pixels; None where there is none.
+    ``estimate`` is the pose of the object of either, lost while there is neither. ``box`` (4,) is
+    where an object would be in the image, recognised or not: left, top, right and bottom in pixels;
+    None where there is none.
     """
 
     probabilities: Array
