@@ -140,6 +140,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="for outcomes: people of each seed (default: 2)",
     )
     parser.add_argument(
+        "--estimated",
+        action="store_true",
+        help="for outcomes: the same again from skeletons that are estimated from the images",
+    )
+    parser.add_argument(
         "--real",
         type=Path,
         nargs="+",
@@ -165,6 +170,8 @@ def run(arguments: argparse.Namespace) -> int:
         if getattr(arguments, option) and arguments.subject != subject:
             name = option.replace("_", "-")
             raise SettingsError(f"--{name} is for {subject}, and for nothing else: leave it out")
+    if arguments.estimated and not named:
+        raise SettingsError("--estimated is measured on a SOURCE: name it")
     if arguments.plain and not arguments.test_on:
         raise SettingsError("--plain is learned from in place of what --test-on tests: name both")
     table, result = SUBJECTS[arguments.subject](arguments)
@@ -322,11 +329,14 @@ def _outcomes(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, 
         tables += [tennis_table(real.tennis)] if real.tennis else []
         result["real"] = asdict(real)
     if arguments.source is not None:
-        seeds, participants = arguments.seeds, arguments.participants
-        with progress_bar("comparing", steps(seeds, participants)) as advance:
-            check = check_outcomes(arguments.source, seeds, participants, advance)
-        tables = [*all_tables(check), *tables]
-        result |= asdict(check)
+        if arguments.estimated:
+            require_network(DEFAULT_NETWORK)
+        chosen = (arguments.source, arguments.seeds, arguments.participants)
+        for estimated in (False, True)[: 1 + arguments.estimated]:
+            with progress_bar("comparing", steps(*chosen[1:])) as advance:
+                check = check_outcomes(*chosen, advance, estimated=estimated)
+            tables += all_tables(check)
+            result |= {"estimated": asdict(check)} if estimated else asdict(check)
     return Group(*tables), result
 
 
@@ -353,6 +363,7 @@ OPTIONS_OF = {
     "plain": "ablation",
     "no_images": "ablation",
     "against": "tracker",
+    "estimated": "outcomes",
     "real": "outcomes",
 }
 """The subject of each option that is for one alone."""

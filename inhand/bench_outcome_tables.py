@@ -16,7 +16,7 @@ def all_tables(check: OutcomesCheck) -> list[Table]:
 
 def counts_table(check: OutcomesCheck) -> Table:
     """How often each kind was counted right."""
-    table = Table(title=f"what was achieved in {check.recordings} recordings, beside the truth")
+    table = Table(title=f"achieved in {check.recordings} recordings with {check.skeletons}")
     for column in ("interaction", "kind"):
         table.add_column(column)
     for column in ("true", "said", "exact", "within one", "seconds off"):
@@ -40,7 +40,7 @@ def counts_table(check: OutcomesCheck) -> Table:
 
 def amounts_table(check: OutcomesCheck) -> Table:
     """How far sums of amounts are from the truth."""
-    table = Table(title="amounts of a recording together, beside the truth")
+    table = Table(title=f"amounts of a recording together, with {check.skeletons}")
     for column in ("interaction", "kind", "amount"):
         table.add_column(column)
     for column in ("true, mean", "median error", "within 25 %"):
@@ -63,7 +63,7 @@ def amounts_table(check: OutcomesCheck) -> Table:
 
 def swept_table(check: OutcomesCheck) -> Table:
     """How well maps of the swept floor agree with what truly was."""
-    table = Table(title="the floor that was swept, intersection over union")
+    table = Table(title=f"the swept floor, intersection over union, with {check.skeletons}")
     for column in ("recordings", "mean", "least"):
         table.add_column(column, justify="right")
     shares = [one.iou for one in check.swept]
@@ -74,7 +74,7 @@ def swept_table(check: OutcomesCheck) -> Table:
 
 def places_table(check: OutcomesCheck) -> Table:
     """How far from where it lies a thing was said to be put down."""
-    table = Table(title="where things were put down")
+    table = Table(title=f"where things were put down, with {check.skeletons}")
     table.add_column("interaction")
     for column in ("put down", "said", "within 5 cm", "median, cm"):
         table.add_column(column, justify="right")

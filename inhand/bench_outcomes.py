@@ -67,8 +67,9 @@ class Swept:
 
 @dataclass(frozen=True)
 class OutcomesCheck:
-    """All recordings of all seeds."""
+    """All recordings of all seeds; ``skeletons`` says whose they were."""
 
+    skeletons: str
     recordings: int
     compared: Sequence[Compared]
     handled: Sequence[Handled]
@@ -76,9 +77,17 @@ class OutcomesCheck:
 
 
 def check_outcomes(
-    folder: Path, seeds: Sequence[int], participants: int, advance: Callable[[], object]
+    folder: Path,
+    seeds: Sequence[int],
+    participants: int,
+    advance: Callable[[], object],
+    *,
+    estimated: bool = False,
 ) -> OutcomesCheck:
-    """Make what is missing in the folder, and compare each recording; raises InhandError."""
+    """Make what is missing in the folder, and compare each recording; raises InhandError.
+
+    Skeletons are a Kinect's, or ``estimated`` from the images; models are taught by a Kinect's.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     models = taught_models(folder)
     compared: list[Compared] = []
@@ -86,7 +95,7 @@ def check_outcomes(
     swept: list[Swept] = []
     count = 0
     for seed in seeds:
-        tracked = tracked_people(folder, seed, participants, models, estimated=False)
+        tracked = tracked_people(folder, seed, participants, models, estimated=estimated)
         for interaction in INTERACTIONS:
             for participant in range(participants):
                 path = tracked / f"{interaction}_p{participant:02}.mcap"
@@ -97,7 +106,8 @@ def check_outcomes(
                 swept += list(_swept(simulation, watcher))
                 count += 1
                 advance()
-    return OutcomesCheck(count, compared, handled, swept)
+    skeletons = "estimated skeletons" if estimated else "a Kinect's skeletons"
+    return OutcomesCheck(skeletons, count, compared, handled, swept)
 
 
 def steps(seeds: Sequence[int], participants: int) -> int:

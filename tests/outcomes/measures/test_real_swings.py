@@ -43,3 +43,8 @@ def test_counts_one_stroke_in_nearly_every_recording_of_mimed_tennis(found):
 def test_a_folder_without_swings_is_refused(tmp_path, capsys):
     assert main(["bench", "outcomes", "--real", str(tmp_path)]) == 2
     assert "no motion archive of a golf swing" in capsys.readouterr().err
+
+
+def test_estimated_skeletons_need_simulated_people(tmp_path, capsys):
+    assert main(["bench", "outcomes", "--estimated", "--real", str(tmp_path)]) == 2
+    assert "--estimated is measured on a SOURCE" in capsys.readouterr().err
