@@ -139,27 +139,41 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="for outcomes: people of each seed (default: 2)",
     )
+    parser.add_argument(
+        "--estimated",
+        action="store_true",
+        help="for outcomes: the same again from skeletons that are estimated from the images",
+    )
+    parser.add_argument(
+        "--real",
+        type=Path,
+        nargs="+",
+        default=[],
+        metavar="FOLDER",
+        help="for outcomes, with or without a SOURCE: folders with motion archives of golf swings, "
+        "or with UTD-MHAD's skeletons, in which swings and strokes are counted",
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Measure and show the table; raises InhandError."""
     named = arguments.source is not None
-    if not named and arguments.subject in MEASURED_ON:
+    if not named and arguments.subject in MEASURED_ON and not arguments.real:
         raise SettingsError(f"{arguments.subject} is measured on a SOURCE: name it")
     if named and arguments.subject not in MEASURED_ON + ALSO_MEASURED_ON:
         raise SettingsError(
             f"{arguments.subject} is measured on no SOURCE: leave it out; only "
             f"{', '.join(MEASURED_ON + ALSO_MEASURED_ON)} are"
         )
-    for option in ("vary", "test_on", "plain", "no_images"):
-        if getattr(arguments, option) and arguments.subject != "ablation":
+    for option, subject in OPTIONS_OF.items():
+        if getattr(arguments, option) and arguments.subject != subject:
             name = option.replace("_", "-")
-            raise SettingsError(f"--{name} is for ablation, and for nothing else: leave it out")
+            raise SettingsError(f"--{name} is for {subject}, and for nothing else: leave it out")
+    if arguments.estimated and not named:
+        raise SettingsError("--estimated is measured on a SOURCE: name it")
     if arguments.plain and not arguments.test_on:
         raise SettingsError("--plain is learned from in place of what --test-on tests: name both")
-    if arguments.against is not None and arguments.subject != "tracker":
-        raise SettingsError("--against is for tracker, and for nothing else: leave it out")
     table, result = SUBJECTS[arguments.subject](arguments)
     Console().print(table)
     if arguments.json is not None:
@@ -303,20 +317,27 @@ def _skeletons(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str,
 
 
 def _outcomes(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
-    from inhand.bench_outcomes import (
-        amounts_table,
-        check_outcomes,
-        counts_table,
-        places_table,
-        steps,
-        swept_table,
-    )
+    from inhand.bench_outcome_tables import all_tables
+    from inhand.bench_outcomes import check_outcomes, steps
+    from inhand.bench_outcomes_real import check_real_swings, golf_table, tennis_table
 
-    seeds, participants = arguments.seeds, arguments.participants
-    with progress_bar("comparing", steps(seeds, participants)) as advance:
-        check = check_outcomes(arguments.source, seeds, participants, advance)
-    tables = (counts_table(check), amounts_table(check), places_table(check), swept_table(check))
-    return Group(*tables), asdict(check)
+    tables: list[RenderableType] = []
+    result: dict[str, Any] = {}
+    if arguments.real:
+        real = check_real_swings(arguments.real)
+        tables += [golf_table(real.golf)] if real.golf else []
+        tables += [tennis_table(real.tennis)] if real.tennis else []
+        result["real"] = asdict(real)
+    if arguments.source is not None:
+        if arguments.estimated:
+            require_network(DEFAULT_NETWORK)
+        chosen = (arguments.source, arguments.seeds, arguments.participants)
+        for estimated in (False, True)[: 1 + arguments.estimated]:
+            with progress_bar("comparing", steps(*chosen[1:])) as advance:
+                check = check_outcomes(*chosen, advance, estimated=estimated)
+            tables += all_tables(check)
+            result |= {"estimated": asdict(check)} if estimated else asdict(check)
+    return Group(*tables), result
 
 
 SUBJECTS_HELP = {
@@ -335,6 +356,17 @@ SUBJECTS_HELP = {
     "training": "time and memory of training by its size",
     "transport": "the delay of a frame to another process, beside Zenoh's own and dora-rs's",
 }
+
+OPTIONS_OF = {
+    "vary": "ablation",
+    "test_on": "ablation",
+    "plain": "ablation",
+    "no_images": "ablation",
+    "against": "tracker",
+    "estimated": "outcomes",
+    "real": "outcomes",
+}
+"""The subject of each option that is for one alone."""
 
 MEASURED_ON = ("ablation", "constants", "labels", "outcomes")
 ALSO_MEASURED_ON = ("likelihood", "skeletons")

@@ -5,9 +5,7 @@ from their images, and what outcomes make of these poses is held against the sim
 Whatever of it stands in the folder already is used again.
 """
 
-import subprocess
-import sys
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,7 +16,6 @@ from inhand_lab.achieved.sweeping import PIXEL_M, swept_floor
 from inhand_lab.achieved.true_achievement import TrueAchievement
 from inhand_lab.achieved.truths import TRUTHS
 from inhand_lab.motions.performance import ContactKind
-from inhand_lab.people.person import USUAL_PEOPLE, sample_person
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.simulation import Simulation, simulate
 from inhand_outcomes.floor_map import empty_map
@@ -30,14 +27,9 @@ from inhand_outcomes.watching import Watcher
 from inhand_runtime.errors import InhandError
 from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import CameraInfo, ObjectPose, RgbdFrame, Skeletons
-from rich.table import Table
 
-TAUGHT_BY = 5150
-"""Seed of the people who teach the models."""
-TEACHERS = 3
-TAUGHT_FRAMES = 300
-FRAMES = 360
-SUFFIX = "_retrack"
+from inhand.bench_outcomes_people import FRAMES, SUFFIX, taught_models, tracked_people
+
 SURE = 0.5
 """Probability from which an outcome counts, as the settings have it unless they say otherwise."""
 CENTIMETRES = 100.0
@@ -75,8 +67,9 @@ class Swept:
 
 @dataclass(frozen=True)
 class OutcomesCheck:
-    """All recordings of all seeds."""
+    """All recordings of all seeds; ``skeletons`` says whose they were."""
 
+    skeletons: str
     recordings: int
     compared: Sequence[Compared]
     handled: Sequence[Handled]
@@ -84,17 +77,25 @@ class OutcomesCheck:
 
 
 def check_outcomes(
-    folder: Path, seeds: Sequence[int], participants: int, advance: Callable[[], object]
+    folder: Path,
+    seeds: Sequence[int],
+    participants: int,
+    advance: Callable[[], object],
+    *,
+    estimated: bool = False,
 ) -> OutcomesCheck:
-    """Make what is missing in the folder, and compare each recording; raises InhandError."""
+    """Make what is missing in the folder, and compare each recording; raises InhandError.
+
+    Skeletons are a Kinect's, or ``estimated`` from the images; models are taught by a Kinect's.
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    models = _models(folder)
+    models = taught_models(folder)
     compared: list[Compared] = []
     handled: list[Handled] = []
     swept: list[Swept] = []
     count = 0
     for seed in seeds:
-        tracked = _tracked(folder, seed, participants, models)
+        tracked = tracked_people(folder, seed, participants, models, estimated=estimated)
         for interaction in INTERACTIONS:
             for participant in range(participants):
                 path = tracked / f"{interaction}_p{participant:02}.mcap"
@@ -105,7 +106,8 @@ def check_outcomes(
                 swept += list(_swept(simulation, watcher))
                 count += 1
                 advance()
-    return OutcomesCheck(count, compared, handled, swept)
+    skeletons = "estimated skeletons" if estimated else "a Kinect's skeletons"
+    return OutcomesCheck(skeletons, count, compared, handled, swept)
 
 
 def steps(seeds: Sequence[int], participants: int) -> int:
@@ -199,131 +201,3 @@ def _swept(simulation: Simulation, watcher: Watcher) -> Iterator[Swept]:
     np.add.at(covered, tuple(cells.T), PIXEL_M**2)
     true = covered >= 0.5 * CELL_M**2
     yield Swept(simulation.interaction, float((said & true).sum() / (said | true).sum()))
-
-
-def _models(folder: Path) -> dict[str, Path]:
-    """The models by interaction, learned where they are missing."""
-    taught = folder / f"people_{TAUGHT_BY}"
-    _simulate(taught, TAUGHT_BY, TEACHERS, TAUGHT_FRAMES)
-    models = {}
-    for interaction, done in INTERACTIONS.items():
-        name = done.object_model().name
-        models[interaction] = folder / f"{name}.model"
-        if not models[interaction].exists():
-            _inhand("train", taught, "--object", name, "-o", models[interaction])
-    return models
-
-
-def _tracked(folder: Path, seed: int, participants: int, models: Mapping[str, Path]) -> Path:
-    """The folder of the tracked recordings of a seed's people."""
-    people, tracked = folder / f"people_{seed}", folder / f"tracked_{seed}"
-    _simulate(people, seed, participants, FRAMES)
-    for number in range(participants):
-        left_handed = sample_person(seed, number, USUAL_PEOPLE).handedness == "left"
-        for interaction, model in models.items():
-            path = people / "recordings" / f"{interaction}_p{number:02}.mcap"
-            if not (tracked / path.name).exists():
-                config = _settings(model, left_handed=left_handed)
-                _inhand("recording", "retrack", "--config", config, "-o", tracked, path)
-    return tracked
-
-
-def _settings(model: Path, *, left_handed: bool) -> Path:
-    """The settings of a tracker for somebody, as they would write them."""
-    config = model.with_suffix(".left.toml" if left_handed else ".right.toml")
-    hand = str(left_handed).lower()
-    config.write_text(f'[tracker.{SUFFIX[1:]}]\nmodel = "{model.name}"\nleft_handed = {hand}\n')
-    return config
-
-
-def _simulate(out: Path, seed: int, participants: int, frames: int) -> None:
-    if not (out / "dataset.toml").exists():
-        numbers = {"participants": participants, "seed": seed, "frames": frames}
-        wanted = (part for name, one in numbers.items() for part in (f"--{name}", str(one)))
-        _inhand("simulate", out, *wanted)
-
-
-def _inhand(*arguments: str | Path) -> None:
-    command = [sys.executable, "-m", "inhand", *map(str, arguments)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise InhandError(f"inhand {arguments[0]}: {done.stderr.strip()}")
-
-
-def counts_table(check: OutcomesCheck) -> Table:
-    """How often each kind was counted right."""
-    table = Table(title=f"what was achieved in {check.recordings} recordings, beside the truth")
-    for column in ("interaction", "kind"):
-        table.add_column(column)
-    for column in ("true", "said", "exact", "within one", "seconds off"):
-        table.add_column(column, justify="right")
-    rows: dict[tuple[str, str], list[Compared]] = defaultdict(list)
-    for one in check.compared:
-        rows[one.interaction, one.kind].append(one)
-    for (interaction, kind), ones in rows.items():
-        off = Counter(abs(one.said - one.true) for one in ones)
-        table.add_row(
-            interaction,
-            kind,
-            str(sum(one.true for one in ones)),
-            str(sum(one.said for one in ones)),
-            f"{off[0]}/{len(ones)}",
-            f"{off[0] + off[1]}/{len(ones)}",
-            f"{np.median(np.abs([one.seconds_off for one in ones])):.2f}",
-        )
-    return table
-
-
-def amounts_table(check: OutcomesCheck) -> Table:
-    """How far sums of amounts are from the truth."""
-    table = Table(title="amounts of a recording together, beside the truth")
-    for column in ("interaction", "kind", "amount"):
-        table.add_column(column)
-    for column in ("true, mean", "median error", "within 25 %"):
-        table.add_column(column, justify="right")
-    rows: dict[tuple[str, str, str], list[tuple[float, float]]] = defaultdict(list)
-    for one in check.compared:
-        for name, pair in one.amounts.items():
-            rows[one.interaction, one.kind, name].append(pair)
-    for key, pairs in rows.items():
-        said, true = np.array(pairs).T
-        near = np.abs(said - true) <= 0.25 * np.abs(true)
-        table.add_row(
-            *key,
-            f"{true.mean():.3g}",
-            f"{np.median(np.abs(said - true)):.3g}",
-            f"{near.sum()}/{len(pairs)}",
-        )
-    return table
-
-
-def swept_table(check: OutcomesCheck) -> Table:
-    """How well maps of the swept floor agree with what truly was."""
-    table = Table(title="the floor that was swept, intersection over union")
-    for column in ("recordings", "mean", "least"):
-        table.add_column(column, justify="right")
-    shares = [one.iou for one in check.swept]
-    if shares:
-        table.add_row(str(len(shares)), f"{np.mean(shares):.2f}", f"{min(shares):.2f}")
-    return table
-
-
-def places_table(check: OutcomesCheck) -> Table:
-    """How far from where it lies a thing was said to be put down."""
-    table = Table(title="where things were put down")
-    table.add_column("interaction")
-    for column in ("put down", "said", "within 5 cm", "median, cm"):
-        table.add_column(column, justify="right")
-    rows: dict[str, list[Handled]] = defaultdict(list)
-    for one in check.handled:
-        rows[one.interaction].append(one)
-    for interaction, ones in rows.items():
-        off = [one.place_off_cm for one in ones if one.place_off_cm is not None]
-        table.add_row(
-            interaction,
-            str(len(ones)),
-            str(len(off)),
-            str(sum(one <= 5.0 for one in off)),
-            f"{np.median(off):.1f}" if off else "",
-        )
-    return table

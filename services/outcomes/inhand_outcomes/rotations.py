@@ -58,10 +58,3 @@ def rotation_vectors(quaternions: Array) -> Array:
     sines = np.linalg.norm(quaternions[..., 1:], axis=-1, keepdims=True)
     angles = 2.0 * np.arctan2(sines, quaternions[..., :1])
     return quaternions[..., 1:] * np.where(sines > 1e-12, angles / np.maximum(sines, 1e-12), 2.0)
-
-
-def of_rotation_vectors(vectors: Array) -> Array:
-    """Rotations (..., 4) of rotation vectors (..., 3), radians."""
-    angles = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    halves = 0.5 * np.sinc(0.5 * angles / np.pi)
-    return np.concatenate([np.cos(0.5 * angles), halves * vectors], axis=-1)

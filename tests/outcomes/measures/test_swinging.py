@@ -5,7 +5,8 @@ import pytest
 from hand_made import moved, thing, track
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from inhand_outcomes.measures.swinging import golf, head_of, tennis
+from inhand_outcomes.measures.smoothing import smooth
+from inhand_outcomes.measures.swinging import GOLF, golf, head_of, head_speeds, tennis
 from scipy.spatial.transform import Rotation
 
 CLUB = thing(
@@ -45,6 +46,27 @@ def surely(found):
 
 def test_the_head_is_where_a_thing_is_widest():
     assert head_of(CLUB) == pytest.approx([0.0, 0.035, -0.79], abs=0.01)
+
+
+def test_a_club_that_turns_evenly_about_the_shoulders_is_as_fast_as_it_is():
+    times = np.arange(0.0, 1.0, 1.0 / 30.0)
+    turn_s = 40.0  # radians a second: 1.3 from frame to frame
+    rotations = Rotation.from_euler("y", turn_s * times[:, None])
+    hands = np.array([0.0, 0.0, -0.7])
+    _, speeds, _, _ = head_speeds(
+        track(times, CENTRE + rotations.apply(hands), rotations), head := head_of(CLUB), GOLF
+    )
+    assert speeds == pytest.approx(turn_s * np.linalg.norm((head + hands)[[0, 2]]), rel=1e-6)
+
+
+def test_means_over_frames_show_the_peak_of_a_parabola():
+    edges = np.arange(-0.3, 0.3, 1.0 / 30.0) + 0.011
+    middles, spans = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+    means = 40.0 - 900.0 * np.diff(edges**3 / 3.0) / spans
+    flags = np.ones(len(middles), bool)
+    at = np.zeros(1)
+    found = smooth(middles, means[:, None], flags, at, 0.08, order=2, spans_s=spans)
+    assert found.values[0, 0] == pytest.approx(40.0, abs=1e-4)
 
 
 @pytest.mark.parametrize("plane_deg", [45.0, 60.0, 80.0])

@@ -26,14 +26,22 @@ ERRORS_LAST_S = 0.3
 
 
 def smooth(
-    times: Array, values: Array, seen: Flags, at: Array, half_width_s: float, order: int = 1
+    times: Array,
+    values: Array,
+    seen: Flags,
+    at: Array,
+    half_width_s: float,
+    order: int = 1,
+    spans_s: Array | None = None,
 ) -> Smoothed:
     """Fit lines (``order`` 1) or parabolas (2) to values (T, K) around each of ``at`` (A,).
 
     Frames within ``half_width_s`` count, those nearer more (Epanechnikov's kernel). Too little is
-    fewer than ``order`` + 1 frames, or frames on one side alone.
+    fewer than ``order`` + 1 frames, or frames on one side alone. Values that are means over spans
+    of ``spans_s`` (T,) about their times are fitted by means of the parabola over them.
     """
-    times, values = times[seen], values[seen]
+    spans = np.zeros(len(times)) if spans_s is None else spans_s
+    times, values, spans = times[seen], values[seen], spans[seen]
     missing = np.full((len(at), values.shape[1]), np.nan)
     if len(times) == 0:
         return Smoothed(missing, missing, np.zeros(len(at)), np.zeros(len(at)))
@@ -46,6 +54,8 @@ def smooth(
     away = (times[rows] - at[:, None]) / half_width_s
     weights = np.where(inside, 1.0 - away**2, 0.0)
     powers = away[..., None] ** np.arange(order + 1)
+    if order == 2:
+        powers[..., 2] += (spans[rows] / half_width_s) ** 2 / 12.0
     weighted = powers * weights[..., None]
     normal = np.einsum("ati,atj->aij", weighted, powers)
     right = np.einsum("ati,atk->aik", weighted, values[rows])
