@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 unexport PYTHONDONTWRITEBYTECODE
 
 CONTRIB := .venv-contrib
-ON_ALL_CORES := --numprocesses auto --dist loadgroup --no-loadscope-reorder
+ON_ALL_CORES := --numprocesses auto --dist loadfile --no-loadscope-reorder
 
 .PHONY: help setup contrib demo demo-camera test test-fast lint format clean
 
@@ -44,20 +44,26 @@ format: setup
 
 setup: $(VENV)/dev.stamp
 
-$(VENV)/run.stamp: pyproject.toml constraints.txt
+# Each of the stamps installs all that it stands for in one go, and stands for those below it too.
+# CI compiles what is installed later, beside other work: make setup PIP_OPTIONS=--no-compile
+PIP := $(BIN)/pip install $(PIP_OPTIONS) --quiet --disable-pip-version-check --constraint constraints.txt
+
+$(BIN)/pip:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "Inhand needs Python 3.11 or newer: make $(MAKECMDGOALS) PYTHON=python3.11"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[lab]'
+
+$(VENV)/run.stamp: pyproject.toml constraints.txt | $(BIN)/pip
+	$(PIP) --editable '.[lab]'
 	@touch $@
 
-$(VENV)/pose.stamp: $(VENV)/run.stamp
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[lab,pose]'
-	@touch $@
+$(VENV)/pose.stamp: pyproject.toml constraints.txt | $(BIN)/pip
+	$(PIP) --editable '.[lab,pose]'
+	@touch $@ $(VENV)/run.stamp
 
-$(VENV)/dev.stamp: $(VENV)/run.stamp
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
-	@touch $@
+$(VENV)/dev.stamp: pyproject.toml constraints.txt | $(BIN)/pip
+	$(PIP) --editable '.[dev]'
+	@touch $@ $(VENV)/pose.stamp $(VENV)/run.stamp
 
 # The contrib build and the headless one are the same module cv2: they cannot share an environment.
 contrib: $(CONTRIB)/run.stamp

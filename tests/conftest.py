@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 from running_rig import RunningRig
-from scheduling import ONE_THREAD, FilesAndRigs, ordered, usable_cores
+from scheduling import ONE_THREAD, ordered, usable_cores
 from wire import Wire
 
 # Example times on a busy machine say nothing about the code; each test has its own timeout.
@@ -23,12 +23,6 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
     return usable_cores()
-
-
-@pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> FilesAndRigs:
-    # Without its parent's log the scheduler prints a line for each file.
-    return FilesAndRigs(config, log)
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -27,7 +27,6 @@ from running_rig import RunningRig, eventually
 from inhand.__main__ import main
 
 SEED = 5
-pytestmark = pytest.mark.xdist_group("rig")
 
 
 def simulated(folder: Path, *interactions: str, images: bool = False, frames: int = 90) -> Dataset:

@@ -35,7 +35,7 @@ from inhand_schemas.topics import (
 )
 from running_rig import eventually
 
-pytestmark = [pytest.mark.long, pytest.mark.xdist_group("rig")]
+pytestmark = pytest.mark.long
 
 
 def authority_of(site: HubSite) -> Issued:

@@ -17,7 +17,7 @@ from inhand_schemas.topics import HEALTH, RGBD, SKELETONS
 from msgspec.structs import replace
 from running_rig import eventually
 
-pytestmark = [pytest.mark.long, pytest.mark.xdist_group("rig")]
+pytestmark = pytest.mark.long
 
 MORE_THAN_LINKS_OF_ONE = 33
 MORE_THAN_WAIT = 130

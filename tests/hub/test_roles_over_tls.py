@@ -33,7 +33,7 @@ from inhand_schemas.topics import (
 from running_rig import eventually
 from wire import Wire
 
-pytestmark = [pytest.mark.long, pytest.mark.xdist_group("rig")]
+pytestmark = pytest.mark.long
 
 EVERYBODY = tuple(PEOPLE)
 PERMITTED = {

@@ -10,7 +10,7 @@ from inhand_schemas.topics import POSE
 from msgspec.structs import replace
 from running_rig import ROOT, RunningRig, eventually
 
-pytestmark = [pytest.mark.long, pytest.mark.xdist_group("rig")]
+pytestmark = pytest.mark.long
 
 MODEL = ROOT / "tests/tracker/golden/drinkFromMug.model"
 FORGED = 424_242

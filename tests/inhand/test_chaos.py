@@ -7,9 +7,17 @@ from pathlib import Path
 import pytest
 from inhand_lab.chaos import soak, trials
 from inhand_lab.chaos.parameters import DEFAULT_CHAOS
+from inhand_lab.demonstration import preparation
 from running_rig import RunningRig
 
 from inhand.__main__ import main
+
+
+@pytest.fixture
+def _few_people(monkeypatch: pytest.MonkeyPatch) -> None:
+    """How well the tracker was taught, which takes as long as a fault, is not the point here."""
+    few = replace(preparation.DEFAULT_DEMONSTRATION, trained_participants=3, trained_frames=120)
+    monkeypatch.setattr(preparation, "DEFAULT_DEMONSTRATION", few)
 
 
 def test_a_fault_that_there_is_not_is_refused_with_those_that_there_are(rig: RunningRig) -> None:
@@ -27,14 +35,14 @@ def test_a_flood_of_no_messages_is_refused(rig: RunningRig, messages: str) -> No
 
 
 @pytest.mark.long
+@pytest.mark.usefixtures("_few_people")
 def test_a_killed_recorder_loses_what_it_was_away_for_and_malformed_messages_are_counted(
-    rig: RunningRig,
+    tmp_path: Path,
 ) -> None:
-    result = rig.folder / "chaos.json"
+    result = tmp_path / "chaos.json"
     faults = "--faults", "kill-recorder", "malformed"
-    tried = rig.inhand("chaos", *faults, "--messages", "20000", "--json", str(result))
-    tried.popen.wait(240.0)
-    assert result.exists(), tried.stderr
+    # Whether poses are as fast again as promised is chance on a busy machine.
+    main(["chaos", *faults, "--messages", "20000", "--json", str(result)])
     told = json.loads(result.read_text())["faults"]
     killed, flooded = told["kill-recorder"], told["malformed"]
     assert killed["frames"] > 100
@@ -48,6 +56,7 @@ def test_a_killed_recorder_loses_what_it_was_away_for_and_malformed_messages_are
 
 
 @pytest.mark.long
+@pytest.mark.usefixtures("_few_people")
 def test_a_soak_says_of_each_process_how_it_grew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -15,7 +15,7 @@ from running_rig import RunningRig, eventually
 
 from inhand.__main__ import main
 
-pytestmark = [pytest.mark.long, pytest.mark.xdist_group("rig")]
+pytestmark = pytest.mark.long
 
 
 def test_tasks_are_done_by_workers_in_order_though_one_is_killed(

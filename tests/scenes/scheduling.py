@@ -1,13 +1,15 @@
-"""Which worker runs which tests, and in which order, where several share the run (pytest-xdist)."""
+"""In which order tests run, where several workers share them (pytest-xdist).
+
+Workers take whole files (``--dist loadfile``), as a file's tests share what they made, and take
+them in the order of ``ordered``. So there are as many rigs at once as workers. Marks of a group
+(``xdist_group``) would not keep them apart: xdist 3.8 writes the group behind a test's id, which
+pytest 9.2 does not show.
+"""
 
 import os
 from collections.abc import Sequence
 
 import pytest
-from xdist.scheduler.loadscope import LoadScopeScheduling
-
-RIG = "rig"
-"""Tests of a rig's real processes are one group: two rigs at once would starve each other."""
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 """Environment of workers: threads of one that wait for each other take the others' cores."""
@@ -19,23 +21,8 @@ def usable_cores() -> int:
 
 
 def ordered(items: Sequence[pytest.Item]) -> list[pytest.Item]:
-    """Rigs first, then files with long tests, then the rest, which fills what gaps are left."""
-    for item in items:
-        if RIG in getattr(item, "fixturenames", ()):
-            item.add_marker(pytest.mark.xdist_group(RIG))
-    long_files = {item.path for item in items if item.get_closest_marker("long")}
-
-    def turn(item: pytest.Item) -> int:
-        if item.get_closest_marker("xdist_group"):
-            return 0
-        return 1 if item.path in long_files else 2
-
-    return sorted(items, key=turn)
-
-
-class FilesAndRigs(LoadScopeScheduling):
-    """A file's tests stay on one worker, where they share what they made; so do all rigs'."""
-
-    def _split_scope(self, nodeid: str) -> str:
-        name, _, group = nodeid.rpartition("@")
-        return group if name and group == RIG else nodeid.split("::")[0]
+    """Files with long tests first, those with rigs before all; the rest fills what gaps are left,
+    so that no worker is idle while the last long test runs."""
+    long = {item.path for item in items if item.get_closest_marker("long")}
+    rigs = {item.path for item in items if "rig" in getattr(item, "fixturenames", ())}
+    return sorted(items, key=lambda item: (item.path not in long, item.path not in rigs))
