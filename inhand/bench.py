@@ -145,6 +145,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="for outcomes: the same again from skeletons that are estimated from the images",
     )
     parser.add_argument(
+        "--idle-minutes",
+        type=positive_count,
+        metavar="N",
+        help="for outcomes: so many minutes of people who use nothing as well, and people who use "
+        "what nobody taught",
+    )
+    parser.add_argument(
         "--real",
         type=Path,
         nargs="+",
@@ -319,6 +326,7 @@ def _skeletons(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str,
 def _outcomes(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
     from inhand.bench_outcome_tables import all_tables
     from inhand.bench_outcomes import check_outcomes, steps
+    from inhand.bench_outcomes_false import check_false, false_table
     from inhand.bench_outcomes_real import check_real_swings, golf_table, tennis_table
 
     tables: list[RenderableType] = []
@@ -337,6 +345,10 @@ def _outcomes(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, 
                 check = check_outcomes(*chosen, advance, estimated=estimated)
             tables += all_tables(check)
             result |= {"estimated": asdict(check)} if estimated else asdict(check)
+        if arguments.idle_minutes is not None:
+            found = check_false(arguments.source, arguments.idle_minutes, *chosen[1:])
+            tables.append(false_table(found))
+            result["false"] = [asdict(one) for one in found]
     return Group(*tables), result
 
 
@@ -364,6 +376,7 @@ OPTIONS_OF = {
     "no_images": "ablation",
     "against": "tracker",
     "estimated": "outcomes",
+    "idle_minutes": "outcomes",
     "real": "outcomes",
 }
 """The subject of each option that is for one alone."""

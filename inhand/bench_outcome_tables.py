@@ -9,8 +9,8 @@ from inhand.bench_outcomes import Compared, Handled, OutcomesCheck
 
 
 def all_tables(check: OutcomesCheck) -> list[Table]:
-    """Counts, amounts, places and maps."""
-    makers = (counts_table, amounts_table, places_table, swept_table)
+    """Counts, amounts, places, maps, and what was mistaken."""
+    makers = (counts_table, amounts_table, places_table, swept_table, mistaken_table)
     return [make(check) for make in makers]
 
 
@@ -90,4 +90,18 @@ def places_table(check: OutcomesCheck) -> Table:
             str(sum(one <= 5.0 for one in off)),
             f"{np.median(off):.1f}" if off else "",
         )
+    return table
+
+
+def mistaken_table(check: OutcomesCheck) -> Table:
+    """What was said of objects that were not there."""
+    table = Table(title=f"said of other objects in {check.recordings} recordings")
+    for column in ("interaction", "object", "kind"):
+        table.add_column(column)
+    table.add_column("said", justify="right")
+    rows: Counter[tuple[str, str, str]] = Counter()
+    for one in check.mistaken:
+        rows[one.interaction, one.object, one.kind] += one.said
+    for key, said in rows.items():
+        table.add_row(*key, str(said))
     return table

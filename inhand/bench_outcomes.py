@@ -1,12 +1,12 @@
 """``inhand bench outcomes``: what is said to be achieved, beside what truly was, of people unseen.
 
-Datasets of people are simulated, objects' models are learned from others, the people are tracked
-from their images, and what outcomes make of these poses is held against the simulation's truth.
+Datasets of people are simulated, a rig is taught all objects by others, the people are tracked from
+their images, and what outcomes make of these poses is held against the simulation's truth.
 Whatever of it stands in the folder already is used again.
 """
 
-from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -28,7 +28,7 @@ from inhand_runtime.errors import InhandError
 from inhand_runtime.recording import read_recording
 from inhand_schemas.messages import CameraInfo, ObjectPose, RgbdFrame, Skeletons
 
-from inhand.bench_outcomes_people import FRAMES, SUFFIX, taught_models, tracked_people
+from inhand.bench_outcomes_people import FRAMES, SUFFIX, teach, tracked_people
 
 SURE = 0.5
 """Probability from which an outcome counts, as the settings have it unless they say otherwise."""
@@ -66,6 +66,16 @@ class Swept:
 
 
 @dataclass(frozen=True)
+class Mistaken:
+    """How often something was said of an object that was not there, in one recording."""
+
+    interaction: str
+    object: str
+    kind: str
+    said: int
+
+
+@dataclass(frozen=True)
 class OutcomesCheck:
     """All recordings of all seeds; ``skeletons`` says whose they were."""
 
@@ -74,6 +84,7 @@ class OutcomesCheck:
     compared: Sequence[Compared]
     handled: Sequence[Handled]
     swept: Sequence[Swept]
+    mistaken: Sequence[Mistaken]
 
 
 def check_outcomes(
@@ -86,28 +97,34 @@ def check_outcomes(
 ) -> OutcomesCheck:
     """Make what is missing in the folder, and compare each recording; raises InhandError.
 
-    Skeletons are a Kinect's, or ``estimated`` from the images; models are taught by a Kinect's.
+    Skeletons are a Kinect's, or ``estimated`` from the images; the rig was taught by a Kinect's,
+    and knows all objects.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    models = taught_models(folder)
+    taught = teach(folder)
     compared: list[Compared] = []
     handled: list[Handled] = []
     swept: list[Swept] = []
+    mistaken: list[Mistaken] = []
     count = 0
     for seed in seeds:
-        tracked = tracked_people(folder, seed, participants, models, estimated=estimated)
+        tracked = tracked_people(folder, seed, participants, taught, estimated=estimated)
         for interaction in INTERACTIONS:
             for participant in range(participants):
                 path = tracked / f"{interaction}_p{participant:02}.mcap"
                 simulation = simulate(interaction, participant, seed, FRAMES)
-                outcomes, watcher = said_of(path, models[interaction])
+                said, watcher = said_of(path, taught.files)
+                name = simulation.object_model.name
+                outcomes = [one for one in said if one.object == name]
                 compared += list(_compare(simulation, outcomes))
                 handled += list(_places(simulation, outcomes))
                 swept += list(_swept(simulation, watcher))
+                others = Counter((one.object, one.kind) for one in said if one.object != name)
+                mistaken += [Mistaken(interaction, *key, times) for key, times in others.items()]
                 count += 1
                 advance()
     skeletons = "estimated skeletons" if estimated else "a Kinect's skeletons"
-    return OutcomesCheck(skeletons, count, compared, handled, swept)
+    return OutcomesCheck(skeletons, count, compared, handled, swept, mistaken)
 
 
 def steps(seeds: Sequence[int], participants: int) -> int:
@@ -115,28 +132,44 @@ def steps(seeds: Sequence[int], participants: int) -> int:
     return len(seeds) * participants * len(INTERACTIONS)
 
 
-def said_of(recording: Path, model: Path) -> tuple[list[Outcome], Watcher]:
-    """Watch a tracked recording as the daemon does; all that it says of the model's object, and who
-    has watched."""
-    things, problems = load_things([model], {})
+Told = tuple[str, CameraInfo | RgbdFrame | Skeletons | ObjectPose]
+"""A message with the camera or object that it is of."""
+
+
+def said_of(recording: Path, models: Sequence[Path]) -> tuple[list[Outcome], Watcher]:
+    """Watch a tracked recording as the daemon does; all that is said, and who has watched."""
+    return said_by(_told(recording), models)
+
+
+def _told(recording: Path) -> Iterator[Told]:
+    for one in read_recording(recording, streams=("info", "rgbd", "skeletons", "pose")):
+        message = one.message()
+        if isinstance(message, CameraInfo | RgbdFrame | Skeletons):
+            yield one.name, message
+        elif isinstance(message, ObjectPose) and message.object.endswith(SUFFIX):
+            name = message.object.removesuffix(SUFFIX)
+            yield name, msgspec.structs.replace(message, object=name)
+
+
+def said_by(told: Iterable[Told], models: Sequence[Path]) -> tuple[list[Outcome], Watcher]:
+    """Watch what a rig tells as the daemon does; all that is said, and who has watched."""
+    things, problems = load_things(models, {})
     if problems:
         raise InhandError(problems[0])
     watcher = Watcher(things, "bench")
     floors = FloorWatch(watcher.floors.see)
     outcomes: list[Outcome] = []
-    for one in read_recording(recording, streams=("info", "rgbd", "skeletons", "pose")):
-        message = one.message()
+    for name, message in told:
         if isinstance(message, CameraInfo):
-            watcher.hear_info(one.name, message)
-            floors.hear_info(one.name, message)
+            watcher.hear_info(name, message)
+            floors.hear_info(name, message)
         elif isinstance(message, RgbdFrame):
-            floors.hear_frame(one.name, message)
+            floors.hear_frame(name, message)
         elif isinstance(message, Skeletons):
-            floors.hear_skeletons(one.name, message)
-            outcomes += watcher.hear_skeletons(one.name, message)
-        elif isinstance(message, ObjectPose) and message.object.endswith(SUFFIX):
-            name = message.object.removesuffix(SUFFIX)
-            outcomes += watcher.hear_pose(msgspec.structs.replace(message, object=name))
+            floors.hear_skeletons(name, message)
+            outcomes += watcher.hear_skeletons(name, message)
+        else:
+            outcomes += watcher.hear_pose(message)
         if floors.room is not None:
             watcher.room = floors.room
     sure = [one for one in outcomes + watcher.end_all() if one.probability >= SURE]

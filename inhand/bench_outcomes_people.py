@@ -5,9 +5,9 @@ Whatever of them stands in the folder already is used again.
 
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from inhand_lab.people.person import USUAL_PEOPLE, sample_person
 from inhand_lab.world.interactions import INTERACTIONS
@@ -21,8 +21,23 @@ FRAMES = 360
 SUFFIX = "_retrack"
 
 
-def taught_models(folder: Path) -> dict[str, Path]:
-    """The models by interaction, learned where they are missing; raises InhandError."""
+@dataclass(frozen=True)
+class Taught:
+    """What a rig has learned: the ``models`` of objects by interaction, and the ``recogniser`` of
+    these interactions."""
+
+    models: Mapping[str, Path]
+    recogniser: Path
+
+    @property
+    def files(self) -> list[Path]:
+        """The files of the models."""
+        return list(self.models.values())
+
+
+def teach(folder: Path) -> Taught:
+    """The models of all objects and their recogniser, learned where they are missing; raises
+    InhandError."""
     taught = folder / f"people_{TAUGHT_BY}"
     _simulate(taught, TAUGHT_BY, TEACHERS, TAUGHT_FRAMES)
     models = {}
@@ -31,37 +46,65 @@ def taught_models(folder: Path) -> dict[str, Path]:
         models[interaction] = folder / f"{name}.model"
         if not models[interaction].exists():
             _inhand("train", taught, "--object", name, "-o", models[interaction])
-    return models
+    recogniser = folder / "all.recogniser"
+    if not recogniser.exists():
+        _inhand("train", taught, "-o", recogniser, "--recogniser", "--models", *models.values())
+    return Taught(models, recogniser)
 
 
 def tracked_people(
-    folder: Path, seed: int, participants: int, models: Mapping[str, Path], *, estimated: bool
+    folder: Path, seed: int, participants: int, taught: Taught, *, estimated: bool
 ) -> Path:
     """The folder of the tracked recordings of a seed's people, with a Kinect's skeletons or with
     ones that were estimated from their images; raises InhandError."""
-    people = folder / f"people_{seed}"
+    recordings = recorded_people(folder, seed, participants)
     tracked = folder / (f"tracked_estimated_{seed}" if estimated else f"tracked_{seed}")
-    _simulate(people, seed, participants, FRAMES)
+    if estimated:
+        recordings = [_estimated(path, folder / f"estimated_{seed}") for path in recordings]
     for number in range(participants):
-        left_handed = sample_person(seed, number, USUAL_PEOPLE).handedness == "left"
-        for interaction, model in models.items():
-            path = people / "recordings" / f"{interaction}_p{number:02}.mcap"
-            if (tracked / path.name).exists():
-                continue
-            config = _settings(model, left_handed=left_handed)
-            with TemporaryDirectory(dir=folder) as name:
-                source = Path(name) / path.name if estimated else path
-                if estimated:
-                    _inhand("recording", "skeletons", "--replace", "-o", source, path)
-                _inhand("recording", "retrack", "--config", config, "-o", tracked, source)
+        paths = [path for path in recordings if path.stem.endswith(f"_p{number:02}")]
+        track(taught, paths, tracked, left_handed=is_left_handed(seed, number))
     return tracked
 
 
-def _settings(model: Path, *, left_handed: bool) -> Path:
-    """The settings of a tracker for somebody, as they would write them."""
-    config = model.with_suffix(".left.toml" if left_handed else ".right.toml")
-    hand = str(left_handed).lower()
-    config.write_text(f'[tracker.{SUFFIX[1:]}]\nmodel = "{model.name}"\nleft_handed = {hand}\n')
+def recorded_people(folder: Path, seed: int, participants: int) -> list[Path]:
+    """The recordings of a seed's people with all objects; raises InhandError."""
+    people = folder / f"people_{seed}"
+    _simulate(people, seed, participants, FRAMES)
+    return sorted((people / "recordings").glob("*.mcap"))
+
+
+def _estimated(path: Path, folder: Path) -> Path:
+    """The recording with skeletons that are estimated from its images."""
+    output = folder / path.name
+    if not output.exists():
+        _inhand("recording", "skeletons", "--replace", "-o", output, path)
+    return output
+
+
+def track(taught: Taught, recordings: Sequence[Path], folder: Path, *, left_handed: bool) -> None:
+    """Track what is recorded of somebody with all that a rig was taught; raises InhandError."""
+    config = _settings_of(taught, left_handed=left_handed)
+    _inhand("recording", "retrack", "--config", config, "-o", folder, *recordings)
+
+
+def is_left_handed(seed: int, number: int) -> bool:
+    """Whether one of a seed's people is."""
+    return sample_person(seed, number, USUAL_PEOPLE).handedness == "left"
+
+
+def _settings_of(taught: Taught, *, left_handed: bool) -> Path:
+    """The file of a tracker's settings for somebody, as they would write it."""
+    hand = "left" if left_handed else "right"
+    config = taught.recogniser.with_suffix(f".{hand}.toml")
+    models = ", ".join(f'"{path.name}"' for path in taught.files)
+    lines = (
+        f"[tracker.{SUFFIX[1:]}]",
+        f"models = [{models}]",
+        f'recogniser = "{taught.recogniser.name}"',
+        f"left_handed = {str(left_handed).lower()}",
+    )
+    config.write_text("\n".join(lines) + "\n")
     return config
 
 

@@ -27,7 +27,7 @@ from inhand_lab.world.idle_hands import (
 )
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.parameters import IDLE_CAMERA_PLACING
-from inhand_lab.world.simulation import Simulation
+from inhand_lab.world.simulation import Simulation, simulate
 from inhand_lab.world.viewpoint import facing_of, looking
 from inhand_lab.world.walking import walk
 
@@ -90,6 +90,27 @@ def simulate_idle(
         contact=np.full(frames, ContactKind.RESTING, np.uint8),
         camera_from_world=camera_from_world @ Transform(further, np.eye(3)),
         facing=facing_of(camera_from_world),
+    )
+
+
+def simulate_idle_beside(
+    interaction: str,
+    idleness: Idleness,
+    participant: int,
+    seed: int,
+    frames: int = 360,
+    frame_rate: float = 30.0,
+) -> Simulation:
+    """Simulate somebody idle where the object of an interaction lies at hand, as it lies before it
+    is used, on the furniture that is needed for it."""
+    idle = simulate_idle(idleness, participant, seed, frames, frame_rate)
+    usual = simulate(interaction, participant, seed, 1)
+    world_from_object = usual.camera_from_world.inverse() @ usual.camera_from_object[0]
+    return replace(
+        idle,
+        object_model=usual.object_model,
+        camera_from_object=(idle.camera_from_world @ world_from_object).repeated(frames),
+        furniture=usual.furniture,
     )
 
 
