@@ -9,12 +9,16 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array, Flags, Indices
+from inhand_outcomes.false_starts import without_false_starts
 from inhand_outcomes.hands import HANDS, hand_distances
+from inhand_outcomes.left_behind import left_behind
 from inhand_outcomes.normal import normal_share
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
 TAKEN_UP, PUT_DOWN, DROPPED, LEFT_IN_USE = "taken_up", "put_down", "dropped", "left_in_use"
+PLACE = {"place_x_m", "place_y_m", "place_z_m"}
+"""Amounts of what was put down or dropped: where it lies in the room."""
 UNKNOWN, HELD, LYING = 0, 1, 2
 
 
@@ -88,13 +92,20 @@ def handling(
 ) -> list[Achievement]:
     """Find where a thing was taken up, put down or dropped, in order of time.
 
+    The track is as the tracker says it, with false starts: what leaps away from where a hand has
+    left it is none.
+
     At the end of a track that ``ended`` in somebody's hands, it was left in use: they went out of
     view with it.
     """
-    looked = track[_steps(track.times, parameters.step_s)]
+    steps = _steps(track.times, parameters.step_s)
+    looked = track[steps]
     if not looked.seen.any():
         return []
-    stretches = _used(looked, _stretches(_states(looked, thing, parameters)), parameters)
+    looked, lies = left_behind(looked, thing, _worn(looked, parameters))
+    looked = replace(looked, seen=lies | without_false_starts(track).seen[steps])
+    states = np.where(lies, LYING, _states(looked, thing, parameters))
+    stretches = _used(looked, _stretches(states), parameters)
     achievements = []
     for before, after in pairwise(stretches):
         if (before.state, after.state) == (LYING, HELD):

@@ -11,7 +11,7 @@ from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.days import NS_PER_S
 from inhand_outcomes.false_starts import without_false_starts
 from inhand_outcomes.gathering import Gathering, Holding, Sighting, Sightings
-from inhand_outcomes.handling import LEFT_IN_USE, handling
+from inhand_outcomes.handling import LEFT_IN_USE, PLACE, handling
 from inhand_outcomes.in_hand import in_hand
 from inhand_outcomes.lasting import LastingOutcomes
 from inhand_outcomes.outcome import Outcome, outcome_id
@@ -158,7 +158,7 @@ class Watcher:
 
     def _measure(self, holding: Holding, followed: Followed, *, ended: bool) -> list[Outcome]:
         """What is settled now of a track."""
-        track = without_false_starts(followed.gathering.track(self.room))
+        track = followed.gathering.track(self.room)
         first_ns, last_ns = followed.gathering.first_ns, followed.gathering.last_ns
         sightings = list(followed.gathering.sightings)
         found = [
@@ -200,6 +200,7 @@ class Watcher:
         yield from handling(track, thing, ended=ended)
         use = USES.get(thing.use)
         counted_s = (followed.lasting.counted_ns - followed.gathering.first_ns) / NS_PER_S
+        track = without_false_starts(track)
         uncounted = track[track.times >= counted_s]
         if use is not None and len(uncounted) > 1:
             done = use.measure(uncounted, thing)
@@ -246,24 +247,19 @@ class Watcher:
             probability=achievement.probability,
             amounts=achievement.amounts,
             evidence=achievement.evidence,
-            rig_from_object=_pose_message(self._where(sightings, achievement, last)),
+            rig_from_object=self._pose_at_end(achievement, sightings[first:end] or [last]),
             first_sequence=sightings[first].sequence if first < end else last.sequence,
             last_sequence=last.sequence,
         )
 
-    def _where(
-        self, sightings: Sequence[Sighting], achievement: Achievement, last: Sighting
-    ) -> Sighting:
-        """The sighting that says where the thing was at the end: of one that was left where it
-        lies the nearest to that place, of others the last."""
-        place = [achievement.amounts.get(f"place_{axis}_m") for axis in "xyz"]
-        after = [one for one in sightings if one.seen and one.time_ns >= last.time_ns]
-        known = [amount.value for amount in place if amount is not None]
-        if len(known) < 3 or not after:
-            return last
-        in_rig = np.array([one.pose[:3] for one in after])
-        in_room = in_rig @ self.room.matrix.T + self.room.translation
-        return after[int(np.linalg.norm(in_room - known, axis=1).argmin())]
+    def _pose_at_end(self, achievement: Achievement, sightings: Sequence[Sighting]) -> Pose:
+        """Where the object was at the end, in the rig: where it lies, if that was measured."""
+        if not achievement.amounts.keys() >= PLACE:
+            return _pose_message(sightings[-1])
+        place = np.array([achievement.amounts[axis].value for axis in sorted(PLACE)])
+        place = (place - self.room.translation) @ self.room.matrix
+        nearest = min(sightings, key=lambda one: float(np.linalg.norm(one.pose[:3] - place)))
+        return _pose_message(replace(nearest, pose=np.concatenate([place, nearest.pose[3:]])))
 
 
 def _time_of(sighting: Sighting) -> int:
