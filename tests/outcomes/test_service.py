@@ -135,7 +135,7 @@ def test_what_is_remembered_at_a_start_waits_for_the_next_captures(rig: RunningR
         waiting, rules = WaitingOutcomes(lambda: saver), Rules([], ZURICH)
         loop = OutcomesLoop(daemon, again, waiting, rules, Retention(), Pausing())
         loop.recall()
-        assert again.end_quiet(loop.clock.now_ns()) == []
+        assert again.end_quiet(loop.pose_clock.now_ns()) == []
         assert len(again.followed) == 1
     saver.database.close()
 

@@ -1,167 +1,362 @@
 """A scripted home's day through the daemon of outcomes, as fast as it takes it; run by hand.
 
-``python tests/scenes/day_in_a_minute.py [--acts N]``: N times somebody carries a cup from one place
-to another, spread over two local days of Europe/Zurich, on the first of which the clocks go back an
-hour. In between the daemon is killed (-9) in the middle of an act, and after its next start the
-camera's last seconds come again; the host's clock is set back an hour and forward again. Each act
-must be counted once, on its local day. Says what was counted, the database's size, and how memory
-grew; ends with 1 where a count is wrong.
+``python tests/scenes/day_in_a_minute.py``: two simulated people do in eight rounds all that things
+are used for, with a tracker's errors, over 24 hours of Europe/Zurich about the night in which the
+clocks go back an hour; a round is under way at midnight, and another while the clocks are set. In
+between there are hours without a message. The daemon is killed (-9) in the middle of two acts, and
+after its next start the camera's last seconds come again; once the clock of the captures is set
+back half an hour, and forward again. All is counted beside the truth of the simulation, and beside
+what a watcher says that is never killed. Ends with 1 where the daemon has kept anything else.
 """
 
 import argparse
+import itertools
 import signal
 import sys
 import tempfile
 import time
-from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
-from datetime import datetime, timedelta
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from zoneinfo import ZoneInfo
 
-from carried_cup import Carrying, write_model
-from inhand_outcomes.store.database import open_database
+import numpy as np
+from acts_of_all_uses import Act, camera_info, floor_frame, rounds_of_acts, write_models
+from inhand_lab.achieved.truths import TRUTHS
+from inhand_lab.motions.performance import ContactKind
+from inhand_outcomes.floor_watch import FloorWatch
+from inhand_outcomes.memory import Memory
+from inhand_outcomes.store.database import Database, open_database
 from inhand_outcomes.store.queries import totals
-from inhand_runtime.session import Publisher, open_session
+from inhand_outcomes.store.saving import Keeping, Saver, read_journal
+from inhand_outcomes.things import load_things
+from inhand_outcomes.totals import DayTotal
+from inhand_outcomes.watching import Watcher
+from inhand_runtime.inbox import Received
+from inhand_runtime.session import Publisher, open_session, subscribe
 from inhand_runtime.settings import ZenohSettings
 from inhand_schemas.keys import Site
-from inhand_schemas.messages import ObjectPose, Skeletons
-from inhand_schemas.topics import POSE, RELIABLE, SKELETONS, Topic
+from inhand_schemas.messages import Health, ObjectPose, Skeletons
+from inhand_schemas.topics import HEALTH, INFO, POSE, RELIABLE, RGBD, SKELETONS, Topic
+from rich.console import Console
+from rich.table import Table
 from running_rig import Process, RunningRig, eventually
 
 ZONE = ZoneInfo("Europe/Zurich")
-MIDNIGHT = datetime(2026, 10, 25, tzinfo=ZONE)
-ACT_S = 9.0
-KILLED_S = 4.5
+S = 1_000_000_000
+ROUNDS = (
+    "2026-10-24 12:00:00",
+    "2026-10-24 15:00:00",
+    "2026-10-24 18:30:00",
+    "2026-10-24 23:57:30",
+    "2026-10-25 02:57:30",  # the first of the two hours
+    "2026-10-25 06:30:00",
+    "2026-10-25 09:00:00",
+    "2026-10-25 10:55:00",
+)
+STEP_S = 20.0
+"""Seconds from the beginning of one act to the next of a round."""
+KILLED = {(2, 7): 4.5, (4, 13): 7.0}
+"""By round and act the second in which the daemon is killed."""
+FRAME_S = 1.0 / 600.0
+"""Seconds from one frame to the next at least: what comes all at once comes in no order."""
+SET_BACK = (1, 5)
+"""The act of which the clock is half an hour behind."""
 REPEATED_S = 3.0
 """Seconds before the kill from which on the camera's frames come again: what the daemon had not
 written."""
-AHEAD = 200
-"""Frames that may be on their way: the daemon's queue holds ten times as many."""
+DAYS = (datetime.fromisoformat(ROUNDS[0]).date(), datetime.fromisoformat(ROUNDS[-1]).date())
+
+Frame = tuple[Skeletons, ObjectPose]
+Kinds = Counter[tuple[str, str]]
+"""Numbers of outcomes by local day and kind."""
+
+
+@dataclass(frozen=True)
+class Played:
+    """An act and when it begins, by the clock of its captures."""
+
+    act: Act
+    round: int
+    number: int
+    start_ns: int
+    frames: Sequence[Frame]
+
+
+def the_day(seeds: Sequence[int]) -> Iterator[Played]:
+    """All acts in order."""
+    first = 0
+    for number, acts in enumerate(rounds_of_acts(seeds)):
+        begin = datetime.fromisoformat(ROUNDS[number]).replace(tzinfo=ZONE)
+        for place, act in enumerate(acts):
+            start_ns = round(begin.timestamp() + place * STEP_S) * S
+            if (number, place) == SET_BACK:
+                start_ns -= 1_800 * S
+            frames = list(act.messages(start_ns, number % 2, first))
+            first += len(frames)
+            yield Played(act, number, place, start_ns, frames)
 
 
 class Feed:
-    """Sends frames no faster than the daemon takes them."""
+    """Sends what a camera and its tracker would, no faster than the daemon takes it."""
 
-    def __init__(self, rig: RunningRig, people: Publisher[Skeletons], poses: Publisher[ObjectPose]):
-        self._rig, self._people, self._poses = rig, people, poses
+    def __init__(self, rig: RunningRig, objects: Iterable[str]) -> None:
+        self._objects = objects
+        self._session = open_session(ZenohSettings(meeting=rig.meeting))
+        self._health: Health | None = None
+
+    def __enter__(self) -> "Feed":
+        session = self._session.__enter__()
+        # Waiting for the reader, so that nothing is lost on the way.
+        people = Topic(SKELETONS.stream, Skeletons, RELIABLE)
+        poses = Topic(POSE.stream, ObjectPose, RELIABLE)
+        self._people = Publisher(session, people, people.key(Site(), "front"), _ignore)
+        self._poses = {
+            name: Publisher(session, poses, poses.key(Site(), name), _ignore)
+            for name in self._objects
+        }
+        self._infos = Publisher(session, INFO, INFO.key(Site(), "front"), _ignore)
+        self._pixels = Publisher(session, RGBD, RGBD.key(Site(), "front"), _ignore)
         self._sent = 0
+        self._looks = itertools.count()
+        self._listening = subscribe(
+            session, HEALTH.pattern(Site()), HEALTH.delivery, self._take_health
+        )
+        return self
 
-    def began(self) -> None:
-        """Count anew: another daemon listens."""
-        self._sent = 0
+    def __exit__(self, *error: object) -> None:
+        self._session.__exit__(*error)  # type: ignore[arg-type]
 
-    def act(self, start_ns: int, first_s: float = 0.0, until_s: float = ACT_S) -> None:
-        """Send an act that begins at a capture time."""
-        for skeletons, pose in Carrying(start_ns=start_ns).messages(until_s):
-            if (pose.time_ns - start_ns) * 1e-9 < first_s:
-                continue
+    def _take_health(self, sample: Received) -> None:
+        self._health = HEALTH.received(sample.key, sample.payload, sample.encoding)
+
+    @property
+    def resident_bytes(self) -> int:
+        """Memory of the daemon."""
+        assert self._health is not None
+        return self._health.resident_bytes
+
+    def received(self) -> tuple[int, int]:
+        """Numbers of messages that this daemon took, and of those that it could not use."""
+        if self._health is None:
+            return 0, 0
+        found = [
+            topic
+            for key, topic in self._health.topics.items()
+            if "/skeletons/" in key or "/pose/" in key
+        ]
+        unused = sum(one.dropped + one.refused + one.malformed for one in found)
+        return sum(one.received for one in found), unused
+
+    def begin(self) -> None:
+        """Begin with a daemon that has just started."""
+        self._sent, self._health = 0, None
+        publishers = (self._people, *self._poses.values())
+        eventually("a daemon that listens", lambda: all(one.wanted() for one in publishers))
+        time.sleep(0.2)  # so that what is sent first has a way
+        self._infos.put(camera_info())
+
+    def look(self, act: Act, time_ns: int) -> None:
+        """Show the empty room's depth, if the daemon wants to look."""
+        if self._pixels.wanted():
+            self._pixels.put(floor_frame(act, next(self._looks), time_ns))
+
+    def send(self, frames: Sequence[Frame]) -> None:
+        """Send frames."""
+        for skeletons, pose in frames:
             self._people.put(skeletons)
-            self._poses.put(pose)
-            self._sent += 1
-            if self._sent % AHEAD == 0:
-                self.wait()
+            self._poses[pose.object].put(pose)
+            self._sent += 2
+            time.sleep(FRAME_S)
 
     def wait(self) -> None:
         """Wait until the daemon has taken all that was sent."""
-        key = POSE.key(Site(), "cup")
-        eventually(
-            "the daemon to follow",
-            lambda: self._rig.counted("home", key, "received") >= self._sent,
-        )
+        eventually("the daemon to follow", lambda: self.received()[0] >= self._sent)
+        assert self.received() == (self._sent, 0)
 
 
-@contextmanager
-def feeding(rig: RunningRig) -> Iterator[Feed]:
-    """A camera and a tracker of the rig."""
-    people = Topic(SKELETONS.stream, Skeletons, RELIABLE)
-    poses = Topic(POSE.stream, ObjectPose, RELIABLE)
-    with open_session(ZenohSettings(meeting=rig.meeting)) as session:
-
-        def ignore(_key: str) -> None: ...
-
-        yield Feed(
-            rig,
-            Publisher(session, people, people.key(Site(), "front"), ignore),
-            Publisher(session, poses, poses.key(Site(), "cup"), ignore),
-        )
+def _ignore(_key: str) -> None: ...
 
 
 def start(rig: RunningRig) -> Process:
-    """A daemon that is up and listens."""
+    """A daemon that is up."""
     daemon = rig.inhand("outcomes", "--config", rig.config)
     daemon.said("is up")
-    eventually("its health", lambda: "home" in rig.healths())
-    time.sleep(1.0)  # so that the publishers have heard of its subscriptions
     return daemon
 
 
-def starts(acts: int) -> list[datetime]:
-    """When each act begins, over 49 hours of two days."""
-    step = timedelta(hours=49) / acts
-    begin = MIDNIGHT.astimezone(ZoneInfo("UTC"))
-    return [
-        (begin + number * step + timedelta(minutes=1)).astimezone(ZONE) for number in range(acts)
-    ]
+def written_until_ns(file: Path) -> int:
+    """Until when the daemon's memory is written."""
+    watcher = Watcher({}, "")
+    with closing(open_database(file)) as database:
+        Memory(watcher).recall(read_journal(database))
+    return max((one.gathering.last_ns for one in watcher.followed.values()), default=0)
+
+
+@contextmanager
+def alone(models: Sequence[Path], act: Act, file: Path) -> Iterator[tuple[Watcher, Saver]]:
+    """A watcher without a daemon, that knows the floor, and where what it says is kept."""
+    things, problems = load_things(models, {})
+    assert not problems
+    watcher = Watcher(things, "inhand/rig")
+    floors = FloorWatch(lambda *_: None)
+    floors.hear_info("front", camera_info())
+    floors.hear_frame("front", floor_frame(act, 0, S))
+    assert floors.room is not None
+    watcher.room = floors.room
+    with closing(open_database(file)) as database:
+        yield watcher, Saver(database, Keeping(ZONE))
 
 
 def main() -> int:
-    """Run the days; 1 where an act was counted otherwise than once on its day."""
+    """Run the day; 1 where the daemon kept anything but what a watcher alone says."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--acts", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=7101, help="of the first round's people")
+    parser.add_argument("--rounds", type=int, default=len(ROUNDS), help="of the day's first hours")
     chosen = parser.parse_args()
-    wanted: Counter[str] = Counter()
-    began = time.monotonic()
+    day = list(the_day([chosen.seed + number for number in range(chosen.rounds)]))
     with tempfile.TemporaryDirectory(prefix="inhand_day_") as name:
         rig = RunningRig(Path(name))
-        model = write_model(rig.folder / "cup.model")
-        rig.configure(f'[outcomes.home]\nmodels = ["{model}"]\ntime_zone = "Europe/Zurich"\n')
-        daemon = start(rig)
-        memory = []
-        with feeding(rig) as feed:
-            for number, at in enumerate(starts(chosen.acts)):
-                start_ns = round(at.timestamp() * 1e9)
-                if number == chosen.acts // 2:
-                    feed.act(start_ns, until_s=KILLED_S)
-                    feed.wait()
-                    time.sleep(2.3)  # its memory is written, and its track not ended yet
-                    daemon.stop(signal.SIGKILL)
-                    daemon = start(rig)
-                    feed.began()
-                    feed.act(start_ns, first_s=KILLED_S - REPEATED_S)
-                elif number == chosen.acts // 3:
-                    feed.act(start_ns)
-                    feed.wait()
-                    back = start_ns - 1_800 * 10**9
-                    feed.act(back)  # the clock was set back: another act, at an earlier time
-                    wanted[str(datetime.fromtimestamp(back * 1e-9, ZONE).date())] += 1
-                else:
-                    feed.act(start_ns)
-                wanted[str(at.date())] += 1
-                if number % max(chosen.acts // 10, 1) == 0:
-                    feed.wait()
-                    memory.append(rig.health("home")["resident_bytes"])
-            feed.wait()
-            time.sleep(6.0)
-        daemon.stop()
-        database = open_database(rig.folder / "outcomes.db")
-        found: dict[str, Counter[str]] = {"taken_up": Counter(), "put_down": Counter()}
-        for total in totals(database, MIDNIGHT.date(), MIDNIGHT.date() + timedelta(days=3)):
-            if total.kind in found:
-                found[total.kind][str(total.day)] += total.times
-        database.close()
-        size = sum(path.stat().st_size for path in rig.folder.glob("outcomes.db*"))
+        models = write_models([one.act for one in day[: len(day) // chosen.rounds]], rig.folder)
+        names = ", ".join(f'"{path}"' for path in models)
+        rig.configure(f'[outcomes.home]\nmodels = [{names}]\ntime_zone = "Europe/Zurich"\n')
+        with alone(models, day[0].act, rig.folder / "alone.db") as (watcher, saver):
+            for one in day:
+                saver.save(watch(watcher, one))
+            wanted = kept_of(saver.database)
+        began = time.monotonic()
+        memory = play(rig, day)
+        seconds = time.monotonic() - began
+        with closing(open_database(rig.folder / "outcomes.db")) as database:
+            kept = kept_of(database)
+        size = (rig.folder / "outcomes.db").stat().st_size
         rig.close()
-    print(f"wanted {dict(wanted)}")
-    for kind, days in found.items():
-        print(f"{kind} {dict(days)}")
+    show(day, wanted, kept)
+    frames = sum(len(one.frames) for one in day)
     print(
-        f"{time.monotonic() - began:.0f} s; database {size / 1e6:.2f} MB; memory "
-        + ", ".join(f"{one / 1e6:.0f}" for one in memory)
-        + " MB"
+        f"{len(day)} acts of {frames} frames in {seconds:.0f} s; database {size / 1e6:.2f} MB; "
+        f"memory after each round {', '.join(f'{one / 1e6:.0f}' for one in memory)} MB"
     )
-    return int(any(days != wanted for days in found.values()))
+    return int(not agree(wanted, kept))
+
+
+def watch(watcher: Watcher, one: Played) -> list:
+    """What a watcher says of an act, with what follows in silence."""
+    outcomes = []
+    for skeletons, pose in one.frames:
+        outcomes += watcher.hear_skeletons("front", skeletons)
+        outcomes += watcher.hear_pose(pose)
+    return outcomes + watcher.end_all()
+
+
+def play(rig: RunningRig, day: Sequence[Played]) -> list[int]:
+    """Have the daemon live through the day; its memory after each round, bytes."""
+    daemon, memory = start(rig), []
+    with Feed(rig, {one.act.name for one in day}) as feed:
+        feed.begin()
+        for look in range(8):  # until it has found the floor
+            feed.look(day[0].act, day[0].start_ns - (60 - 2 * look) * S)
+            time.sleep(2.2)
+        for one, after in itertools.zip_longest(day, day[1:]):
+            feed.look(one.act, one.start_ns)
+            killed_s = KILLED.get((one.round, one.number))
+            if killed_s is None:
+                feed.send(one.frames)
+            else:
+                kill_ns = one.start_ns + round(killed_s * S)
+                feed.wait()
+                feed.send([frame for frame in one.frames if frame[1].time_ns < kill_ns])
+                eventually(
+                    "its memory to be written",
+                    lambda until_ns=kill_ns - S // 10: (
+                        written_until_ns(rig.folder / "outcomes.db") >= until_ns
+                    ),
+                )
+                daemon.stop(signal.SIGKILL)
+                daemon = start(rig)
+                feed.begin()
+                again_ns = kill_ns - round(REPEATED_S * S)
+                feed.send([frame for frame in one.frames if frame[1].time_ns >= again_ns])
+            if after is None or after.round != one.round:
+                feed.wait()
+                time.sleep(6.0)  # what is under way ends, and is saved
+                memory.append(feed.resident_bytes)
+            else:
+                feed.wait()
+    daemon.stop()
+    return memory
+
+
+def kept_of(database: Database) -> list[DayTotal]:
+    """The totals of what counts."""
+    return [one for one in totals(database, *DAYS) if one.counted]
+
+
+def times(found: Sequence[DayTotal]) -> Kinds:
+    """How often each kind was, by day."""
+    counts: Kinds = Counter()
+    for one in found:
+        counts[one.day.isoformat(), one.kind] += one.times
+    return counts
+
+
+def true_times(day: Sequence[Played]) -> Kinds:
+    """How often each kind truly was, by the day of its end."""
+    counts: Kinds = Counter()
+    for one in day:
+        simulation = one.act.simulation
+        ends = [(true.kind, true.end_s) for true in TRUTHS[simulation.interaction](simulation)]
+        resting = np.asarray(simulation.contact == ContactKind.RESTING).astype(int)
+        for frame in np.flatnonzero(np.diff(resting)):
+            kind = "put_down" if resting[frame + 1] else "taken_up"
+            ends.append((kind, (frame + 1) / simulation.frame_rate))
+        for kind, end_s in ends:
+            local = datetime.fromtimestamp(one.start_ns / S + end_s, ZONE)
+            counts[local.date().isoformat(), kind] += 1
+    return counts
+
+
+def show(day: Sequence[Played], wanted: Sequence[DayTotal], kept: Sequence[DayTotal]) -> None:
+    """Print a table by kind."""
+    table = Table(title="counted by kind, on each of the two days")
+    for column in ("kind", "truth", "a watcher alone", "the daemon", "amounts of the daemon"):
+        table.add_column(column)
+    by_source = [true_times(day), times(wanted), times(kept)]
+    amounts: dict[str, dict[str, float]] = defaultdict(lambda: defaultdict(float))
+    for total in kept:
+        for name, amount in total.amounts.items():
+            amounts[total.kind][name] += amount.sum
+    for kind in sorted({kind for counts in by_source for _, kind in counts}):
+        cells = [
+            " + ".join(str(counts[each.isoformat(), kind]) for each in DAYS) for counts in by_source
+        ]
+        told = ", ".join(f"{name} {value:.4g}" for name, value in sorted(amounts[kind].items()))
+        table.add_row(kind, *cells, told)
+    Console(width=160).print(table)
+
+
+def agree(wanted: Sequence[DayTotal], kept: Sequence[DayTotal]) -> bool:
+    """Whether two stores have the same totals, to a hundredth; prints what differs."""
+    found = [
+        {(one.day, one.object, one.kind, one.person): one for one in of} for of in (wanted, kept)
+    ]
+    differ = [key for key in found[0].keys() | found[1].keys() if not _same(key, *found)]
+    for key in differ:
+        print("differs:", *key, *(of.get(key) for of in found), sep="\n  ")
+    return not differ
+
+
+def _same(key: tuple, first: Mapping, second: Mapping) -> bool:
+    one, other = first.get(key), second.get(key)
+    if one is None or other is None or one.times != other.times:
+        return False
+    sums = [{name: amount.sum for name, amount in of.amounts.items()} for of in (one, other)]
+    return sums[0].keys() == sums[1].keys() and all(
+        np.isclose(value, sums[1][name], rtol=0.01, atol=0.01) for name, value in sums[0].items()
+    )
 
 
 if __name__ == "__main__":

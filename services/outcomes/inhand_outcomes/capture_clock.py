@@ -2,6 +2,8 @@
 
 import time
 
+from inhand_outcomes.days import NS_PER_S
+
 
 class CaptureClock:
     """Goes on from the last capture; before the first it is the host's clock.
@@ -13,10 +15,16 @@ class CaptureClock:
     def __init__(self) -> None:
         self._ahead_ns = time.time_ns() - time.monotonic_ns()
 
-    def hear(self, captured_ns: int) -> None:
-        """Take the time of what was captured last."""
-        self._ahead_ns = captured_ns - time.monotonic_ns()
+    def hear(self, captured_ns: int, arrived_s: float | None = None) -> None:
+        """Take the time of what was captured last, and came just now, or when the clock that nobody
+        sets was at ``arrived_s``."""
+        self._ahead_ns = captured_ns - _monotonic_ns(arrived_s)
 
-    def now_ns(self) -> int:
-        """The time now, nanoseconds since the epoch."""
-        return time.monotonic_ns() + self._ahead_ns
+    def now_ns(self, at_s: float | None = None) -> int:
+        """The time now, or when the clock that nobody sets was at ``at_s``; nanoseconds since the
+        epoch."""
+        return _monotonic_ns(at_s) + self._ahead_ns
+
+
+def _monotonic_ns(at_s: float | None) -> int:
+    return time.monotonic_ns() if at_s is None else round(at_s * NS_PER_S)

@@ -166,6 +166,9 @@ class OutcomesLoop:
 
     def __post_init__(self) -> None:
         self.clock = CaptureClock()
+        # What was not heard of for long is by the poses alone, since skeletons may be far ahead of
+        # them where a recording is played fast, and by when they came: others may still wait here.
+        self.pose_clock = CaptureClock()
         self._floors = FloorWatch(self.watcher.floors.see)
         self._frames: Arrivals | None = None
         self._memory = Memory(self.watcher)
@@ -190,7 +193,8 @@ class OutcomesLoop:
                 settled += self._hear(sample)
             if time.monotonic() >= next_save:
                 self._look_for_floor()
-                settled += self.watcher.end_quiet(self.clock.now_ns())
+                came_s = None if sample is None else sample.arrived
+                settled += self.watcher.end_quiet(self.pose_clock.now_ns(came_s))
                 self._save(settled)
                 settled = []
                 next_save = time.monotonic() + SAVE_PERIOD_S
@@ -216,6 +220,7 @@ class OutcomesLoop:
             if pose is None:
                 return []
             self.clock.hear(pose.time_ns)
+            self.pose_clock.hear(pose.time_ns, sample.arrived)
             if self.pausing.paused or not self._tells_use(pose):
                 return []
             return self.watcher.hear_pose(pose)
@@ -287,7 +292,9 @@ class OutcomesLoop:
             self._memory.recall(read_journal(self.waiting.saver.database))
             if remembered := self.watcher.followed.values():
                 # It waits for the next captures as if its last had just come.
-                self.clock.hear(max(one.gathering.last_ns for one in remembered))
+                last_ns = max(one.gathering.last_ns for one in remembered)
+                self.clock.hear(last_ns)
+                self.pose_clock.hear(last_ns)
             self.pausing.keep(self.waiting.saver.database)
             if self.home is not None:
                 self.home.recall(self.waiting.saver.database)
