@@ -70,6 +70,14 @@ def test_what_the_hand_stays_at_or_takes_along_is_not_put_down() -> None:
     assert [one.kind for one in handling(carried, THING)] == [TAKEN_UP]
 
 
+def test_what_seemed_to_be_in_a_hand_for_a_moment_is_not_put_down_there() -> None:
+    track = put_down(then=ELSEWHERE)
+    track.poses[:, :3] = TABLE
+    moment = (track.times > 6.0) & (track.times < LEFT_S)
+    track.poses[moment, :3] = ELSEWHERE
+    assert [one for one in handling(track, THING) if one.probability > 0.1] == []
+
+
 def test_what_is_not_seen_any_more_says_nothing() -> None:
     track = put_down(then=FAR)
     unseen = replace(track, seen=track.times < 6.5)

@@ -50,18 +50,20 @@ def left_behind(
     track: Track,
     thing: Thing,
     worn: Flags,
+    trusted: Flags,
     parameters: LeftBehindParameters = DEFAULT_LEFT_BEHIND,
 ) -> tuple[Track, Flags]:
     """The track with a thing that was let go of where it rested in the hand before, and the frames
     (T,) in which it lies there.
 
-    It lies until a hand comes to it, or to where it is tracked, or until it is ``worn`` (T,) no
-    farther away. Where it is seen at rest nearby, both count, by their covariances.
+    Only ``trusted`` (T,) poses rest in a hand. It lies until a hand comes to it, or to where it is
+    tracked, or until it is ``worn`` (T,) no farther away. Where it is seen at rest nearby, both
+    count, by their covariances.
     """
     hands = hand_distances(track, thing)
     with np.errstate(invalid="ignore"):
         held = track.seen & (hands < parameters.near_m).any(axis=1)
-    rests = held & ~worn & _still(track, parameters.rest_s, parameters)
+    rests = held & trusted & ~worn & _still(track, parameters.rest_s, parameters)
     poses, covariances = track.poses.copy(), track.covariances.copy()
     lies = np.zeros(len(track), bool)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], rests.astype(int), [0]])))
