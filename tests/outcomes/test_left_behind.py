@@ -61,6 +61,16 @@ def test_what_leaps_as_the_hand_leaves_lies_where_it_rested(leapt: NDArray[np.fl
     assert put.amounts["place_x_m"].deviation > 0.015
 
 
+def test_the_last_place_where_it_rested_counts() -> None:
+    track = put_down(then=ELSEWHERE)
+    track.poses[track.times >= LEFT_S, :3] = ELSEWHERE
+    before = (track.times > 5.2) & (track.times < 5.95)
+    track.poses[before, :3] = track.joints[before, Joint.HAND_RIGHT] = ELSEWHERE + 0.09
+    put = handling(track, THING)[-1]
+    place = [put.amounts[f"place_{axis}_m"].value for axis in "xyz"]
+    np.testing.assert_allclose(place, ELSEWHERE, atol=0.01)
+
+
 def test_what_the_hand_stays_at_or_takes_along_is_not_put_down() -> None:
     held = put_down(then=FAR, hand_after=ELSEWHERE)
     assert [one.kind for one in handling(held, THING)] == [TAKEN_UP]
@@ -68,6 +78,14 @@ def test_what_the_hand_stays_at_or_takes_along_is_not_put_down() -> None:
     later = carried.times >= 6.5
     carried.poses[later, :3] = carried.joint(Joint.HAND_RIGHT)[later]
     assert [one.kind for one in handling(carried, THING)] == [TAKEN_UP]
+
+
+def test_what_seemed_to_be_in_a_hand_for_a_moment_is_not_put_down_there() -> None:
+    track = put_down(then=ELSEWHERE)
+    track.poses[:, :3] = TABLE
+    moment = (track.times > 6.0) & (track.times < LEFT_S)
+    track.poses[moment, :3] = ELSEWHERE
+    assert [one for one in handling(track, THING) if one.probability > 0.1] == []
 
 
 def test_what_is_not_seen_any_more_says_nothing() -> None:

@@ -102,8 +102,9 @@ def handling(
     looked = track[steps]
     if not looked.seen.any():
         return []
-    looked, lies = left_behind(looked, thing, _worn(looked, parameters))
-    looked = replace(looked, seen=lies | without_false_starts(track).seen[steps])
+    trusted = without_false_starts(track).seen[steps]
+    looked, lies = left_behind(looked, thing, _worn(looked, parameters), trusted)
+    looked = replace(looked, seen=lies | trusted)
     states = np.where(lies, LYING, _states(looked, thing, parameters))
     stretches = _used(looked, _stretches(states), parameters)
     achievements = []

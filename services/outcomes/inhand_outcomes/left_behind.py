@@ -50,28 +50,32 @@ def left_behind(
     track: Track,
     thing: Thing,
     worn: Flags,
+    trusted: Flags,
     parameters: LeftBehindParameters = DEFAULT_LEFT_BEHIND,
 ) -> tuple[Track, Flags]:
     """The track with a thing that was let go of where it rested in the hand before, and the frames
     (T,) in which it lies there.
 
-    It lies until a hand comes to it, or to where it is tracked, or until it is ``worn`` (T,) no
-    farther away. Where it is seen at rest nearby, both count, by their covariances.
+    Only ``trusted`` (T,) poses rest in a hand. It lies until a hand comes to it, or to where it is
+    tracked, or until it is ``worn`` (T,) no farther away. Where it is seen at rest nearby, both
+    count, by their covariances.
     """
     hands = hand_distances(track, thing)
     with np.errstate(invalid="ignore"):
         held = track.seen & (hands < parameters.near_m).any(axis=1)
-    rests = held & ~worn & _still(track, parameters.rest_s, parameters)
+    rests = held & trusted & ~worn & _still(track, parameters.rest_s, parameters)
     poses, covariances = track.poses.copy(), track.covariances.copy()
     lies = np.zeros(len(track), bool)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], rests.astype(int), [0]])))
-    for first, beyond in edges.reshape(-1, 2):
-        last = int(beyond) - 1
-        there, covariance = _rested(track, int(first), last, parameters)
+    runs: list[list[int]] = edges.reshape(-1, 2).tolist()
+    for number, (first, beyond) in enumerate(runs):
+        until = runs[number + 1][0] if number + 1 < len(runs) else len(track)
+        last = beyond - 1
+        there, covariance = _rested(track, first, last, parameters)
         near = np.linalg.norm(track.positions - there[:3], axis=1) < parameters.leap_m
         # A pose may follow the hand that leaves for a moment; what was taken along goes on.
         ends = np.flatnonzero(np.where(near, worn, held)[beyond:])
-        since = slice(last, int(beyond + ends[0]) if len(ends) else len(track))
+        since = slice(last, min(beyond + int(ends[0]), until) if len(ends) else until)
         if held[since].all():
             continue
         for span in _let_go(track, thing, there, held, since, parameters):

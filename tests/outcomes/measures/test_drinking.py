@@ -9,6 +9,7 @@ from inhand_outcomes.arrays import Array
 from inhand_outcomes.measures.drinking import drinking, sip_volumes
 from inhand_outcomes.measures.vessels import inside_of
 from inhand_outcomes.track import Track
+from inhand_schemas.joints import Joint
 from standing_person import MOUTH, elsewhere, frame_times, going, rotations_of, track_of, turns
 
 CHEST = np.array([0.1, 0.35, 1.2])
@@ -41,6 +42,13 @@ def test_two_sips_are_counted_and_the_second_is_what_the_tilts_show() -> None:
     wedge = np.pi * RADIUS**3 * np.diff(np.tan(np.radians([40.0, 51.3]))).item() * 1e6
     assert found[1].amounts["volume_ml"].value == pytest.approx(wedge, rel=0.2)
     assert found[0].amounts["volume_ml"].value == 20.0
+
+
+def test_a_head_that_is_seen_too_near_behind_the_mug_drinks_all_the_same() -> None:
+    track = sips(frame_times(6.0), [1.0], [45.0])
+    track.joints[:, Joint.HEAD, 1] += 0.06
+    (found,) = drinking(track, MUG)
+    assert found.probability > 0.8
 
 
 def test_raising_the_tilt_twice_at_the_mouth_is_two_sips() -> None:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_schemas.joints import Joint
 
 from inhand_outcomes.achievement import Achievement, Amount
 from inhand_outcomes.arrays import Array
@@ -39,7 +40,7 @@ class DrinkingParameters:
     raise_again: float = np.radians(17.0)
     """How far, radians, a tilt must fall and rise again for another sip at the mouth."""
     towards: float = np.radians(75.0)
-    """Largest angle, radians, between where the mug is tilted and where the mouth is."""
+    """Largest angle, radians, between where the mug is tilted and where who drinks is."""
     least_s: float = 0.35
     """Seconds that a sip takes at least; a swallow takes one."""
     smoothing_s: float = 0.12
@@ -107,12 +108,17 @@ def sip_volumes(found: Sequence[Achievement], earlier: Sequence[Achievement]) ->
 
 def _lip(track: Track, rim: Array, radius: float, mouth: Array) -> tuple[Array, Array]:
     """Distance (T,) from the mouth to the nearest point of the rim, metres, and the angle (T,)
-    about the vertical from the direction of the tilt to the mouth, radians."""
+    about the vertical from the direction of the tilt to who drinks, radians.
+
+    They are where the neck is: a mouth that a mug hides is off by as much as the two are apart.
+    """
     middle = track.points(rim)
     axis = track.directions(np.array([0.0, 0.0, 1.0]))
     way = mouth - middle
     across = way - np.sum(way * axis, axis=1, keepdims=True) * axis
     length = np.linalg.norm(across, axis=1, keepdims=True)
     nearest = middle + across * (radius / np.maximum(length, 1e-9))
+    neck = track.joint(Joint.SHOULDER_CENTER)
+    way = np.where(np.isfinite(neck), neck, mouth) - middle
     leaning = np.arctan2(axis[:, 1], axis[:, 0]) - np.arctan2(way[:, 1], way[:, 0])
     return np.linalg.norm(mouth - nearest, axis=1), np.abs(np.angle(np.exp(1j * leaning)))
