@@ -22,6 +22,8 @@ class WanderingParameters:
 
     half_width: float = 1.2
     """Half the width of the square in which they walk, metres."""
+    pace: float = 0.75
+    """Length of a step as a share of what it is on a long way."""
     turn_rate: float = 1.8
     """Speed of a turn at the most, radians a second."""
     turn_s: float = 0.4
@@ -82,7 +84,10 @@ def wander(
     turns = drift(times, random, parameters.glance, 4.0)
     glances = np.stack([still[:, 0], still[:, 0], turns], axis=1)
     right_foot, left_foot = (_foot(way, now.steps, side) for side in (1.0, -1.0))
-    stance = Stance(right_foot, left_foot, now.heading, still, still, glances)
+    # The hips go on evenly, whichever foot is in the air.
+    ahead = np.concatenate([now.place, still[:, :1]], axis=1)
+    shift = (ahead - 0.5 * (right_foot + left_foot)) * [1.0, 1.0, 0.0]
+    stance = Stance(right_foot, left_foot, now.heading, shift, still, glances)
     posture = stand(person, times, random, stance)
     trunk = place_trunk(person, posture)
     swing = DEFAULT_WALK.arm_swing * person.manner.amplitude * now.speed
@@ -101,7 +106,7 @@ def _way(
 ) -> _Way:
     """From place to place, with turns towards the next and stops at some."""
     cadence = DEFAULT_WALK.cadence * person.manner.tempo
-    fastest = cadence * DEFAULT_WALK.stride * person.height / 1.75 * person.manner.amplitude
+    stride = p.pace * DEFAULT_WALK.stride * person.height / 1.75 * person.manner.amplitude
     count = int(seconds / p.step_s) + 200
     place, heading, steps = np.zeros((count, 2)), np.zeros(count), np.zeros(count)
     speeds = np.zeros(count)
@@ -121,7 +126,7 @@ def _way(
         speed += (wanted - speed) * p.step_s / p.speed_s
         rate += (turning - rate) * p.step_s / (0.5 * p.turn_s)
         turn += rate * p.step_s
-        here = here + fastest * speed * p.step_s * np.array([-np.sin(turn), np.cos(turn)])
+        here = here + cadence * stride * speed * p.step_s * np.array([-np.sin(turn), np.cos(turn)])
         taken += cadence * p.step_s * max(speed, p.turning_steps * abs(rate) / p.turn_rate)
         place[index], heading[index], steps[index], speeds[index] = here, turn, taken, speed
     return _Way(np.arange(count, dtype=float) * p.step_s, place, heading, steps, speeds)

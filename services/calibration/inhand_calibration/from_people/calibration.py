@@ -7,8 +7,10 @@ calibration.cameras["left"].clock_offset_ns       # to add to the left camera's 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 
 import numpy as np
+from inhand_runtime.rig_calibration import CameraCalibration, RigCalibration
 from inhand_schemas.joints import Joint
 from inhand_schemas.messages import Pose
 
@@ -23,7 +25,7 @@ from inhand_calibration.from_people.parameters import (
     RefinementParameters,
 )
 from inhand_calibration.from_people.refinement import EstimatePrior, Refined, refine
-from inhand_calibration.from_people.rig_frame import floor_frame
+from inhand_calibration.from_people.rig_frame import floor_frame, frame_in_words
 from inhand_calibration.from_people.skeletons import CameraSkeletons
 from inhand_calibration.from_people.standing_floor import StandingFloor, find_standing_floor
 from inhand_calibration.from_people.tracks import Track, find_tracks
@@ -73,15 +75,35 @@ class PeopleCalibration:
     not seen to rest, and ``warnings``: sentences on what does not fit.
 
     With a floor the rig's frame has z up and its origin on the floor below the reference camera,
-    x the way that camera looks; without one it is the reference camera's. ``made_at_ns`` is the
-    time by the reference's clock for which the clock offsets hold.
+    or below where the user said, x the way that camera looks; without one its axes are the
+    reference camera's. ``frame`` says so in words. ``made_at_ns`` is the time by the reference's
+    clock for which the clock offsets hold.
     """
 
     reference: str
     cameras: Mapping[str, PeopleCalibratedCamera]
     floor: StandingFloor | None
     warnings: tuple[str, ...]
+    frame: str
     made_at_ns: int
+
+    def rig_calibration(self, made: datetime) -> RigCalibration:
+        """Return what is written to a rig's file, made at that time."""
+        cameras = {name: _for_file(camera, made) for name, camera in self.cameras.items()}
+        return RigCalibration(cameras, self.frame)
+
+
+def _for_file(camera: PeopleCalibratedCamera, made: datetime) -> CameraCalibration:
+    deviations = [float(value) for value in np.sqrt(np.diag(camera.covariance))]
+    return CameraCalibration(
+        camera.rig_from_camera,
+        (deviations[0], deviations[1], deviations[2]),
+        (deviations[3], deviations[4], deviations[5]),
+        "people",
+        made,
+        camera.clock_offset_ns,
+        camera.clock_deviation_ns,
+    )
 
 
 def calibrate_from_people(
@@ -117,7 +139,8 @@ def calibrate_from_people(
     }
     middle = ordered[0].times_ns[0] + round(1e9 * refined.estimates[0].middle)
     warnings = _warnings(calibrated, floor, parameters.acceptance)
-    return PeopleCalibration(reference, calibrated, floor, warnings, int(middle))
+    frame = frame_in_words(reference, floor, origin)
+    return PeopleCalibration(reference, calibrated, floor, warnings, frame, int(middle))
 
 
 def _ordered(cameras: Sequence[CameraSkeletons], reference: str) -> list[CameraSkeletons]:

@@ -66,9 +66,9 @@ def _alike(
     one: CameraEstimate, other: CameraEstimate, parameters: PeopleCalibrationParameters
 ) -> bool:
     """Whether two hypotheses are the same but for what refinement changes."""
-    turned = np.degrees(one.angle_to(other))
     apart = abs(one.offset - other.offset)
-    return bool(apart < parameters.search.apart_s and turned < parameters.search.apart_deg)
+    turned = one.angle_to(other)
+    return apart < parameters.search.apart_s and turned < parameters.search.apart_rad
 
 
 def _cost(

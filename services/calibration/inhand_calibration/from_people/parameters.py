@@ -109,7 +109,7 @@ class SearchParameters:
     """How hypotheses are refined."""
     apart_s: float = 0.25
     """Difference of clock offset from which two hypotheses are not the same one."""
-    apart_deg: float = 15.0
+    apart_rad: float = float(np.deg2rad(15.0))
     """Difference of rotation from which they are not the same one."""
     block_s: float = 3.0
     """Length of the blocks by which it is judged whether one is better than the other."""
@@ -175,6 +175,11 @@ class DisagreementParameters:
     """Change of a clock offset from which on a clock has changed."""
     surely: float = 3.0
     """Standard deviations that a change must have."""
+    explained: float = 0.3
+    """Share of the moments at which the calibration must still match people, at least, or all is
+    sought anew."""
+    explained_m: float = 0.1
+    """Distance of figures, at most, at which it does."""
     least_s: float = 3.0
     """Time for which two cameras must see the same person for anything to be said."""
 

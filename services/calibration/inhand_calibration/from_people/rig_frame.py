@@ -28,3 +28,11 @@ def floor_frame(floor: StandingFloor | None, origin: Array | None = None) -> Cam
     rotation = np.stack([x, np.cross(floor.up, x), floor.up])
     below = point - (point @ floor.up - floor.height) * floor.up
     return CameraEstimate(rotation, -rotation @ below)
+
+
+def frame_in_words(reference: str, floor: StandingFloor | None, origin: Array | None) -> str:
+    """Return where the rig's frame has its origin and its axes, in words."""
+    place = reference if origin is None else "the point that was given"
+    if floor is None:
+        return f"axes as {reference}'s (x right, y down, z forward), origin in {place}"
+    return f"z up, x the way {reference} looks, origin on the floor below {place}"
