@@ -250,7 +250,7 @@ def _shared(camera: int, refined: Refined) -> tuple[Array, int, Array]:
             for one, side in zip(pair, (first, second), strict=True)
         )
         distances.append(np.linalg.norm(own - other, axis=2)[both])
-        ratio = _sizes(own, both) / _sizes(other, both)
+        ratio = _sizes(first.positions, both) / _sizes(second.positions, both)
         ratio = ratio[np.isfinite(ratio)]
         scales.append(ratio if camera == pair[0] else 1.0 / ratio)
         moments |= set(agreement.moments.tolist())
