@@ -133,8 +133,11 @@ class AcceptanceParameters:
     """Time for which a camera must see people."""
     least_common_s: float = 8.0
     """Time for which two cameras must see the same person."""
-    least_share: float = 0.3
+    least_share: float = 0.2
     """Share of the time in which both see people for which they must agree."""
+    repeating_share: float = 0.7
+    """Share of it from which cameras that agree at several clock offsets see the same person, who
+    repeats the same movement; strangers agree for half of the time at some offset."""
     most_clock_s: float = 0.02
     """Deviation of a clock offset, at most."""
     most_translation_m: float = 0.1
