@@ -33,6 +33,37 @@ class CameraPlacing:
 
 
 @dataclass(frozen=True)
+class RigParameters:
+    """How the cameras of a rig differ that nobody triggers together."""
+
+    clock_offset_s: float = 0.03
+    """Time by which a clock is off from the first camera's, seconds, at the most: what hosts on
+    one network whose clocks are set by it are apart."""
+    clock_drift_ppm: float = 30.0
+    """Microseconds by which a clock is off more every second, at the most: a quartz's tolerance."""
+    dropped_share: Range = (0.0, 0.02)
+    """Share of a camera's frames that are lost."""
+    tries: int = 40
+    """Number of places, usual and other ones each, of which a camera takes the first that is before
+    the walls and from where no furniture hides the person."""
+
+
+@dataclass(frozen=True)
+class RigCamera:
+    """A camera of a rig: its name, and where it stands."""
+
+    name: str
+    around: Range
+    """Angle from the first camera about the person, to the person's left, radians."""
+    around_if_hidden: Range
+    """That angle where furniture hides the person from everywhere there."""
+    height: Range
+    """Height above the floor, metres."""
+    distance: Range = (2.4, 3.4)
+    """Distance from the person, metres; more where the person would not fit."""
+
+
+@dataclass(frozen=True)
 class WalkParameters:
     """How people walk."""
 
@@ -86,6 +117,22 @@ USUAL_VIEWS = "before"
 """Views of a dataset that names none."""
 IDLE_CAMERA_PLACING = CameraPlacing(distance=(2.9, 3.6), aside=0.5)
 """Cameras before people who use nothing; they look at the world's middle."""
+
+
+def _degrees(least: float, largest: float) -> Range:
+    return float(np.radians(least)), float(np.radians(largest))
+
+
+RIG_CAMERAS = (
+    RigCamera("front", (0.0, 0.0), (0.0, 0.0), CameraPlacing().height),
+    RigCamera("left", _degrees(60.0, 120.0), _degrees(25.0, 150.0), (0.9, 2.0)),
+    RigCamera("right", _degrees(-120.0, -60.0), _degrees(-150.0, -25.0), (0.9, 2.0)),
+    RigCamera("high", _degrees(-50.0, 50.0), _degrees(-120.0, 120.0), (2.1, 2.5)),
+)
+"""Cameras of a rig in the order in which it has them; the first stands as one does that is alone,
+whatever is said of it here."""
+USUAL_RIG = RigParameters()
+"""How the cameras of every simulated rig differ."""
 DEFAULT_WALK = WalkParameters()
 """How all walk who walk."""
 DEFAULT_IDLE_HANDS = IdleHandParameters()
