@@ -14,7 +14,7 @@ first. The rig's time is the first camera's, which is what ``simulate`` makes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from inhand_tracker.geometry.arrays import Array, Flags
@@ -24,7 +24,15 @@ from inhand_lab.geometry.transforms import Transform
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.world.enactment import Enactment
 from inhand_lab.world.other_moments import enactment_at
-from inhand_lab.world.parameters import RIG_CAMERAS, USUAL_RIG, RigParameters
+from inhand_lab.world.parameters import (
+    CAMERA_PLACINGS,
+    DEFAULT_ROAMING,
+    RIG_CAMERAS,
+    ROAMING_VIEWS,
+    USUAL_RIG,
+    USUAL_VIEWS,
+    RigParameters,
+)
 from inhand_lab.world.random_streams import random_stream
 from inhand_lab.world.room import RoomPlan, in_the_open, wall_place
 from inhand_lab.world.simulation import Casting, Simulation, Viewpoint, enact, film
@@ -91,16 +99,20 @@ def simulate_rig(
     cameras: int = 3,
     camera: Camera = KINECT,
     performance: int = 0,
+    *,
+    roaming: bool = False,
 ) -> RigSimulation:
     """Simulate somebody who does something before so many cameras, one to four, of one kind.
 
     The first camera's simulation is what ``simulate`` makes, but for the room's walls behind it,
     which it does not see. The rig is the same in every performance of a participant's interaction.
-    Raises ValueError for an unknown interaction, another number of cameras, or under two frames.
+    Whoever is ``roaming`` walks about and turns while using the thing; the cameras stand farther
+    away. Raises ValueError for an interaction that is unknown or not done on the way, another
+    number of cameras, or under two frames.
     """
-    return simulate_rig_cast(
-        Casting(interaction, participant, seed, performance), frames, camera, cameras
-    )
+    views = ROAMING_VIEWS if roaming else USUAL_VIEWS
+    cast = Casting(interaction, participant, seed, performance, views, roaming=roaming)
+    return simulate_rig_cast(cast, frames, camera, cameras)
 
 
 def simulate_rig_cast(cast: Casting, frames: int, camera: Camera, cameras: int) -> RigSimulation:
@@ -137,14 +149,16 @@ def place_rig(
     facing, camera_from_world = place_camera(
         person, camera.intrinsics, cast.random("camera"), enacted.furniture, cast.views
     )
-    room = RoomPlan(facing, enclosed=cameras > 1)
+    further = DEFAULT_ROAMING.further if cast.roaming else 0.0
+    room = RoomPlan(facing, further, enclosed=cameras > 1)
     wall = wall_place(cast.random("room"), room)
     viewpoints = [Viewpoint(camera_from_world, room)]
     for number, named in enumerate(RIG_CAMERAS[1:cameras], start=1):
         random = cast.random(f"camera/{number}")
+        placing = replace(CAMERA_PLACINGS[cast.views], height=named.height)
         tried = [
             place_beside(
-                person, camera.intrinsics, random, named, (facing + least, facing + largest)
+                person, camera.intrinsics, random, placing, (facing + least, facing + largest)
             )
             for least, largest in (named.around, named.around_if_hidden)
             for _ in range(USUAL_RIG.tries)

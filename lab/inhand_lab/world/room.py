@@ -93,14 +93,12 @@ def _patches(
 def _other_walls(random: np.random.Generator) -> list[Surface]:
     """The walls at the person's sides and before the person, with pictures on them."""
     pieces = []
-    long, wide = AHEAD + BEHIND, HALF_WIDTH
-    middle = 0.5 * (AHEAD - BEHIND)
-    for turn, distance, aside, half in (
-        (0.5 * np.pi, HALF_WIDTH, middle, 0.5 * long + 2.0),
-        (-0.5 * np.pi, HALF_WIDTH, -middle, 0.5 * long + 2.0),
-        (np.pi, AHEAD, 0.0, wide),
+    for turn, distance, corner in (
+        (0.5 * np.pi, HALF_WIDTH, AHEAD),
+        (-0.5 * np.pi, HALF_WIDTH, AHEAD),
+        (np.pi, AHEAD, HALF_WIDTH),
     ):
-        patches = _patches(random, (aside - half, 0.0), (aside + half, WALL_HEIGHT))
+        patches = _patches(random, (-corner, 0.0), (corner, WALL_HEIGHT))
         raised = patches.moved(Transform(np.array([0.0, -distance, 0.0]), UPRIGHT))
         around = Transform(np.zeros(3), rotation_about("z", turn))
         pieces += [part.moved(around) for part in (raised, *_pictures(random, -distance))]

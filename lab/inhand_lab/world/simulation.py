@@ -44,6 +44,7 @@ from inhand_lab.world.enactment import Enactment
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.parameters import USUAL_VIEWS
 from inhand_lab.world.random_streams import random_stream
+from inhand_lab.world.roaming import ROAMING_INTERACTIONS, roam
 from inhand_lab.world.room import RoomPlan, build_room
 from inhand_lab.world.viewpoint import place_camera
 
@@ -202,7 +203,8 @@ class Simulation:
 class Casting:
     """Who does what in which world, for which time, seen from where.
 
-    ``views`` names one of CAMERA_PLACINGS, and ``people`` who lives there.
+    ``views`` names one of CAMERA_PLACINGS, and ``people`` who lives there; who is ``roaming`` walks
+    about and turns while using the thing.
     """
 
     interaction: str
@@ -211,6 +213,7 @@ class Casting:
     performance: int = 0
     views: str = USUAL_VIEWS
     people: People = USUAL_PEOPLE
+    roaming: bool = False
 
     def person(self) -> SimulatedPerson:
         """The participant, who is the same in every interaction of a seed."""
@@ -289,15 +292,24 @@ def purpose_of_view(purpose: str, view: int) -> str:
 def enact(cast: Casting, frames: int, frame_rate: float) -> Enactment:
     """The first frames of a performance, mirrored for a left-handed person.
 
-    Raises ValueError for an unknown interaction.
+    Raises ValueError for an unknown interaction, and for one that is not done on the way, or by
+    varied people, where somebody is to walk about.
     """
     if cast.interaction not in INTERACTIONS:
         known = ", ".join(INTERACTIONS)
         raise ValueError(f"no interaction {cast.interaction!r}; there are {known}")
+    if cast.roaming and cast.interaction not in ROAMING_INTERACTIONS:
+        able = ", ".join(ROAMING_INTERACTIONS)
+        raise ValueError(f"nobody walks about in {cast.interaction!r}, but in {able}")
+    if cast.roaming and cast.people != USUAL_PEOPLE:
+        raise ValueError("only usual people walk about: some of the varied ones sit")
     person, random = cast.person(), cast.random("motion", cast.performance)
     seconds = max(USUAL_SECONDS, frames / frame_rate)
     times = np.arange(round(seconds * frame_rate)) / frame_rate
     done = INTERACTIONS[cast.interaction].perform(person, times, random)
+    if cast.roaming:
+        vertices = INTERACTIONS[cast.interaction].object_model().vertices
+        done = roam(person, done, vertices, times, cast.random("roaming", cast.performance))
     body = place_body(person, done.posture, done.right_hand, done.left_hand)
     enacted = Enactment(body, done.world_from_object, done.contact, done.furniture, done.stages)[
         :frames

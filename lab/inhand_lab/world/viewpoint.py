@@ -14,7 +14,6 @@ from inhand_lab.world.parameters import (
     USUAL_VIEWS,
     CameraPlacing,
     Range,
-    RigCamera,
 )
 
 SEEN_AT = (0.45, 0.6, 0.75, 0.9)
@@ -45,12 +44,11 @@ def place_beside(
     person: SimulatedPerson,
     intrinsics: Intrinsics,
     random: np.random.Generator,
-    named: RigCamera,
+    placing: CameraPlacing,
     directions: Range,
 ) -> Transform:
     """camera_from_world of a place for a camera of a rig, in one of these directions, which are
-    turns to the left of the person's y axis in radians."""
-    placing = CameraPlacing(height=named.height, distance=named.distance)
+    turns to the left of the person's y axis in radians; ``aside`` of the placing is not used."""
     turn = float(random.uniform(*directions))
     position = _away(person, intrinsics, random, placing, turn)
     return looking(position, _target(person, random, placing))

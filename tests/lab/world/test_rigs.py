@@ -75,7 +75,7 @@ def test_cameras_err_by_themselves_and_their_skeletons_depend_on_the_view() -> N
 
 
 def test_clocks_drops_and_places_are_seeded_and_within_their_bounds() -> None:
-    for seed in range(6):
+    for seed in range(2):
         rig, again = (simulate_rig("hammerNail", 0, seed, frames=60, cameras=4) for _ in range(2))
         assert rig.clocks == again.clocks
         assert all(map(np.array_equal, rig.dropped, again.dropped))
@@ -92,7 +92,7 @@ def test_clocks_drops_and_places_are_seeded_and_within_their_bounds() -> None:
 
 @pytest.mark.parametrize("interaction", ["pourCream", "paintWall", "hammerNail", "putOnShoe"])
 def test_no_camera_stands_behind_a_wall_or_furniture(interaction: str) -> None:
-    for seed in range(4):
+    for seed in range(2):
         rig = simulate_rig(interaction, 0, seed, frames=2, cameras=4)
         wall = wall_place(random_stream(seed, 0, interaction, "room"), rig.cameras[0].room)
         for seen in rig.cameras[1:]:
