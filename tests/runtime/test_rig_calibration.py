@@ -10,6 +10,7 @@ from inhand_runtime.rig_calibration import (
     RigCalibration,
     calibration_of,
     read_rig_calibration,
+    require_place_for_calibration,
     write_rig_calibration,
 )
 from inhand_schemas.messages import Pose
@@ -90,3 +91,12 @@ def test_a_file_that_is_not_there_and_one_that_cannot_be_written_are_said(tmp_pa
         read_rig_calibration(tmp_path / "rig.toml")
     with pytest.raises(InhandError, match="cannot write"):
         write_rig_calibration(tmp_path / "nowhere" / "rig.toml", RIG)
+
+
+def test_settings_are_not_written_over_by_a_calibration(written: Path) -> None:
+    require_place_for_calibration(written)
+    require_place_for_calibration(written.with_name("new.toml"))
+    settings = written.with_name("settings.toml")
+    settings.write_text('[capture.front]\nsource = "oak"\n')
+    with pytest.raises(SettingsError, match="is not written over, since it is no calibration"):
+        require_place_for_calibration(settings)

@@ -1,4 +1,4 @@
-"""The calibration file of a rig (``rig.toml``): where its cameras are, and how sure that is.
+"""The calibration file of a rig (``cameras.toml``): where its cameras are, and how sure that is.
 
 ``inhand calibrate`` writes it, capture publishes each camera's pose of it, and who joins cameras
 reads their clock offsets there.
@@ -88,6 +88,18 @@ def calibration_of(path: Path, camera: str) -> CameraCalibration:
     return cameras[camera]
 
 
+def require_place_for_calibration(path: Path) -> None:
+    """Raise SettingsError where a file is no calibration, and so is not to be written over."""
+    if path.exists():
+        try:
+            read_rig_calibration(path)
+        except SettingsError as error:
+            raise SettingsError(
+                f"{path} is not written over, since it is no calibration of ours ({error}): "
+                "choose another name"
+            ) from None
+
+
 def write_rig_calibration(path: Path, calibration: RigCalibration) -> None:
     """Write a file as a whole or not at all, readable by all; raises InhandError."""
     part = path.with_name(f".{path.name}.unfinished")
@@ -106,7 +118,7 @@ def write_rig_calibration(path: Path, calibration: RigCalibration) -> None:
 def _text(calibration: RigCalibration) -> str:
     lines = [
         "# Where the cameras of a rig are, made by `inhand calibrate`.",
-        '# Let capture publish it: [capture.NAME] calibration = "rig.toml".',
+        "# Let capture publish it: [capture.NAME] calibration = the name of this file.",
         "# Lengths are metres, angles radians, quaternions w x y z; deviations are standard ones.",
         "# clock_offset_ns is what to add to the camera's times to have the rig's.",
         f"version = {CALIBRATION_VERSION}",
