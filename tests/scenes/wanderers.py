@@ -52,6 +52,13 @@ def circling_movement(seconds: float = SECONDS) -> Array:
     return np.einsum("tij,kj->tki", turn, body)
 
 
+def pacing_movement(seconds: float = SECONDS) -> Array:
+    """Joints of somebody who goes to and fro on the same way, six seconds each time."""
+    way = true_movement(1)[: int(3.0 / NODE_S)]
+    round_trip = np.concatenate([way, way[::-1]])
+    return np.tile(round_trip, (int(seconds / 6.0), 1, 1))
+
+
 def watch(
     camera: WandererCamera, movement: Array, seed: int = 0, noise: float = 0.004, person: int = 0
 ) -> CameraSkeletons:

@@ -18,6 +18,7 @@ from wanderers import (
     SECONDS,
     circling_movement,
     errors_of,
+    pacing_movement,
     part_of,
     still_movement,
     together,
@@ -181,9 +182,22 @@ def test_a_walk_in_a_circle_is_refused() -> None:
     _refused("the walk repeats itself", watch(FRONT, walk), watch(LEFT, walk))
 
 
+def test_to_and_fro_is_enough_where_clocks_are_nearly_right() -> None:
+    walk = pacing_movement()
+    nearly = replace(LEFT, offset_s=0.3)
+    cameras = [watch(FRONT, walk), watch(nearly, walk)]
+    _refused("the walk repeats itself", *cameras)
+    found = calibrate_from_people(cameras, "front", clocks_within_s=0.5)
+    assert within_aims([errors_of(found, FRONT, nearly)])
+
+
 def test_a_person_who_stands_still_is_refused() -> None:
     stand = still_movement(18)
-    _refused("walk", watch(FRONT, stand), watch(LEFT, stand))
+    _refused("people stood still", watch(FRONT, stand), watch(LEFT, stand))
+    with pytest.raises(CalibrationError, match="moved too little to say how far the clocks"):
+        calibrate_from_people(
+            [watch(FRONT, stand), watch(LEFT, stand)], "front", clocks_within_s=0.5
+        )
 
 
 def test_too_short_a_walk_is_refused() -> None:

@@ -17,29 +17,49 @@ def chain_of_pairs(
     names: Sequence[str],
     tracks: Sequence[Sequence[Track]],
     parameters: PeopleCalibrationParameters,
+    begins_s: Sequence[float],
+    clocks_within_s: float,
 ) -> list[CameraEstimate]:
     """Return each camera's estimate relative to the first, over the pairs that share most.
 
-    Raises CalibrationError where a camera shares nobody, or where a walk repeats itself so that
-    clocks cannot be told apart.
+    ``begins_s`` are when the cameras' times begin, each by its own clock, and ``clocks_within_s``
+    is how far clocks are apart at the most. Raises CalibrationError where a camera shares nobody,
+    or where a walk repeats itself so that clocks cannot be told apart.
     """
     found = {
         (first, second): one
         for first, second in combinations(range(len(names)), 2)
-        if (one := find_pair(tracks[first], tracks[second], parameters)) is not None
+        if (
+            one := find_pair(
+                tracks[first],
+                tracks[second],
+                parameters,
+                _offsets(begins_s[second] - begins_s[first], clocks_within_s, parameters),
+            )
+        )
+        is not None
     }
     clear = {pair: one for pair, one in found.items() if _is_clear(one, parameters)}
     estimates = {0: still()}
     while len(estimates) < len(names):
         reached = [pair for pair in clear if (pair[0] in estimates) != (pair[1] in estimates)]
         if not reached:
-            raise _unreached(names, estimates, found, parameters.acceptance)
+            raise _unreached(names, tracks, estimates, found, parameters.acceptance)
         longest = max(reached, key=lambda pair: clear[pair].common_s)
         near, far = longest if longest[0] in estimates else longest[::-1]
         second = clear[longest].second
         relative = second if near == longest[0] else second.inverse()
         estimates[far] = relative.after(estimates[near])
     return [estimates[camera] for camera in range(len(names))]
+
+
+def _offsets(
+    between: float, within: float, parameters: PeopleCalibrationParameters
+) -> tuple[float, float]:
+    """The least and the largest clock offset, where the second begins so much later by its clock;
+    a step more on either side, as steps do not begin there."""
+    within += parameters.search.step_s
+    return between - within, between + within
 
 
 def _is_clear(found: PairFound, parameters: PeopleCalibrationParameters) -> bool:
@@ -50,6 +70,7 @@ def _is_clear(found: PairFound, parameters: PeopleCalibrationParameters) -> bool
 
 def _unreached(
     names: Sequence[str],
+    tracks: Sequence[Sequence[Track]],
     estimates: Mapping[int, CameraEstimate],
     found: Mapping[tuple[int, int], PairFound],
     acceptance: AcceptanceParameters,
@@ -61,6 +82,11 @@ def _unreached(
     between = [
         one for pair, one in found.items() if (pair[0] in estimates) != (pair[1] in estimates)
     ]
+    if max(track.spread for own in tracks for track in own) < acceptance.least_spread_m:
+        return CalibrationError(
+            "people stood still, which does not say how far clocks are apart: walk about for a "
+            "minute where all cameras see you"
+        )
     longest = max((one.common_s for one in between), default=0.0)
     if any(
         one.common_s >= acceptance.least_common_s and one.share >= acceptance.repeating_share

@@ -31,16 +31,22 @@ class PairFound:
 
 
 def find_pair(
-    first: Sequence[Track], second: Sequence[Track], parameters: PeopleCalibrationParameters
+    first: Sequence[Track],
+    second: Sequence[Track],
+    parameters: PeopleCalibrationParameters,
+    offsets: tuple[float, float] = (-np.inf, np.inf),
 ) -> PairFound | None:
-    """Find how the second camera is placed and timed; None where nothing agrees at all."""
+    """Find how the second camera is placed and timed; None where nothing agrees at all.
+
+    ``offsets`` are the least and the largest clock offset that may be, seconds.
+    """
     tracks = (first, second)
     coarse = replace(
         parameters, agreement=parameters.search.agreement, refinement=parameters.search.refinement
     )
     screened = [
         (_cost(tracks, hypothesis, coarse).sum(), index, hypothesis)
-        for index, hypothesis in enumerate(hypotheses(first, second, parameters.search))
+        for index, hypothesis in enumerate(hypotheses(first, second, parameters.search, offsets))
     ]
     best: list[tuple[float, int, CameraEstimate]] = []
     for candidate in sorted(screened, key=lambda one: one[:2]):

@@ -135,6 +135,8 @@ class AcceptanceParameters:
     """Time for which two cameras must see the same person."""
     least_share: float = 0.2
     """Share of the time in which both see people for which they must agree."""
+    least_spread_m: float = 0.15
+    """Deviation of people's place below which they stood still."""
     repeating_share: float = 0.7
     """Share of it from which cameras that agree at several clock offsets see the same person, who
     repeats the same movement; strangers agree for half of the time at some offset."""
