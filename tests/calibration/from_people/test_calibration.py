@@ -9,6 +9,7 @@ import pytest
 from inhand_calibration.errors import CalibrationError
 from inhand_calibration.from_people.calibration import PosePrior, calibrate_from_people
 from inhand_calibration.from_people.estimate import pose_of
+from inhand_calibration.from_people.parameters import DEFAULT_PEOPLE_CALIBRATION
 from inhand_runtime.rig_calibration import read_rig_calibration, write_rig_calibration
 from inhand_schemas.joints import MIRRORED_JOINTS, Joint
 from wanderers import (
@@ -125,15 +126,20 @@ def test_cameras_that_share_nobody_are_placed_through_a_third() -> None:
     assert errors.clock < 0.01
 
 
-def test_people_seen_nearer_than_they_are_do_not_push_cameras_apart() -> None:
+def test_cameras_of_trackers_that_see_the_skin_are_not_brought_together() -> None:
     walk = true_movement(13)
     cameras = []
     for camera in (FRONT, BACK):
         seen = watch(camera, walk)
         length = np.linalg.norm(seen.joints, axis=2, keepdims=True)
         cameras.append(with_joints(seen, seen.joints * (1.0 - 0.02 / length)))
+    wide = replace(DEFAULT_PEOPLE_CALIBRATION.refinement, surface_m=0.02)
+    parameters = replace(DEFAULT_PEOPLE_CALIBRATION, refinement=wide)
+    usual = calibrate_from_people(cameras, "front")
+    found = calibrate_from_people(cameras, "front", parameters=parameters)
     # Opposite cameras would be 4 cm too near to each other.
-    assert errors_of(calibrate_from_people(cameras, "front"), FRONT, BACK).translation < 0.015
+    assert errors_of(usual, FRONT, BACK).translation > 0.02
+    assert errors_of(found, FRONT, BACK).translation < 0.015
 
 
 def test_a_prior_holds_what_people_show_less_well() -> None:
