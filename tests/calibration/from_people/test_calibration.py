@@ -183,6 +183,13 @@ def test_cameras_that_see_different_people_are_refused() -> None:
     _refused("left and front do not see the same person move", front, left)
 
 
+def test_a_camera_whose_images_are_mirrored_is_found_out() -> None:
+    walk = true_movement(3)
+    seen = watch(LEFT, walk)
+    mirrored = with_joints(seen, seen.joints[:, list(MIRRORED_JOINTS)] * [-1.0, 1.0, 1.0])
+    _refused("front and left see each other's mirror image", watch(FRONT, walk), mirrored)
+
+
 def test_a_walk_in_a_circle_is_refused() -> None:
     walk = circling_movement()
     _refused("the walk repeats itself", watch(FRONT, walk), watch(LEFT, walk))

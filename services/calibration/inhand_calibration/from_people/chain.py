@@ -1,16 +1,20 @@
 """All cameras placed in the reference's frame, from pairs that see the same person."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
+
+import numpy as np
 
 from inhand_calibration.errors import CalibrationError
 from inhand_calibration.from_people.estimate import CameraEstimate, still
 from inhand_calibration.from_people.pair import PairFound, find_pair
 from inhand_calibration.from_people.parameters import (
-    AcceptanceParameters,
     PeopleCalibrationParameters,
 )
 from inhand_calibration.from_people.tracks import Track
+
+_MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
 def chain_of_pairs(
@@ -44,7 +48,7 @@ def chain_of_pairs(
     while len(estimates) < len(names):
         reached = [pair for pair in clear if (pair[0] in estimates) != (pair[1] in estimates)]
         if not reached:
-            raise _unreached(names, tracks, estimates, found, parameters.acceptance)
+            raise _unreached(names, tracks, estimates, found, parameters)
         longest = max(reached, key=lambda pair: clear[pair].common_s)
         near, far = longest if longest[0] in estimates else longest[::-1]
         second = clear[longest].second
@@ -73,30 +77,40 @@ def _unreached(
     tracks: Sequence[Sequence[Track]],
     estimates: Mapping[int, CameraEstimate],
     found: Mapping[tuple[int, int], PairFound],
-    acceptance: AcceptanceParameters,
+    parameters: PeopleCalibrationParameters,
 ) -> CalibrationError:
     """What is wrong with the cameras that are not placed."""
+    acceptance = parameters.acceptance
     placed = ", ".join(names[camera] for camera in sorted(estimates))
-    left = [camera for camera in range(len(names)) if camera not in estimates]
-    missing = ", ".join(names[camera] for camera in left)
-    between = [
-        one for pair, one in found.items() if (pair[0] in estimates) != (pair[1] in estimates)
-    ]
+    missing = ", ".join(name for camera, name in enumerate(names) if camera not in estimates)
+    pairs = [pair for pair in found if (pair[0] in estimates) != (pair[1] in estimates)]
     if max(track.spread for own in tracks for track in own) < acceptance.least_spread_m:
         return CalibrationError(
             "people stood still, which does not say how far clocks are apart: walk about for a "
             "minute where all cameras see you"
         )
-    longest = max((one.common_s for one in between), default=0.0)
-    if any(
-        one.common_s >= acceptance.least_common_s and one.share >= acceptance.repeating_share
-        for one in between
-    ):
+    longest = max((found[pair].common_s for pair in pairs), default=0.0)
+    shares = [found[pair].share for pair in pairs]
+    if longest >= acceptance.least_common_s and max(shares) >= acceptance.repeating_share:
         return CalibrationError(
             f"the walk repeats itself, so that the clocks of {placed} and {missing} fit at several "
             "offsets: walk no circle, stop now and then, and turn another way"
         )
+    for first, second in pairs:
+        mirrored = find_pair(tracks[first], [_mirrored(t) for t in tracks[second]], parameters)
+        if mirrored is not None and _is_clear(mirrored, parameters):
+            return CalibrationError(
+                f"{names[first]} and {names[second]} see each other's mirror image: turn the "
+                "mirroring of one camera's images off"
+            )
     return CalibrationError(
         f"{missing} and {placed} do not see the same person move ({longest:.0f} s agree at the "
         "best): walk where both see you at the same time, from head to foot"
+    )
+
+
+def _mirrored(track: Track) -> Track:
+    """The movement as a camera sees it whose images are mirrored."""
+    return replace(
+        track, positions=track.positions * _MIRROR, velocities=track.velocities * _MIRROR
     )
