@@ -30,6 +30,7 @@ VERBS = {
     "up": "run every process that the config names, supervised",
     "reload": "have a running `inhand up` take over its settings file, which has changed",
     "shutter": "close or open the cameras' shutters",
+    "calibrate": "find where the cameras of a rig are, by a board or by people, and print boards",
     "control": "change a camera's exposure, focus or light while it runs",
     "replay": "publish a recording again",
     "playback": "pause, resume, step through and seek in a replay that runs",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inhand_calibration.from_board.board import Floats
+from inhand_calibration.arrays import Array
 from inhand_calibration.from_board.sights import CameraSights, board_pose
 from inhand_calibration.rigid import moved, rigid_fit
 
@@ -47,7 +47,7 @@ class Alignment:
     the sights of both that were compared, and ``agreeing`` how many of them agree.
     """
 
-    first_from_second: Floats
+    first_from_second: Array
     offset_s: float
     moments: int
     agreeing: int
@@ -58,8 +58,8 @@ class Alignment:
 class _Track:
     """The board's outline (S, 4, 3) in a camera's frame at times (S,), seconds."""
 
-    times: Floats
-    points: Floats
+    times: Array
+    points: Array
 
 
 def align(

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inhand_calibration.arrays import Array
 from inhand_calibration.from_board.adjustment import Bundle, Corners3D
-from inhand_calibration.from_board.board import Floats
 from inhand_calibration.from_board.sights import (
     NS,
     Between,
@@ -159,7 +159,7 @@ def corners_of(
 def started(
     moments: Sequence[Moment],
     cameras: Sequence[CameraSights],
-    from_reference: Floats,
+    from_reference: Array,
     parameters: MomentParameters = DEFAULT_MOMENTS,
 ) -> tuple[list[Moment], Bundle]:
     """Guess where the board is at each moment by the camera that explains best what all saw.
@@ -177,11 +177,12 @@ def started(
         if guesses and min(errors) < parameters.wild_px:
             kept.append(moment)
             boards.append(guesses[int(np.argmin(errors))])
-    clocks = np.zeros(len(cameras))
-    return kept, Bundle(from_reference, np.array(boards).reshape(-1, 4, 4), clocks)
+    count = len(cameras)
+    poses = np.array(boards).reshape(-1, 4, 4)
+    return kept, Bundle(from_reference, poses, np.zeros(count), np.zeros((count, 3)))
 
 
-def _poses(camera: CameraSights, view: Between) -> list[Floats]:
+def _poses(camera: CameraSights, view: Between) -> list[Array]:
     sight = Sight(0, view.numbers, view.pixels)
     pose: BoardPose | None = board_pose(camera.lens, camera.board, sight)
     if pose is None:
@@ -190,7 +191,7 @@ def _poses(camera: CameraSights, view: Between) -> list[Floats]:
 
 
 def _worst_error(
-    moment: Moment, cameras: Sequence[CameraSights], from_reference: Floats, board: Floats
+    moment: Moment, cameras: Sequence[CameraSights], from_reference: Array, board: Array
 ) -> float:
     """The median error of the corners of the camera that sees them worst, pixels."""
     worst = 0.0
