@@ -111,18 +111,23 @@ def calibrate_from_people(
     reference: str,
     origin: Array | None = None,
     priors: Mapping[str, PosePrior] | None = None,
+    clocks_within_s: float = np.inf,
     parameters: PeopleCalibrationParameters = DEFAULT_PEOPLE_CALIBRATION,
 ) -> PeopleCalibration:
     """Find where two or more cameras are, and how far their clocks are apart.
 
     ``origin`` (3,), a point in the reference camera's frame, has the rig's origin on the floor
     below it in place of the camera; without a floor it is the rig's origin itself. ``priors`` are
-    by camera name. Raises CalibrationError where it cannot be known, with what to do.
+    by camera name. Clocks are known to be within ``clocks_within_s`` seconds of each other; that
+    helps where people do the same over and over. Raises CalibrationError where it cannot be known,
+    with what to do.
     """
     ordered = _ordered(cameras, reference)
     tracks = [_tracks_of(one, parameters) for one in ordered]
     names = [one.name for one in ordered]
-    estimates = chain_of_pairs(names, tracks, parameters)
+    # Since the first camera's begin: seconds since the epoch are exact to a microsecond only.
+    begins = [1e-9 * int(one.times_ns[0] - ordered[0].times_ns[0]) for one in ordered]
+    estimates = chain_of_pairs(names, tracks, parameters, begins, clocks_within_s)
     known = {
         names.index(name): EstimatePrior(estimate_of(prior.reference_from_camera), prior.covariance)
         for name, prior in (priors or {}).items()
@@ -250,7 +255,7 @@ def _shared(camera: int, refined: Refined) -> tuple[Array, int, Array]:
             for one, side in zip(pair, (first, second), strict=True)
         )
         distances.append(np.linalg.norm(own - other, axis=2)[both])
-        ratio = _sizes(own, both) / _sizes(other, both)
+        ratio = _sizes(first.positions, both) / _sizes(second.positions, both)
         ratio = ratio[np.isfinite(ratio)]
         scales.append(ratio if camera == pair[0] else 1.0 / ratio)
         moments |= set(agreement.moments.tolist())

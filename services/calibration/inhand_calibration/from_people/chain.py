@@ -17,24 +17,34 @@ def chain_of_pairs(
     names: Sequence[str],
     tracks: Sequence[Sequence[Track]],
     parameters: PeopleCalibrationParameters,
+    begins_s: Sequence[float],
+    clocks_within_s: float,
 ) -> list[CameraEstimate]:
     """Return each camera's estimate relative to the first, over the pairs that share most.
 
-    Raises CalibrationError where a camera shares nobody, or where a walk repeats itself so that
-    clocks cannot be told apart.
+    ``begins_s`` are when the cameras' times begin, each by its own clock, and ``clocks_within_s``
+    is how far clocks are apart at the most. Raises CalibrationError where a camera shares nobody,
+    or where a walk repeats itself so that clocks cannot be told apart.
     """
     found = {
         (first, second): one
         for first, second in combinations(range(len(names)), 2)
-        if (one := find_pair(tracks[first], tracks[second], parameters)) is not None
+        if (
+            one := find_pair(
+                tracks[first],
+                tracks[second],
+                parameters,
+                _offsets(begins_s[second] - begins_s[first], clocks_within_s, parameters),
+            )
+        )
+        is not None
     }
-    sure = {pair: one for pair, one in found.items() if _acceptable(one, parameters.acceptance)}
-    clear = {pair: one for pair, one in sure.items() if one.surely >= parameters.search.surely}
+    clear = {pair: one for pair, one in found.items() if _is_clear(one, parameters)}
     estimates = {0: still()}
     while len(estimates) < len(names):
         reached = [pair for pair in clear if (pair[0] in estimates) != (pair[1] in estimates)]
         if not reached:
-            raise _unreached(names, estimates, sure, found)
+            raise _unreached(names, tracks, estimates, found, parameters.acceptance)
         longest = max(reached, key=lambda pair: clear[pair].common_s)
         near, far = longest if longest[0] in estimates else longest[::-1]
         second = clear[longest].second
@@ -43,27 +53,49 @@ def chain_of_pairs(
     return [estimates[camera] for camera in range(len(names))]
 
 
-def _acceptable(found: PairFound, acceptance: AcceptanceParameters) -> bool:
-    return found.common_s >= acceptance.least_common_s and found.share >= acceptance.least_share
+def _offsets(
+    between: float, within: float, parameters: PeopleCalibrationParameters
+) -> tuple[float, float]:
+    """The least and the largest clock offset, where the second begins so much later by its clock;
+    a step more on either side, as steps do not begin there."""
+    within += parameters.search.step_s
+    return between - within, between + within
+
+
+def _is_clear(found: PairFound, parameters: PeopleCalibrationParameters) -> bool:
+    acceptance = parameters.acceptance
+    enough = found.common_s >= acceptance.least_common_s and found.share >= acceptance.least_share
+    return enough and found.surely >= parameters.search.surely
 
 
 def _unreached(
     names: Sequence[str],
+    tracks: Sequence[Sequence[Track]],
     estimates: Mapping[int, CameraEstimate],
-    sure: Mapping[tuple[int, int], PairFound],
     found: Mapping[tuple[int, int], PairFound],
+    acceptance: AcceptanceParameters,
 ) -> CalibrationError:
     """What is wrong with the cameras that are not placed."""
     placed = ", ".join(names[camera] for camera in sorted(estimates))
     left = [camera for camera in range(len(names)) if camera not in estimates]
     missing = ", ".join(names[camera] for camera in left)
-    between = [pair for pair in found if (pair[0] in estimates) != (pair[1] in estimates)]
-    if any(pair in sure for pair in between):
+    between = [
+        one for pair, one in found.items() if (pair[0] in estimates) != (pair[1] in estimates)
+    ]
+    if max(track.spread for own in tracks for track in own) < acceptance.least_spread_m:
+        return CalibrationError(
+            "people stood still, which does not say how far clocks are apart: walk about for a "
+            "minute where all cameras see you"
+        )
+    longest = max((one.common_s for one in between), default=0.0)
+    if any(
+        one.common_s >= acceptance.least_common_s and one.share >= acceptance.repeating_share
+        for one in between
+    ):
         return CalibrationError(
             f"the walk repeats itself, so that the clocks of {placed} and {missing} fit at several "
             "offsets: walk no circle, stop now and then, and turn another way"
         )
-    longest = max((found[pair].common_s for pair in between), default=0.0)
     return CalibrationError(
         f"{missing} and {placed} do not see the same person move ({longest:.0f} s agree at the "
         "best): walk where both see you at the same time, from head to foot"

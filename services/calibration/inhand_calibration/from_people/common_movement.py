@@ -31,15 +31,18 @@ class _Sampled:
 
 
 def hypotheses(
-    firsts: Sequence[Track], seconds: Sequence[Track], parameters: SearchParameters
+    firsts: Sequence[Track],
+    seconds: Sequence[Track],
+    parameters: SearchParameters,
+    offsets: tuple[float, float] = (-np.inf, np.inf),
 ) -> list[CameraEstimate]:
     """Return how the second camera may be placed and timed relative to the first, the best of each
-    pair of movements, in no order."""
+    pair of movements, in no order; clock ``offsets`` are from the least to the largest, seconds."""
     pairs = [(first, second) for first in firsts for second in seconds]
     pairs.sort(key=lambda pair: -min(_length(track) for track in pair))
     found: list[CameraEstimate] = []
     for first, second in pairs[: parameters.pairs]:
-        found += _best(_sample(first, parameters), _sample(second, parameters), parameters)
+        found += _best(_sample(first, parameters), _sample(second, parameters), parameters, offsets)
     return found
 
 
@@ -55,7 +58,12 @@ def _sample(track: Track, parameters: SearchParameters) -> _Sampled:
     return _Sampled(track.start, mean, centred, known.astype(float))
 
 
-def _best(first: _Sampled, second: _Sampled, parameters: SearchParameters) -> list[CameraEstimate]:
+def _best(
+    first: _Sampled,
+    second: _Sampled,
+    parameters: SearchParameters,
+    offsets: tuple[float, float],
+) -> list[CameraEstimate]:
     """The best clock offsets with their poses: second placed in the first's frame."""
     counts, sums, other_sums, squares, cross = _correlations(first, second)
     least = min(parameters.least_overlap_s / parameters.step_s, 0.8 * _shorter(first, second))
@@ -66,6 +74,9 @@ def _best(first: _Sampled, second: _Sampled, parameters: SearchParameters) -> li
     left, values, right = np.linalg.svd(scatter)
     proper = np.linalg.det(left) * np.linalg.det(right) > 0.0
     values[:, 2] *= np.where(proper, 1.0, -1.0)
+    lags = (np.arange(len(counts)) - (len(second.points) - 1)) * parameters.step_s
+    tried = first.start + lags - second.start
+    enough &= (tried >= offsets[0]) & (tried <= offsets[1])
     errors = np.where(enough, (spread - 2.0 * values.sum(axis=1)) / at_least, np.inf)
     found = []
     for index in _lowest(errors, parameters.hypotheses):
@@ -74,9 +85,7 @@ def _best(first: _Sampled, second: _Sampled, parameters: SearchParameters) -> li
         rotation = (right[index].T * signs) @ left[index].T
         own = first.mean + sums[index] / at_least[index]
         other = second.mean + other_sums[index] / at_least[index]
-        lag = (index - (len(second.points) - 1)) * parameters.step_s
-        offset = first.start + lag - second.start
-        found.append(CameraEstimate(rotation, own - rotation @ other, float(offset)))
+        found.append(CameraEstimate(rotation, own - rotation @ other, float(tried[index])))
     return found
 
 

@@ -31,16 +31,22 @@ class PairFound:
 
 
 def find_pair(
-    first: Sequence[Track], second: Sequence[Track], parameters: PeopleCalibrationParameters
+    first: Sequence[Track],
+    second: Sequence[Track],
+    parameters: PeopleCalibrationParameters,
+    offsets: tuple[float, float] = (-np.inf, np.inf),
 ) -> PairFound | None:
-    """Find how the second camera is placed and timed; None where nothing agrees at all."""
+    """Find how the second camera is placed and timed; None where nothing agrees at all.
+
+    ``offsets`` are the least and the largest clock offset that may be, seconds.
+    """
     tracks = (first, second)
     coarse = replace(
         parameters, agreement=parameters.search.agreement, refinement=parameters.search.refinement
     )
     screened = [
         (_cost(tracks, hypothesis, coarse).sum(), index, hypothesis)
-        for index, hypothesis in enumerate(hypotheses(first, second, parameters.search))
+        for index, hypothesis in enumerate(hypotheses(first, second, parameters.search, offsets))
     ]
     best: list[tuple[float, int, CameraEstimate]] = []
     for candidate in sorted(screened, key=lambda one: one[:2]):
@@ -76,20 +82,23 @@ def _cost(
     estimate: CameraEstimate,
     parameters: PeopleCalibrationParameters,
 ) -> Array:
-    """Cost of each moment (K,) of the first camera's: 0 where both agree, 1 where they do not or
-    only the first sees anybody."""
-    times = _times_of(tracks[0], parameters)
-    agreement = agree(tracks, [still(), estimate], times, parameters)[0, 1]
+    """Cost of each moment (K,) of the camera that has fewer: 0 where both agree, 1 where they do
+    not or only this one sees anybody."""
+    starts, ends = zip(*(_span(own) for own in tracks), strict=True)
+    fewer = int(ends[1] - starts[1] < ends[0] - starts[0])
+    times = np.arange(starts[fewer], ends[fewer], parameters.agreement.step_s)
+    agreement = agree(tracks, [still(), estimate], times + fewer * estimate.offset, parameters)[
+        0, 1
+    ]
     cost = np.ones(len(times))
     squares = (agreement.distances / parameters.agreement.gate_m) ** 2
     np.minimum.at(cost, agreement.moments, squares)
     return cost
 
 
-def _times_of(tracks: Sequence[Track], parameters: PeopleCalibrationParameters) -> Array:
-    """Times (K,) over all of a camera's movements."""
-    start, end = min(t.start for t in tracks), max(t.end for t in tracks)
-    return np.arange(start, end, parameters.agreement.step_s)
+def _span(tracks: Sequence[Track]) -> tuple[float, float]:
+    """From when to when a camera sees people, by its clock, seconds."""
+    return min(t.start for t in tracks), max(t.end for t in tracks)
 
 
 def _surely(best: Array, rival: Array, parameters: PeopleCalibrationParameters) -> float:

@@ -28,8 +28,11 @@ class MovementParameters:
     """Confidence below which a joint counts as missing."""
     most_gap_s: float = 0.5
     """Gap after which a person's movement begins anew."""
-    most_jump_m: float = 0.5
-    """Way of the hips from frame to frame after which it is somebody else's movement."""
+    most_jump_m: float = 0.3
+    """Way of the hips from frame to frame, beside what ``most_speed_m_s`` explains, after which it
+    is somebody else's movement."""
+    most_speed_m_s: float = 3.0
+    """Speed of people's hips, at most."""
     least_s: float = 2.0
     """Length of the shortest movement that is used."""
     most_tracks: int = 24
@@ -65,6 +68,9 @@ class RefinementParameters:
     """Degrees of freedom of the Student distribution that residuals are taken to have."""
     least_deviation_m: float = 0.005
     """Deviation of a joint below which none is believed to be."""
+    memory_s: float = 2.0
+    """Time for which a joint's error is the same: moments within it count as one, beside what is
+    known before."""
     surface_m: float = 0.015
     """Deviation of how much nearer to the camera than the truth people are seen, in all cameras
     alike: skeleton trackers see the skin or shirt in place of the bone."""
@@ -84,6 +90,8 @@ class RefinementParameters:
     says 9 ms more at 15 Hz than at 30 Hz."""
     clock_s: float = 0.001
     """Deviation of a clock offset that no length of a walk brings down."""
+    unknown: float = 100.0
+    """Deviation, metres, radians and seconds, of what no moment says anything of."""
     rest_step: float = 1e-5
     """Step, metres, radians or seconds, below which it is done."""
 
@@ -125,8 +133,13 @@ class AcceptanceParameters:
     """Time for which a camera must see people."""
     least_common_s: float = 8.0
     """Time for which two cameras must see the same person."""
-    least_share: float = 0.3
+    least_share: float = 0.2
     """Share of the time in which both see people for which they must agree."""
+    least_spread_m: float = 0.15
+    """Deviation of people's place below which they stood still."""
+    repeating_share: float = 0.7
+    """Share of it from which cameras that agree at several clock offsets see the same person, who
+    repeats the same movement; strangers agree for half of the time at some offset."""
     most_clock_s: float = 0.02
     """Deviation of a clock offset, at most."""
     most_translation_m: float = 0.1

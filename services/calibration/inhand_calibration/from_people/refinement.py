@@ -195,10 +195,10 @@ def _known_before(
 ) -> tuple[Array, Array]:
     """Information and push of what is known before: drifts, surfaces, and poses with a prior."""
     count = len(estimates)
-    information = np.zeros((OF_CAMERA * count, OF_CAMERA * count))
+    information = np.eye(OF_CAMERA * count) / parameters.refinement.unknown**2
     push = np.zeros(OF_CAMERA * count)
     drifts = OF_CAMERA * np.arange(1, count) + _DRIFT
-    information[drifts, drifts] = (1e6 / parameters.refinement.drift_ppm) ** 2
+    information[drifts, drifts] += (1e6 / parameters.refinement.drift_ppm) ** 2
     push[drifts] = -information[drifts, drifts] * [e.drift for e in estimates[1:]]
     surfaces = OF_CAMERA * np.arange(count) + _SURFACE
     common, own = parameters.refinement.surface_m, parameters.refinement.surface_difference_m
@@ -245,7 +245,7 @@ def _residuals(
         own - other,
         np.concatenate([by_own, -by_other], axis=-1),
         np.sqrt(agreement.first.support * agreement.second.support),
-        ((at - times[0]) / parameters.refinement.block_s).astype(np.int64),
+        ((at - times.min(initial=0.0)) / parameters.refinement.block_s).astype(np.int64),
     )
 
 
@@ -265,4 +265,5 @@ def _weights(
     squares = np.sum(residual.differences**2, axis=2) / deviations**2
     believed = (freedom + 3.0) / (freedom + squares)
     support = residual.support / max(residual.support.max(initial=0.0), 1e-9)
-    return np.asarray(support * believed / deviations**2)
+    alone = parameters.agreement.step_s / parameters.refinement.memory_s
+    return np.asarray(alone * support * believed / deviations**2)

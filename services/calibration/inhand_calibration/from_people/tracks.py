@@ -100,7 +100,9 @@ def _pieces(
     if not len(rows):
         return []
     jumps = np.linalg.norm(np.diff(joints[rows, Joint.HIP_CENTER], axis=0), axis=1)
-    breaks = (np.diff(seconds[rows]) > parameters.most_gap_s) | (jumps > parameters.most_jump_m)
+    gaps = np.diff(seconds[rows])
+    most = parameters.most_jump_m + parameters.most_speed_m_s * gaps
+    breaks = (gaps > parameters.most_gap_s) | (jumps > most)
     pieces = np.split(rows, np.flatnonzero(breaks) + 1)
     return [p for p in pieces if seconds[p[-1]] - seconds[p[0]] >= parameters.least_s]
 
