@@ -48,7 +48,7 @@ class BoardBenchmark:
     rate_hz: float = 15.0
     """Pictures a second."""
     walk: WalkParameters = field(
-        default_factory=lambda: WalkParameters(holds=20, hold_s=0.3, move_s=0.3)
+        default_factory=lambda: WalkParameters(holds=18, hold_s=0.3, move_s=0.2)
     )
     """How the board is shown: in a hurry, since each picture is drawn."""
 
@@ -74,11 +74,6 @@ class CameraTrial:
     deviation_mm: float
     inside: bool
     """Whether the truth lies in the region of 90 % that was said."""
-
-
-def board_steps(benchmark: BoardBenchmark) -> int:
-    """How many steps the benchmark takes."""
-    return len(benchmark.seeds)
 
 
 def measure_board_calibration(
@@ -159,10 +154,10 @@ def info_of(lens: Lens) -> CameraInfo:
     )
 
 
-def frame_of(grey: Bytes, time_ns: int) -> RgbdFrame:
+def frame_of(grey: Bytes, time_ns: int, sequence: int = 0) -> RgbdFrame:
     """A picture (H, W) as a camera's message."""
     colour = encode_colour(np.repeat(grey[..., None], 3, axis=2))
-    return RgbdFrame(sequence=0, time_ns=time_ns, colour=colour)
+    return RgbdFrame(sequence=sequence, time_ns=time_ns, colour=colour)
 
 
 def compared(seed: int, found: BoardCalibration, cameras: Sequence[RigCamera]) -> list[CameraTrial]:

@@ -38,7 +38,7 @@ class BoardLight:
     """Deviation of the lens's blur, pixels."""
     noise: float = 3.0
     """Deviation of a pixel's noise, levels."""
-    samples: int = 4
+    samples: int = 3
     """Samples along a pixel."""
 
 

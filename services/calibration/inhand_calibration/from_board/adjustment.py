@@ -50,8 +50,8 @@ DEFAULT_ADJUSTMENT = AdjustmentParameters()
 @dataclass(frozen=True)
 class Corners3D:
     """Corners seen: K of them, by which camera (K,) at which moment (K,), where on the board (K, 3)
-    and in the picture (K, 2), how they moved (K, 2), pixels a second, and how much more they err
-    by that, pixels (K,)."""
+    and in the picture (K, 2), how they moved (K, 2), pixels a second, how much more they err by
+    that, pixels (K,), and the noise of them against that of others of the camera (K,)."""
 
     camera: NDArray[np.int64]
     moment: NDArray[np.int64]
@@ -59,17 +59,7 @@ class Corners3D:
     pixel: Array
     velocity: Array
     smear: Array
-
-    def chosen(self, which: NDArray[np.bool_]) -> "Corners3D":
-        """Return some of them."""
-        return Corners3D(
-            self.camera[which],
-            self.moment[which],
-            self.place[which],
-            self.pixel[which],
-            self.velocity[which],
-            self.smear[which],
-        )
+    noise: Array
 
 
 @dataclass(frozen=True)
@@ -112,7 +102,7 @@ def adjust(
     The first camera and its clock are fixed, and so are lenses but ``with_lenses``.
     """
     problem = Problem(corners, lenses, _free(len(lenses), with_lenses=with_lenses), parameters)
-    deviations = np.hypot(1.0, corners.smear)
+    deviations = np.hypot(corners.noise, corners.smear)
     counted = np.ones(len(corners.camera), bool)
     for stage in range(4):
         bundle = _settled(problem, bundle, deviations, counted)
@@ -203,8 +193,8 @@ def _deviations(corners: Corners3D, errors: Array, parameters: AdjustmentParamet
     for index in np.unique(corners.camera):
         own = corners.camera == index
         quiet = own & (corners.smear <= np.median(corners.smear[own]))
-        of_camera[own] = float(np.median(sizes[quiet])) / 1.052
-    least = np.maximum(of_camera, parameters.least_deviation_px)
+        of_camera[own] = float(np.median(sizes[quiet] / corners.noise[quiet])) / 1.052
+    least = np.maximum(of_camera * corners.noise, parameters.least_deviation_px)
     deviations = np.hypot(least, corners.smear)
     sights = corners.moment * (int(corners.camera.max()) + 1) + corners.camera
     for sight in np.unique(sights):

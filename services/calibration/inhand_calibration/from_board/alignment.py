@@ -32,6 +32,8 @@ class AlignmentParameters:
     """Time between two sights, at most, that are compared."""
     rounds: int = 6
     """Rounds of weighing."""
+    elsewhere_m: float = 0.1
+    """Movement of a corner of the board, at least, that makes another place of it."""
     preference: float = 0.02
     """Share of the score by which an offset must be better than none at all."""
 
@@ -44,13 +46,15 @@ class Alignment:
     """Where a second camera is in the frame of a first (4, 4), ``first_from_second``.
 
     ``offset_s`` is what to add to the second camera's times to have the first's. ``moments`` are
-    the sights of both that were compared, and ``agreeing`` how many of them agree.
+    the sights of both that were compared, and ``agreeing`` how many of them agree; these show the
+    board in so many ``places``. Any one place can be laid on any other.
     """
 
     first_from_second: Array
     offset_s: float
     moments: int
     agreeing: int
+    places: int
     score: float
 
 
@@ -140,5 +144,19 @@ def _try(
         errors = np.sqrt(np.mean(np.sum((laid - target) ** 2, axis=2), axis=1)) / limits
         weights = 1.0 / np.maximum(errors, 0.1) / limits
     gains = np.maximum(0.0, 1.0 - errors**2)
-    agreeing = int((errors < 1.0).sum())
-    return Alignment(transform, offset, len(target), agreeing, float(gains.sum()))
+    agreeing = target[errors < 1.0]
+    seen = _places(agreeing, parameters.elsewhere_m)
+    return Alignment(transform, offset, len(target), len(agreeing), seen, float(gains.sum()))
+
+
+def _places(points: Array, elsewhere_m: float) -> int:
+    """In how many places a board's points (S, 4, 3) are, one after the other."""
+    if len(points) == 0:
+        return 0
+    kept = points[:1]
+    for one in points[1:]:
+        if np.abs(one - kept[-1]).max() < elsewhere_m:
+            continue
+        if np.abs(kept - one).max(axis=(1, 2)).min() > elsewhere_m:
+            kept = np.concatenate([kept, one[None]])
+    return len(kept)

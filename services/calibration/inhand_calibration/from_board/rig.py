@@ -26,8 +26,8 @@ from inhand_calibration.from_board.moments import (
 from inhand_calibration.from_board.sights import NS, CameraSights
 from inhand_calibration.rigid import cross_matrices, inverse
 
-LEAST_MOMENTS = 5
-"""Moments, at least, in which two cameras must see the board together to be joined by them."""
+LEAST_PLACES = 4
+"""Places of the board, at least, that two cameras must see together to be joined by them."""
 ENOUGH_MOMENTS = 20
 """Moments of two cameras with which both are well known."""
 LEAST_AGREEING = 0.5
@@ -118,7 +118,7 @@ def _joined(
     usable = {
         pair: link
         for pair, link in links.items()
-        if link is not None and link.agreeing >= LEAST_MOMENTS
+        if link is not None and link.places >= LEAST_PLACES
     }
     from_reference: dict[int, Array] = {0: np.eye(4)}
     offsets = {0: 0.0}
@@ -149,7 +149,7 @@ def _require_agreement(
 ) -> None:
     """Raise CalibrationError where two cameras see boards that cannot be one."""
     for (one, two), link in links.items():
-        if link is None or link.moments < 2 * LEAST_MOMENTS:
+        if link is None or link.moments < 2 * LEAST_PLACES:
             continue
         if link.agreeing < LEAST_AGREEING * link.moments:
             raise CalibrationError(
@@ -167,7 +167,7 @@ def _apart(cameras: Sequence[CameraSights], joined: set[int]) -> str:
     return (
         f"{' and '.join(others)} never saw the board together with "
         f"{' or '.join(names[index] for index in sorted(joined))} often enough "
-        f"({counted(LEAST_MOMENTS, 'moment')} at least): hold it where two of them see it, "
+        f"({counted(LEAST_PLACES, 'place')} at least): hold it where two of them see it, "
         "standing still, in as many places as you can"
     )
 

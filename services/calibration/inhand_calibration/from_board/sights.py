@@ -57,11 +57,26 @@ class BoardPose:
 @dataclass(frozen=True)
 class Between:
     """Corners at one instant: numbers (N,), pixels (N, 2) and their velocities (N, 2), pixels a
-    second."""
+    second; or, of a board that stood still, the mean of so many instants."""
 
     numbers: NDArray[np.int64]
     pixels: Array
     velocities: Array
+    instants: int = 1
+
+    def with_another(self, other: "Between") -> "Between":
+        """Return the mean with another instant, of the corners that both have."""
+        numbers, first, second = np.intersect1d(
+            self.numbers, other.numbers, assume_unique=True, return_indices=True
+        )
+        total = self.instants + other.instants
+        share = other.instants / total
+        return Between(
+            numbers,
+            (1.0 - share) * self.pixels[first] + share * other.pixels[second],
+            (1.0 - share) * self.velocities[first] + share * other.velocities[second],
+            total,
+        )
 
 
 @dataclass(frozen=True)
