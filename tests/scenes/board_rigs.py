@@ -20,18 +20,21 @@ from numpy.typing import NDArray
 
 WIDE = Lens(1000.0, 1000.0, 639.5, 359.5, 1280, 720, (0.08, -0.15, 0.001, -0.0005, 0.02))
 PLAIN = Lens(525.0, 525.0, 319.5, 239.5, 640, 480)
-MIDDLE = np.array([0.0, 0.0, 1.0])
-WALK = WalkParameters(holds=12, hold_s=0.5, move_s=0.5)
+WALK = WalkParameters(holds=10, hold_s=0.5, move_s=0.5)
 
 
-def three_cameras() -> tuple[RigCamera, ...]:
-    """One upside down whose clock is two seconds late, one of half the rate: all hard at once."""
+def three_cameras(looked_at_m: float = 1.0) -> tuple[RigCamera, ...]:
+    """One upside down whose clock is two seconds late, one of half the rate: all hard at once.
+
+    They look at a place of that height.
+    """
+    middle = np.array([0.0, 0.0, looked_at_m])
     return (
-        RigCamera("front", WIDE, looking_at(np.array([2.2, 0.0, 1.6]), MIDDLE), 30.0),
+        RigCamera("front", WIDE, looking_at(np.array([2.2, 0.0, 1.6]), middle), 30.0),
         RigCamera(
-            "left", WIDE, looking_at(np.array([1.2, -1.9, 1.3]), MIDDLE, 180.0), 30.0, -2.0, 0.011
+            "left", WIDE, looking_at(np.array([1.2, -1.9, 1.3]), middle, 180.0), 30.0, -2.0, 0.011
         ),
-        RigCamera("right", PLAIN, looking_at(np.array([1.1, 1.7, 1.9]), MIDDLE), 15.0, 0.03, 0.02),
+        RigCamera("right", PLAIN, looking_at(np.array([1.1, 1.7, 1.9]), middle), 15.0, 0.03, 0.02),
     )
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from board_rigs import PLAIN, WALK, WIDE, disturbed, seen_board, three_cameras
+from board_rigs import WALK, WIDE, disturbed, seen_board, three_cameras
 from inhand_calibration.errors import CalibrationError
 from inhand_calibration.from_board.adjustment import Bundle, Corners3D, adjust
 from inhand_calibration.from_board.board import printed_board
@@ -52,13 +52,13 @@ def test_false_corners_are_left_out() -> None:
     ("camera", "lens", "number", "change"),
     [
         (0, replace(WIDE, fx=1.015 * WIDE.fx, fy=1.015 * WIDE.fy), 0, -0.0148),
-        (2, replace(PLAIN, cx=PLAIN.cx + 8.0), 1, -8.0),
+        (1, replace(WIDE, cx=WIDE.cx + 12.0), 1, -12.0),
     ],
 )
 def test_a_lens_that_is_other_than_published_is_found_with_what_it_is(
     camera: int, lens: Lens, number: int, change: float
 ) -> None:
-    seen = seen_board(13).with_lens(camera, lens)
+    seen = seen_board(13, cameras=three_cameras()[:2]).with_lens(camera, lens)
     solution = solve_rig(seen.sights)
     z = np.abs(solution.lens_changes / solution.lens_deviations)
     assert z[camera, number] == z.max() > 4.5
@@ -101,7 +101,7 @@ def _corners(seed: int, true: np.ndarray) -> tuple[Corners3D, np.ndarray]:
     walk = board_walk(board, cameras, random, replace(WALK, shake_m=0.0))
     places = inverse(cameras[0].room_from_camera) @ walk.places
     columns: list[list[np.ndarray]] = [[], [], [], []]
-    kept = []
+    kept: list[np.ndarray] = []
     for place in places:
         seen = [
             (index, camera.lens.project(moved(true[index] @ place, board.corners)))

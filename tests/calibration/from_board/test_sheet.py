@@ -27,8 +27,9 @@ def test_what_is_drawn_is_detected_where_it_is_drawn(paper: str) -> None:
     figure = sheet_figure(board, paper)
     figure.set_dpi(DOTS_IN_MM * 25.4)
     canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    grey = np.asarray(canvas.buffer_rgba())[..., 0].copy()
+    canvas.draw()  # type: ignore[no-untyped-call]
+    pixels = canvas.buffer_rgba()  # type: ignore[no-untyped-call]
+    grey = np.asarray(pixels)[..., 0].copy()
     corners = BoardFinder([printed_board(one) for one in SQUARES_MM]).find(grey)
     assert corners is not None
     assert corners.board == board

@@ -14,6 +14,8 @@ from inhand_calibration.rigid import inverse, moved, rigid
 
 BOARD = "board"
 """Origin that is the board, where it stood still at last."""
+BELOW_FLOOR_M = 0.05
+"""How far below the floor the board may seem to have been."""
 LEAST_LEVEL = 0.2
 """Share of the way that a camera looks that must be level for x to follow it."""
 
@@ -44,6 +46,8 @@ def choose_frame(
         )
     if origin == BOARD or board_on_floor:
         rig = _of_board(solution)
+        if board_on_floor:
+            _require_lowest(solution, rig)
         lies = "on the floor" if board_on_floor else "where it stood still at last"
         up = "up" if board_on_floor else "out of its face"
         words = f"z {up}, origin in the middle of the board {lies}, x along its upper edge"
@@ -79,6 +83,18 @@ def _of_board(solution: RigSolution) -> Array:
             "cannot lie on the floor: lay it down face up at last"
         )
     return rig
+
+
+def _require_lowest(solution: RigSolution, rig_from_reference: Array) -> None:
+    """Raise CalibrationError where the board was below what is said to be the floor."""
+    outline = solution.cameras[0].board.outline
+    heights = moved(rig_from_reference @ solution.boards, outline)[..., 2]
+    if float(heights.min()) < -BELOW_FLOOR_M:
+        raise CalibrationError(
+            f"the board was {-float(heights.min()):.2f} m lower before than where two cameras saw "
+            "it stand still at last, so that it did not lie on the floor there: lay it face up "
+            "where two cameras see it, at last"
+        )
 
 
 def _of_floor(floor: DepthFloor) -> Array:
