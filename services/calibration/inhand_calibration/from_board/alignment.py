@@ -4,7 +4,7 @@ The board's own points make a track in each camera. At the right clock offset on
 lays one track on the other; at a wrong one it does so only where the board stands still.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,15 +23,17 @@ class AlignmentParameters:
     """Step of the offsets that are tried."""
     fine_step_s: float = 0.005
     """Step of those tried around the best one."""
-    sights: int = 150
+    sights: int = 120
     """Sights of a camera that are compared, at most."""
     near_m: float = 0.03
     """Distance of two points, at most, and this share of their depth, that are laid on each
     other: what one small board says of its own distance errs."""
     apart_s: float = 0.12
     """Time between two sights, at most, that are compared."""
-    rounds: int = 6
-    """Rounds of weighing."""
+    first_rounds: int = 3
+    """Rounds of weighing where many offsets are tried."""
+    rounds: int = 8
+    """Rounds around the best of them."""
     elsewhere_m: float = 0.1
     """Movement of a corner of the board, at least, that makes another place of it."""
     preference: float = 0.02
@@ -79,7 +81,8 @@ def align(
     shift = (second.start_ns - first.start_ns) * 1e-9
     steps = np.arange(0.0, parameters.longest_offset_s, parameters.step_s)
     offsets = np.concatenate([-steps[:0:-1], steps])
-    tried = [_try(one, two, float(offset), shift, parameters) for offset in offsets]
+    quick = replace(parameters, rounds=parameters.first_rounds)
+    tried = [_try(one, two, float(offset), shift, quick) for offset in offsets]
     known = [alignment for alignment in tried if alignment is not None]
     if not known:
         return None

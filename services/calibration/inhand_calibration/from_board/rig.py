@@ -78,11 +78,13 @@ class RigSolution:
 
     def together(self) -> dict[tuple[str, str], int]:
         """Return in how many of the moments each two cameras saw the board together."""
+        numbers = {name: number for number, name in enumerate(self.names)}
         return {
-            (self.names[one], self.names[two]): sum(
-                one in moment.views and two in moment.views for moment in self.moments
+            (one, two): sum(
+                numbers[one] in moment.views and numbers[two] in moment.views
+                for moment in self.moments
             )
-            for one, two in combinations(range(len(self.cameras)), 2)
+            for one, two in combinations(sorted(self.names), 2)
         }
 
 
