@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import cv2
 import numpy as np
@@ -38,7 +38,7 @@ class BoardLight:
     """Deviation of the lens's blur, pixels."""
     noise: float = 3.0
     """Deviation of a pixel's noise, levels."""
-    samples: int = 4
+    samples: int = 3
     """Samples along a pixel."""
 
 
@@ -97,11 +97,11 @@ def view_of_boards(
     shade = 1.0 + light.gradient * (0.7 * columns + 0.3 * rows)
     coarse = random.uniform(0.5, 1.5, (9, 16)).astype(np.float32)
     wall = cv2.resize(coarse, (lens.width, lens.height), interpolation=cv2.INTER_CUBIC)
-    picture = light.wall * wall
+    picture: Array = (light.wall * wall).astype(float)
     for one, poses in prints:
         _draw(picture, one, poses, lens, light)
     if light.blur_px > 0.0:
-        picture = cv2.GaussianBlur(picture, (0, 0), light.blur_px)
+        picture = cv2.GaussianBlur(picture, (0, 0), light.blur_px).astype(float)
     picture = picture * shade + light.noise * random.standard_normal(picture.shape)
     return np.clip(np.rint(picture), 0, 255).astype(np.uint8)
 
@@ -143,11 +143,20 @@ def _waypoints(one: BoardPrint, poses: Array, lens: Lens) -> Array:
 
 def _rays(lens: Lens, low: Array, high: Array, samples: int) -> Array:
     """Directions (rows, columns, 2), at a depth of 1, of samples of pixels from low to high."""
-    across = low[0] - 0.5 + (np.arange((high[0] - low[0]) * samples) + 0.5) / samples
-    down = low[1] - 0.5 + (np.arange((high[1] - low[1]) * samples) + 0.5) / samples
-    u, v = np.meshgrid(across, down)
-    pixels = np.stack([u.ravel(), v.ravel()], axis=1)
-    return lens.undistorted(pixels).reshape(*u.shape, 2)
+    # Straight between the middles of pixels, which undistortion is as good as.
+    margin = 1
+    window = _rays_of_pixels(lens)[low[1] : high[1] + 2 * margin, low[0] : high[0] + 2 * margin]
+    size = (window.shape[1] * samples, window.shape[0] * samples)
+    cut = margin * samples
+    enlarged = cv2.resize(window, size, interpolation=cv2.INTER_LINEAR)
+    return enlarged[cut:-cut, cut:-cut].astype(float)
+
+
+@cache
+def _rays_of_pixels(lens: Lens) -> Array:
+    """Directions (H + 2, W + 2, 2) of a lens's pixels and of one more on each side."""
+    u, v = np.meshgrid(np.arange(-1.0, lens.width + 1), np.arange(-1.0, lens.height + 1))
+    return lens.undistorted(np.stack([u.ravel(), v.ravel()], axis=1)).reshape(*u.shape, 2)
 
 
 def _seen(

@@ -118,10 +118,8 @@ def board_walk(
         pair = [cameras[(index + one) % len(cameras)] for one in (0, 1)]
         ways = [camera.room_from_camera[:3, 3] - middle for camera in pair]
         share = random.uniform(0.35, 0.65)
-        towards = sum(
-            weight * way / np.linalg.norm(way)
-            for weight, way in zip((share, 1.0 - share), ways, strict=True)
-        )
+        one, two = (way / np.linalg.norm(way) for way in ways)
+        towards = share * one + (1.0 - share) * two
         places.append(_facing(board, middle, towards, random, parameters.tilt_deg))
     if parameters.on_floor:
         x, y, _ = parameters.centre

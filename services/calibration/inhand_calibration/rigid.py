@@ -2,13 +2,12 @@
 
 import numpy as np
 from inhand_schemas.messages import Pose
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-Floats = NDArray[np.float64]
+from inhand_calibration.arrays import Array
 
 
-def rigid(rotation: Floats, translation: Floats) -> Floats:
+def rigid(rotation: Array, translation: Array) -> Array:
     """Join rotation matrices (..., 3, 3) and translations (..., 3)."""
     joined = np.zeros((*rotation.shape[:-2], 4, 4))
     joined[..., :3, :3] = rotation
@@ -17,25 +16,25 @@ def rigid(rotation: Floats, translation: Floats) -> Floats:
     return joined
 
 
-def inverse(transforms: Floats) -> Floats:
+def inverse(transforms: Array) -> Array:
     """Return the inverse transforms (..., 4, 4)."""
     turned = np.swapaxes(transforms[..., :3, :3], -1, -2)
     return rigid(turned, -(turned @ transforms[..., :3, 3:])[..., 0])
 
 
-def moved(transforms: Floats, points: Floats) -> Floats:
+def moved(transforms: Array, points: Array) -> Array:
     """Take points (..., N, 3) through transforms (..., 4, 4)."""
     turned = points @ np.swapaxes(transforms[..., :3, :3], -1, -2)
     return turned + transforms[..., None, :3, 3]
 
 
-def turned_by(vectors: Floats) -> Floats:
+def turned_by(vectors: Array) -> Array:
     """Return the matrices (..., 3, 3) of rotation vectors (..., 3), radians."""
     flat = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
     return flat.reshape(*vectors.shape[:-1], 3, 3)
 
 
-def cross_matrices(vectors: Floats) -> Floats:
+def cross_matrices(vectors: Array) -> Array:
     """Return matrices (..., 3, 3) whose product with a vector is the cross product by it."""
     x, y, z = np.moveaxis(vectors, -1, 0)
     zero = np.zeros_like(x)
@@ -43,18 +42,18 @@ def cross_matrices(vectors: Floats) -> Floats:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def angle(rotation: Floats) -> float:
+def angle(rotation: Array) -> float:
     """Return by how much a matrix (3, 3) rotates, radians."""
     return float(Rotation.from_matrix(rotation).magnitude())
 
 
-def of_pose(pose: Pose) -> Floats:
+def of_pose(pose: Pose) -> Array:
     """Return the matrix (4, 4) of a message's pose."""
     rotation = Rotation.from_quat(pose.rotation, scalar_first=True).as_matrix()
     return rigid(rotation, np.array(pose.translation))
 
 
-def to_pose(transform: Floats) -> Pose:
+def to_pose(transform: Array) -> Pose:
     """Return a matrix (4, 4) as a message's pose."""
     rotation = Rotation.from_matrix(transform[:3, :3]).as_quat(canonical=True, scalar_first=True)
     w, x, y, z = map(float, rotation)
@@ -62,7 +61,7 @@ def to_pose(transform: Floats) -> Pose:
     return Pose((a, b, c), (w, x, y, z))
 
 
-def rigid_fit(source: Floats, target: Floats, weights: Floats) -> Floats:
+def rigid_fit(source: Array, target: Array, weights: Array) -> Array:
     """Find the transform (4, 4) that takes points (N, 3) best to others, by weights (N,)."""
     share = weights / weights.sum()
     source_centre, target_centre = share @ source, share @ target

@@ -4,11 +4,11 @@ The board's own points make a track in each camera. At the right clock offset on
 lays one track on the other; at a wrong one it does so only where the board stands still.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inhand_calibration.from_board.board import Floats
+from inhand_calibration.arrays import Array
 from inhand_calibration.from_board.sights import CameraSights, board_pose
 from inhand_calibration.rigid import moved, rigid_fit
 
@@ -23,15 +23,19 @@ class AlignmentParameters:
     """Step of the offsets that are tried."""
     fine_step_s: float = 0.005
     """Step of those tried around the best one."""
-    sights: int = 150
+    sights: int = 120
     """Sights of a camera that are compared, at most."""
     near_m: float = 0.03
     """Distance of two points, at most, and this share of their depth, that are laid on each
     other: what one small board says of its own distance errs."""
     apart_s: float = 0.12
     """Time between two sights, at most, that are compared."""
-    rounds: int = 6
-    """Rounds of weighing."""
+    first_rounds: int = 3
+    """Rounds of weighing where many offsets are tried."""
+    rounds: int = 8
+    """Rounds around the best of them."""
+    elsewhere_m: float = 0.1
+    """Movement of a corner of the board, at least, that makes another place of it."""
     preference: float = 0.02
     """Share of the score by which an offset must be better than none at all."""
 
@@ -44,13 +48,15 @@ class Alignment:
     """Where a second camera is in the frame of a first (4, 4), ``first_from_second``.
 
     ``offset_s`` is what to add to the second camera's times to have the first's. ``moments`` are
-    the sights of both that were compared, and ``agreeing`` how many of them agree.
+    the sights of both that were compared, and ``agreeing`` how many of them agree; these show the
+    board in so many ``places``. Any one place can be laid on any other.
     """
 
-    first_from_second: Floats
+    first_from_second: Array
     offset_s: float
     moments: int
     agreeing: int
+    places: int
     score: float
 
 
@@ -58,8 +64,8 @@ class Alignment:
 class _Track:
     """The board's outline (S, 4, 3) in a camera's frame at times (S,), seconds."""
 
-    times: Floats
-    points: Floats
+    times: Array
+    points: Array
 
 
 def align(
@@ -75,7 +81,8 @@ def align(
     shift = (second.start_ns - first.start_ns) * 1e-9
     steps = np.arange(0.0, parameters.longest_offset_s, parameters.step_s)
     offsets = np.concatenate([-steps[:0:-1], steps])
-    tried = [_try(one, two, float(offset), shift, parameters) for offset in offsets]
+    quick = replace(parameters, rounds=parameters.first_rounds)
+    tried = [_try(one, two, float(offset), shift, quick) for offset in offsets]
     known = [alignment for alignment in tried if alignment is not None]
     if not known:
         return None
@@ -140,5 +147,19 @@ def _try(
         errors = np.sqrt(np.mean(np.sum((laid - target) ** 2, axis=2), axis=1)) / limits
         weights = 1.0 / np.maximum(errors, 0.1) / limits
     gains = np.maximum(0.0, 1.0 - errors**2)
-    agreeing = int((errors < 1.0).sum())
-    return Alignment(transform, offset, len(target), agreeing, float(gains.sum()))
+    agreeing = target[errors < 1.0]
+    seen = _places(agreeing, parameters.elsewhere_m)
+    return Alignment(transform, offset, len(target), len(agreeing), seen, float(gains.sum()))
+
+
+def _places(points: Array, elsewhere_m: float) -> int:
+    """In how many places a board's points (S, 4, 3) are, one after the other."""
+    if len(points) == 0:
+        return 0
+    kept = points[:1]
+    for one in points[1:]:
+        if np.abs(one - kept[-1]).max() < elsewhere_m:
+            continue
+        if np.abs(kept - one).max(axis=(1, 2)).min() > elsewhere_m:
+            kept = np.concatenate([kept, one[None]])
+    return len(kept)

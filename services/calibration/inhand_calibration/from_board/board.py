@@ -12,9 +12,8 @@ import cv2
 import numpy as np
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings_errors import suggestion
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from inhand_calibration.arrays import Array
 
 DICTIONARIES = {
     name.removeprefix("DICT_").lower(): value
@@ -81,12 +80,12 @@ class CharucoBoard:
         return board
 
     @cached_property
-    def corners(self) -> Floats:
+    def corners(self) -> Array:
         """Places (N, 3) of its corners in its frame, by their numbers, metres."""
         return np.asarray(self.drawn.getChessboardCorners(), float)
 
     @cached_property
-    def outline(self) -> Floats:
+    def outline(self) -> Array:
         """Its four outer corners (4, 3), metres, clockwise from the upper left."""
         width, height = self.size_m
         return np.array([(0, 0, 0), (width, 0, 0), (width, height, 0), (0, height, 0)], float)
@@ -95,7 +94,7 @@ class CharucoBoard:
         """Return the board as a printer made it that prints at another scale."""
         return replace(self, square_m=self.square_m * share, marker_m=self.marker_m * share)
 
-    def black_rectangles(self) -> Floats:
+    def black_rectangles(self) -> Array:
         """Return what is black: rectangles (N, 4) of x, y, width, height, metres.
 
         None overlap: chessboard squares, and in markers runs of black cells.
@@ -111,13 +110,13 @@ class CharucoBoard:
         cells = [
             rectangle
             for identifier, places in zip(
-                self.drawn.getIds().ravel(), self.drawn.getObjPoints(), strict=True
+                np.ravel(self.drawn.getIds()), self.drawn.getObjPoints(), strict=True
             )
             for rectangle in self._cells(int(identifier), np.asarray(places, float)[0, :2])
         ]
         return np.array(squares + cells)
 
-    def _cells(self, identifier: int, corner: Floats) -> list[tuple[float, float, float, float]]:
+    def _cells(self, identifier: int, corner: Array) -> list[tuple[float, float, float, float]]:
         """Runs of black cells, row by row, of the marker whose upper left corner (2,) that is."""
         dictionary = cv2.aruco.getPredefinedDictionary(DICTIONARIES[self.dictionary])
         side = dictionary.markerSize + 2

@@ -3,12 +3,14 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from inhand_calibration.from_board.board import DICTIONARIES, CharucoBoard, Floats
+from inhand_calibration.arrays import Array, Indices
+from inhand_calibration.from_board.board import DICTIONARIES, CharucoBoard
 
 LEAST_CORNERS = 6
 """Corners of a sight, at least: fewer hardly say how the board lies."""
@@ -32,8 +34,8 @@ class Corners:
     """
 
     board: CharucoBoard
-    numbers: NDArray[np.int64]
-    pixels: Floats
+    numbers: Indices
+    pixels: Array
     twice: bool = False
 
 
@@ -71,10 +73,10 @@ class BoardFinder:
         best: Corners | None = None
         for dictionary, detector in self._markers.items():
             places, numbers, _ = detector.detectMarkers(grey)
-            if numbers is None or len(numbers) == 0:
+            if not places:
                 continue
             for board, charuco in self._candidates(dictionary):
-                corners = _corners(grey, board, charuco, places, numbers.ravel())
+                corners = _corners(grey, board, charuco, places, np.ravel(numbers).astype(np.int64))
                 if corners is not None and (best is None or _rank(corners) > _rank(best)):
                     best = corners
         if best is not None and not best.twice:
@@ -106,8 +108,8 @@ def _corners(
     grey: NDArray[np.uint8],
     board: CharucoBoard,
     charuco: cv2.aruco.CharucoDetector,
-    places: Sequence[NDArray[np.float32]],
-    numbers: NDArray[np.int32],
+    places: Sequence[Any],
+    numbers: Indices,
 ) -> Corners | None:
     """Find a board's corners between its markers, which were seen at places (4, 2) each."""
     own = (numbers >= board.first_marker) & (numbers < board.first_marker + board.markers)
@@ -116,24 +118,27 @@ def _corners(
     chosen = numbers[own]
     if _seen_twice(chosen):
         return Corners(board, np.empty(0, np.int64), np.empty((0, 2)), twice=True)
-    corners, found, _, _ = charuco.detectBoard(
-        grey, markerCorners=[places[one] for one in np.flatnonzero(own)], markerIds=chosen[:, None]
+    seen: Any = charuco.detectBoard(
+        grey,
+        markerCorners=[places[int(one)] for one in np.flatnonzero(own)],
+        markerIds=chosen[:, None].astype(np.int32),
     )
-    if found is None or len(found) < LEAST_CORNERS:
+    corners, found = seen[0], np.ravel([] if seen[1] is None else seen[1])
+    if len(found) < LEAST_CORNERS:
         return None
-    order = np.argsort(found.ravel())
+    order = np.argsort(found)
     sight = Corners(
-        board, found.ravel()[order].astype(np.int64), corners.reshape(-1, 2)[order].astype(float)
+        board, found[order].astype(np.int64), np.reshape(corners, (-1, 2))[order].astype(float)
     )
     return sight if _spreads(board.corners[sight.numbers]) else None
 
 
-def _seen_twice(numbers: NDArray[np.int32]) -> bool:
+def _seen_twice(numbers: Indices) -> bool:
     """Whether there are two boards: a single marker seen twice is a false one, not a board."""
     return int((np.unique(numbers, return_counts=True)[1] > 1).sum()) > 1
 
 
-def _spreads(places: Floats) -> bool:
+def _spreads(places: Array) -> bool:
     """Whether places (N, 3) on a board are on more than one line."""
     along, across = np.linalg.svd(places[:, :2] - places[:, :2].mean(axis=0), compute_uv=False)
     return bool(across > LEAST_SPREAD * along)

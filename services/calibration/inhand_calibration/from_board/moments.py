@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inhand_calibration.arrays import Array
 from inhand_calibration.from_board.adjustment import Bundle, Corners3D
-from inhand_calibration.from_board.board import Floats
+from inhand_calibration.from_board.detection import LEAST_CORNERS
 from inhand_calibration.from_board.sights import (
     NS,
     Between,
@@ -27,8 +28,11 @@ class MomentParameters:
     still_px_s: float = 12.0
     """Speed of the board in a picture below which it stands still: hands shake."""
     moved_px: float = 3.0
-    """Movement in any picture since the last moment, at least, that makes another one: the corners
-    of a board that stands still err alike again and again."""
+    """Movement in any picture since the last moment, at least, that makes another one: moments of a
+    board that stands still become their mean."""
+    most_means: int = 4
+    """Number of instants, at most, by which a mean is better: corners of a board that stands still
+    err alike, too."""
     timing_s: float = 0.004
     """Deviation of when corners were seen, beside the camera's own: shutters that roll down the
     picture."""
@@ -103,15 +107,32 @@ def _moment(
 
 
 def _keep(moment: Moment | None, chosen: list[Moment], parameters: MomentParameters) -> None:
-    """Keep a moment, unless the board stands where it stood at the last one; the one that more
-    cameras saw stays."""
+    """Keep a moment; where the board stands as at the last one, as part of that one's mean, or in
+    its place where more cameras see it, or fewer saw it at rest."""
     if moment is None:
         return
-    if chosen and _stands(chosen[-1], moment, parameters.moved_px):
-        if _rank(moment) > _rank(chosen[-1]):
-            chosen[-1] = moment
-        return
-    chosen.append(moment)
+    if not chosen or not _stands(chosen[-1], moment, parameters.moved_px):
+        chosen.append(moment)
+    elif _at_rest(moment, parameters) and _at_rest(chosen[-1], parameters):
+        chosen[-1] = _mean(chosen[-1], moment)
+    elif _rank(moment) > _rank(chosen[-1]):
+        chosen[-1] = moment
+
+
+def _at_rest(moment: Moment, parameters: MomentParameters) -> bool:
+    return moment.speed_px_s <= parameters.still_px_s
+
+
+def _mean(before: Moment, after: Moment) -> Moment:
+    """Join two moments of a board at rest; what few saw alone is left to the one that has it."""
+    if before.views.keys() != after.views.keys():
+        return after if _rank(after) > _rank(before) else before
+    views = {
+        camera: view.with_another(after.views[camera]) for camera, view in before.views.items()
+    }
+    if any(len(view.numbers) < LEAST_CORNERS for view in views.values()):
+        return before
+    return Moment(before.time_ns, views, max(before.speed_px_s, after.speed_px_s))
 
 
 def _stands(before: Moment, after: Moment, moved_px: float) -> bool:
@@ -151,6 +172,7 @@ def corners_of(
                     view.pixels,
                     view.velocities,
                     np.linalg.norm(view.velocities, axis=1) * timing,
+                    np.full(count, min(view.instants, parameters.most_means) ** -0.5),
                 )
             )
     return Corners3D(*(np.concatenate(column) for column in zip(*parts, strict=True)))
@@ -159,7 +181,7 @@ def corners_of(
 def started(
     moments: Sequence[Moment],
     cameras: Sequence[CameraSights],
-    from_reference: Floats,
+    from_reference: Array,
     parameters: MomentParameters = DEFAULT_MOMENTS,
 ) -> tuple[list[Moment], Bundle]:
     """Guess where the board is at each moment by the camera that explains best what all saw.
@@ -177,11 +199,12 @@ def started(
         if guesses and min(errors) < parameters.wild_px:
             kept.append(moment)
             boards.append(guesses[int(np.argmin(errors))])
-    clocks = np.zeros(len(cameras))
-    return kept, Bundle(from_reference, np.array(boards).reshape(-1, 4, 4), clocks)
+    count = len(cameras)
+    poses = np.array(boards).reshape(-1, 4, 4)
+    return kept, Bundle(from_reference, poses, np.zeros(count), np.zeros((count, 3)))
 
 
-def _poses(camera: CameraSights, view: Between) -> list[Floats]:
+def _poses(camera: CameraSights, view: Between) -> list[Array]:
     sight = Sight(0, view.numbers, view.pixels)
     pose: BoardPose | None = board_pose(camera.lens, camera.board, sight)
     if pose is None:
@@ -190,7 +213,7 @@ def _poses(camera: CameraSights, view: Between) -> list[Floats]:
 
 
 def _worst_error(
-    moment: Moment, cameras: Sequence[CameraSights], from_reference: Floats, board: Floats
+    moment: Moment, cameras: Sequence[CameraSights], from_reference: Array, board: Array
 ) -> float:
     """The median error of the corners of the camera that sees them worst, pixels."""
     worst = 0.0

@@ -5,12 +5,18 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from inhand_runtime.errors import InhandError
 from inhand_runtime.wording import counted
 
-from inhand_calibration.from_board.adjustment import CAMERA_PARAMETERS, Adjusted, adjust
+from inhand_calibration.arrays import Array
+from inhand_calibration.errors import CalibrationError
+from inhand_calibration.from_board.adjustment import (
+    CAMERA_PARAMETERS,
+    CLOCK,
+    LENS,
+    Adjusted,
+    adjust,
+)
 from inhand_calibration.from_board.alignment import Alignment, align
-from inhand_calibration.from_board.board import Floats
 from inhand_calibration.from_board.moments import (
     Moment,
     common_moments,
@@ -20,8 +26,8 @@ from inhand_calibration.from_board.moments import (
 from inhand_calibration.from_board.sights import NS, CameraSights
 from inhand_calibration.rigid import cross_matrices, inverse
 
-LEAST_MOMENTS = 5
-"""Moments, at least, in which two cameras must see the board together to be joined by them."""
+LEAST_PLACES = 4
+"""Places of the board, at least, that two cameras must see together to be joined by them."""
 ENOUGH_MOMENTS = 20
 """Moments of two cameras with which both are well known."""
 LEAST_AGREEING = 0.5
@@ -38,10 +44,6 @@ CLOCK_FLOOR_S = 0.001
 """Deviation of a clock's offset, at least: boards do not go straight on between two pictures."""
 
 
-class CalibrationError(InhandError):
-    """What was seen does not say where the cameras are."""
-
-
 @dataclass(frozen=True)
 class RigSolution:
     """Where the cameras of a rig are in the first one's frame, its reference.
@@ -53,16 +55,21 @@ class RigSolution:
     """
 
     cameras: tuple[CameraSights, ...]
-    reference_from_camera: Floats
-    covariances: Floats
-    offsets_s: Floats
-    offset_deviations_s: Floats
-    boards: Floats
+    reference_from_camera: Array
+    covariances: Array
+    offsets_s: Array
+    offset_deviations_s: Array
+    boards: Array
     moments: tuple[Moment, ...]
-    errors_px: Floats
+    errors_px: Array
     """Root mean square error of each camera's corners that count, pixels."""
-    left_out: Floats
+    left_out: Array
     """Share of each camera's corners that do not count."""
+    lens_changes: Array
+    """By how much lenses (C, 3) would be other than published if they were adjusted, too: focal
+    length, a share of it, and principal point, pixels."""
+    lens_deviations: Array
+    """Deviations of these."""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -71,11 +78,13 @@ class RigSolution:
 
     def together(self) -> dict[tuple[str, str], int]:
         """Return in how many of the moments each two cameras saw the board together."""
+        numbers = {name: number for number, name in enumerate(self.names)}
         return {
-            (self.names[one], self.names[two]): sum(
-                one in moment.views and two in moment.views for moment in self.moments
+            (one, two): sum(
+                numbers[one] in moment.views and numbers[two] in moment.views
+                for moment in self.moments
             )
-            for one, two in combinations(range(len(self.cameras)), 2)
+            for one, two in combinations(sorted(self.names), 2)
         }
 
 
@@ -97,21 +106,23 @@ def solve_rig(cameras: Sequence[CameraSights]) -> RigSolution:
         if np.abs(changes).max() < SETTLED_CLOCK_S:
             break
         adjusted, moments = _adjusted(cameras, adjusted.bundle.cameras, offsets)
-    return _solution(cameras, adjusted, moments, offsets)
+    return _solution(
+        cameras, adjusted, moments, offsets, *_changed_lenses(cameras, adjusted, moments)
+    )
 
 
 def _joined(
     cameras: Sequence[CameraSights], links: dict[tuple[int, int], Alignment | None]
-) -> tuple[Floats, Floats]:
+) -> tuple[Array, Array]:
     """Join cameras by the pairs that agree best, from the first one on: the cameras (C, 4, 4) from
     the reference, and their clocks' offsets (C,), seconds."""
     _require_agreement(cameras, links)
     usable = {
         pair: link
         for pair, link in links.items()
-        if link is not None and link.agreeing >= LEAST_MOMENTS
+        if link is not None and link.places >= LEAST_PLACES
     }
-    from_reference: dict[int, Floats] = {0: np.eye(4)}
+    from_reference: dict[int, Array] = {0: np.eye(4)}
     offsets = {0: 0.0}
     while len(from_reference) < len(cameras):
         open_links = [
@@ -140,7 +151,7 @@ def _require_agreement(
 ) -> None:
     """Raise CalibrationError where two cameras see boards that cannot be one."""
     for (one, two), link in links.items():
-        if link is None or link.moments < 2 * LEAST_MOMENTS:
+        if link is None or link.moments < 2 * LEAST_PLACES:
             continue
         if link.agreeing < LEAST_AGREEING * link.moments:
             raise CalibrationError(
@@ -158,13 +169,13 @@ def _apart(cameras: Sequence[CameraSights], joined: set[int]) -> str:
     return (
         f"{' and '.join(others)} never saw the board together with "
         f"{' or '.join(names[index] for index in sorted(joined))} often enough "
-        f"({counted(LEAST_MOMENTS, 'moment')} at least): hold it where two of them see it, "
+        f"({counted(LEAST_PLACES, 'place')} at least): hold it where two of them see it, "
         "standing still, in as many places as you can"
     )
 
 
 def _adjusted(
-    cameras: Sequence[CameraSights], from_reference: Floats, offsets: Floats
+    cameras: Sequence[CameraSights], from_reference: Array, offsets: Array
 ) -> tuple[Adjusted, list[Moment]]:
     """Adjust all by the moments that the clocks' offsets (C,), seconds, make common."""
     offsets_ns = [round(offset / NS) for offset in offsets]
@@ -183,7 +194,9 @@ def _solution(
     cameras: Sequence[CameraSights],
     adjusted: Adjusted,
     moments: Sequence[Moment],
-    offsets: Floats,
+    offsets: Array,
+    lens_changes: Array,
+    lens_deviations: Array,
 ) -> RigSolution:
     bundle = adjusted.bundle
     count = len(cameras)
@@ -197,10 +210,10 @@ def _solution(
         left_out[index] = 1.0 - good.sum() / max(own.sum(), 1)
     covariances, clock_deviations = np.zeros((count, 6, 6)), np.zeros(count)
     for index in range(1, count):
-        start = CAMERA_PARAMETERS * (index - 1)
+        start = CAMERA_PARAMETERS * index
         own = slice(start, start + 6)
         covariances[index] = _of_camera(bundle.cameras[index], adjusted.covariance[own, own])
-        clock_deviations[index] = np.sqrt(adjusted.covariance[start + 6, start + 6])
+        clock_deviations[index] = np.sqrt(adjusted.covariance[start + CLOCK, start + CLOCK])
     clock_deviations[1:] = np.hypot(clock_deviations[1:], CLOCK_FLOOR_S)
     clock_deviations[clock_deviations > KNOWN_CLOCK_S] = np.nan
     return RigSolution(
@@ -213,10 +226,23 @@ def _solution(
         tuple(moments),
         errors,
         left_out,
+        lens_changes,
+        lens_deviations,
     )
 
 
-def _of_camera(camera_from_reference: Floats, covariance: Floats) -> Floats:
+def _changed_lenses(
+    cameras: Sequence[CameraSights], adjusted: Adjusted, moments: Sequence[Moment]
+) -> tuple[Array, Array]:
+    """Adjust lenses, too: their changes (C, 3) and the deviations of these."""
+    corners = corners_of(moments, cameras, [0.0] * len(cameras))
+    lenses = tuple(one.lens for one in cameras)
+    free = adjust(corners, lenses, adjusted.bundle, with_lenses=True)
+    variances = np.diag(free.covariance).reshape(-1, CAMERA_PARAMETERS)[:, LENS]
+    return free.bundle.lenses, np.sqrt(variances)
+
+
+def _of_camera(camera_from_reference: Array, covariance: Array) -> Array:
     """Covariance (6, 6) of translation and rotation of ``reference_from_camera``, of that of the
     other way round, whose rotation comes first and is on the left."""
     back = camera_from_reference[:3, :3].T

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
-from inhand_calibration.from_board.board import MM, CharucoBoard, Floats
+from inhand_calibration.arrays import Array
+from inhand_calibration.from_board.board import MM, CharucoBoard
 
 PAPERS_MM = {"a4": (210.0, 297.0), "letter": (215.9, 279.4), "a3": (297.0, 420.0)}
 INCH_MM = 25.4
@@ -66,7 +67,7 @@ def board_corner_mm(board: CharucoBoard, paper: str) -> tuple[float, float]:
     return (width - board_width) / 2.0, (height - TEXT_BAND_MM - board_height) / 2.0
 
 
-def _outline(rectangles: Floats) -> Outline:
+def _outline(rectangles: Array) -> Outline:
     """Join rectangles (N, 4) of x, y, width, height into one outline."""
     x, y, width, height = rectangles.T
     corners = np.stack(

@@ -2,19 +2,24 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from inhand_calibration.from_board.board import CharucoBoard, Floats
+from inhand_calibration.arrays import Array
+from inhand_calibration.from_board.board import CharucoBoard
 from inhand_calibration.from_board.detection import LEAST_CORNERS
 from inhand_calibration.from_board.lens import Lens
 from inhand_calibration.rigid import moved, rigid, turned_by
 
 NS = 1e-9
 LONGEST_GAP_S = 0.25
-"""Time between two sights, at most, between which corners are taken to go straight on."""
+"""Time between two sights, at most, between which a board that stands still is taken to do so."""
+STRAIGHT_S = 0.08
+"""Time between two sights, at most, between which corners are taken to go straight on: hands turn
+back within a tenth of a second."""
 FALSE_CORNER_PX = 4.0
 """Error of a corner from which on it is a false one, beside four times the sight's own error."""
 AMBIGUOUS = 1.6
@@ -31,7 +36,7 @@ class Sight:
 
     time_ns: int
     numbers: NDArray[np.int64]
-    pixels: Floats
+    pixels: Array
     uncertainty_ns: int = 0
 
 
@@ -39,9 +44,9 @@ class Sight:
 class BoardPose:
     """A board's pose in a camera (4, 4), its error in pixels, and another that fits as well."""
 
-    camera_from_board: Floats
+    camera_from_board: Array
     error_px: float
-    other: Floats | None = None
+    other: Array | None = None
 
     @property
     def ambiguous(self) -> bool:
@@ -52,11 +57,26 @@ class BoardPose:
 @dataclass(frozen=True)
 class Between:
     """Corners at one instant: numbers (N,), pixels (N, 2) and their velocities (N, 2), pixels a
-    second."""
+    second; or, of a board that stood still, the mean of so many instants."""
 
     numbers: NDArray[np.int64]
-    pixels: Floats
-    velocities: Floats
+    pixels: Array
+    velocities: Array
+    instants: int = 1
+
+    def with_another(self, other: "Between") -> "Between":
+        """Return the mean with another instant, of the corners that both have."""
+        numbers, first, second = np.intersect1d(
+            self.numbers, other.numbers, assume_unique=True, return_indices=True
+        )
+        total = self.instants + other.instants
+        share = other.instants / total
+        return Between(
+            numbers,
+            (1.0 - share) * self.pixels[first] + share * other.pixels[second],
+            (1.0 - share) * self.velocities[first] + share * other.velocities[second],
+            total,
+        )
 
 
 @dataclass(frozen=True)
@@ -69,7 +89,7 @@ class CameraSights:
     sights: tuple[Sight, ...]
 
     @cached_property
-    def times_s(self) -> Floats:
+    def times_s(self) -> Array:
         """Times (S,) of the sights by the camera's clock, seconds since ``start_ns``."""
         return np.array([(one.time_ns - self.start_ns) * NS for one in self.sights])
 
@@ -79,7 +99,7 @@ class CameraSights:
         return self.sights[0].time_ns if self.sights else 0
 
     @cached_property
-    def speeds(self) -> Floats:
+    def speeds(self) -> Array:
         """Speed (S,) of the board in each sight, pixels a second; NaN where it is not known."""
         speeds = np.full(len(self.sights), np.nan)
         for index in range(len(self.sights)):
@@ -104,7 +124,8 @@ class CameraSights:
         after = int(np.searchsorted(times, seconds))
         if after < len(times) and times[after] == seconds:
             return self._held(after, still_px_s, moving=True)
-        if 0 < after < len(times) and times[after] - times[after - 1] <= LONGEST_GAP_S:
+        gap = times[after] - times[after - 1] if 0 < after < len(times) else np.inf
+        if gap <= (STRAIGHT_S if self._moves(after, still_px_s) else LONGEST_GAP_S):
             between = self._joined(after - 1, seconds)
             if len(between.numbers) >= LEAST_CORNERS:
                 return between
@@ -113,6 +134,11 @@ class CameraSights:
         if nearest is None or abs(times[nearest] - seconds) > LONGEST_GAP_S / 2.0:
             return None
         return self._held(nearest, still_px_s, moving=False)
+
+    def _moves(self, after: int, still_px_s: float) -> bool:
+        """Whether the board moves between a sight and the one before."""
+        speeds = self.speeds[after - 1 : after + 1]
+        return not bool((speeds <= still_px_s).all())
 
     def _joined(self, index: int, seconds: float) -> Between:
         before, after = self.sights[index], self.sights[index + 1]
@@ -149,15 +175,15 @@ def board_pose(lens: Lens, board: CharucoBoard, sight: Sight) -> BoardPose | Non
     )
     candidates = []
     for index in range(count):
-        pose = rigid(turned_by(turns[index].ravel()), shifts[index].ravel())
+        pose = _pose(turns[index], shifts[index])
         points = moved(pose, places)
         if np.isfinite(pose).all() and (points[:, 2] > 0.0).all():
             turn, shift = cv2.solvePnPRefineLM(
                 places, rays, np.eye(3), None, turns[index].copy(), shifts[index].copy()
             )
-            refined = rigid(turned_by(turn.ravel()), shift.ravel())
-            error = sight.pixels - lens.project(moved(refined, places))
-            candidates.append((float(np.sqrt(np.mean(error**2))), index, refined))
+            refined = _pose(turn, shift)
+            errors = sight.pixels - lens.project(moved(refined, places))
+            candidates.append((float(np.sqrt(np.mean(errors**2))), index, refined))
     if not candidates:
         return None
     candidates.sort(key=lambda one: one[:2])
@@ -166,6 +192,11 @@ def board_pose(lens: Lens, board: CharucoBoard, sight: Sight) -> BoardPose | Non
     fits = len(candidates) > 1 and candidates[1][0] < AMBIGUOUS * error
     differs = not np.allclose(other, best, atol=1e-3)
     return BoardPose(best, error, other if fits and differs else None)
+
+
+def _pose(turn: Any, shift: Any) -> Array:
+    """Return what OpenCV says of a pose, a rotation vector and a translation, as a matrix."""
+    return rigid(turned_by(np.ravel(turn).astype(float)), np.ravel(shift).astype(float))
 
 
 def without_false_corners(lens: Lens, board: CharucoBoard, sight: Sight) -> Sight | None:
@@ -183,7 +214,7 @@ def without_false_corners(lens: Lens, board: CharucoBoard, sight: Sight) -> Sigh
     return Sight(sight.time_ns, sight.numbers[good], sight.pixels[good], sight.uncertainty_ns)
 
 
-def _velocities(before: Sight, after: Sight) -> Floats:
+def _velocities(before: Sight, after: Sight) -> Array:
     """Velocities (N, 2) of the corners that both have, pixels a second; none beside a gap."""
     span = (after.time_ns - before.time_ns) * NS
     if not 0.0 < span <= LONGEST_GAP_S:
