@@ -74,8 +74,8 @@ class RefinementParameters:
     surface_m: float = 0.003
     """Deviation of how much nearer to the camera than the truth people are seen, in all cameras
     alike. Little, as Inhand's own skeletons and a Kinect's are in the bones: with 15 mm, opposite
-    cameras that saw a simulated wanderer by BlazePose came 37 mm too far apart, with 1 mm 2 mm.
-    More, 20 mm, for trackers that take the skin for the bone."""
+    cameras that saw a simulated wanderer by BlazePose came centimetres too far apart. More, 20 mm,
+    for trackers that take the skin for the bone."""
     surface_difference_m: float = 0.002
     """Deviation between cameras of the same."""
     drift_ppm: float = 50.0
