@@ -30,6 +30,7 @@ VERBS = {
     "up": "run every process that the config names, supervised",
     "reload": "have a running `inhand up` take over its settings file, which has changed",
     "shutter": "close or open the cameras' shutters",
+    "calibrate": "find where the cameras of a rig are, by a board or by people, and print boards",
     "control": "change a camera's exposure, focus or light while it runs",
     "replay": "publish a recording again",
     "playback": "pause, resume, step through and seek in a replay that runs",
@@ -42,7 +43,7 @@ VERBS = {
     "evaluate": "measure methods on people that were not trained on",
     "recognise": "measure tracking where the object is not given, and recognition alone",
     "bench": "measure tracker, training, transport, hub, recorder, outcomes, skeletons, objects, "
-    "labels, likelihood, constants, ablation",
+    "labels, likelihood, constants, ablation, calibration",
     "models": "get the networks that find people in images: fetch",
     "recording": "info, verify, recover, repair, complete, convert, export, import and redact "
     "recordings",

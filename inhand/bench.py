@@ -352,8 +352,15 @@ def _outcomes(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, 
     return Group(*tables), result
 
 
+def _calibration(_: argparse.Namespace) -> tuple[RenderableType, dict[str, Any]]:
+    from inhand.bench_calibration import check_calibration
+
+    return check_calibration()
+
+
 SUBJECTS_HELP = {
     "ablation": "the error of fusion without each of its parts",
+    "calibration": "how far cameras of a rig are from the truth, by a board and by people",
     "constants": "its error with each number halved and doubled",
     "hub": "what a hub costs by the number of rigs, and its encryption and rules in delay",
     "labels": "how far labels between keyframes are from the truth",
@@ -386,6 +393,7 @@ ALSO_MEASURED_ON = ("likelihood", "skeletons")
 
 SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "ablation": _ablation,
+    "calibration": _calibration,
     "constants": _constants,
     "hub": _hub,
     "labels": _labels,

@@ -53,7 +53,19 @@ def _of_service(rig_file: RigFile, config: Path | None, service: str) -> list[Ri
         RigProcess(
             f"{service} {instance}",
             (sys.executable, "-m", "inhand", service, *file, "--name", instance),
-            (*shared, table),
+            (*shared, table, _calibration(table, config)),
         )
         for instance, table in getattr(rig_file, service).items()
     ]
+
+
+def _calibration(table: dict[str, Any], config: Path | None) -> bytes | None:
+    """Content of the calibration file that a table names: its camera starts anew where that
+    changed, too. None where there is none, or it cannot be read, which the camera's check says."""
+    name = table.get("calibration")
+    if not isinstance(name, str):
+        return None
+    try:
+        return (Path() if config is None else config.parent).joinpath(name).read_bytes()
+    except OSError:
+        return None

@@ -1,12 +1,18 @@
 """The capture daemon as a process over real Zenoh."""
 
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
 from fetched_weights import use_weights
 from inhand_runtime.inbox import Received
-from inhand_schemas.messages import Health, Message, ObjectPose, Skeletons
+from inhand_runtime.rig_calibration import (
+    CameraCalibration,
+    RigCalibration,
+    write_rig_calibration,
+)
+from inhand_schemas.messages import CameraInfo, Health, Message, ObjectPose, Pose, Skeletons
 from inhand_schemas.topics import HEALTH, INFO, LABEL, RGBD, SKELETONS, AnyTopic
 from played import FRAME_NS as RECORDED_FRAME_NS
 from played import START_NS, entries, write
@@ -107,6 +113,22 @@ def test_info_reaches_those_who_come_late(wire: Wire, rig: RunningRig, capture: 
     capture().said("is up")
     infos = wire.hear(INFO)
     eventually("the info", lambda: infos)
+
+
+def test_the_camera_is_published_where_its_calibration_has_it(
+    wire: Wire, rig: RunningRig, capture: Start
+) -> None:
+    place = Pose((1.0, 2.0, 3.0), (0.0, 1.0, 0.0, 0.0))
+    made = datetime(2026, 11, 30, tzinfo=UTC)
+    front = CameraCalibration(place, (0.001,) * 3, (0.0001,) * 3, "board", made)
+    write_rig_calibration(rig.folder / "cameras.toml", RigCalibration({"front": front}))
+    _configure(rig, 1, "hang", more='wait_for_reader_s = 0\ncalibration = "cameras.toml"')
+    infos = wire.hear(INFO)
+    capture().said("is up")
+    eventually("the info", lambda: infos)
+    (info,) = _decoded(INFO, infos[:1])
+    assert isinstance(info, CameraInfo)
+    assert info.rig_from_camera == place
 
 
 def test_a_source_starts_when_nobody_comes(rig: RunningRig, capture: Start) -> None:

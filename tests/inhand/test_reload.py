@@ -12,9 +12,11 @@ from pathlib import Path
 
 import psutil
 import pytest
+from inhand_runtime.settings import load_rig_file
 from running_rig import Process, RunningRig, eventually
 
 from inhand.__main__ import main
+from inhand.rig_processes import rig_processes
 
 pytestmark = pytest.mark.long
 
@@ -91,6 +93,16 @@ def test_processes_come_and_go_with_their_tables(rig: RunningRig) -> None:
     assert _pids(up)["b"] == kept
     assert up.stop() == 0
     assert up.stderr.count("recorder b is up") == 1
+
+
+def test_a_camera_starts_anew_when_only_its_calibration_changed(tmp_path: Path) -> None:
+    config, calibration = tmp_path / "rig.toml", tmp_path / "cameras.toml"
+    config.write_text('[capture.front]\nsource = "x"\ncalibration = "cameras.toml"\n')
+    calibration.write_text("version = 1")
+    before = rig_processes(load_rig_file(config), config)
+    assert rig_processes(load_rig_file(config), config) == before
+    calibration.write_text("version = 1 # another one")
+    assert rig_processes(load_rig_file(config), config) != before
 
 
 BAD = {

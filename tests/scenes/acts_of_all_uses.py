@@ -75,6 +75,7 @@ class Act:
                     person=person,
                     camera_from_object=Pose((x, y, z), (w, i, j, k)),
                     covariance=covariance,
+                    class_probabilities={self.name: 0.9},
                 ),
             )
 

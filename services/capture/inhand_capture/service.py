@@ -4,7 +4,7 @@ import contextlib
 import logging
 import time
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError
 from inhand_runtime.settings import Settings
 from inhand_runtime.source import Captured, Source, SourceError, source_factory
+from inhand_schemas.messages import Pose
 from inhand_schemas.playback import PLAYBACK, PlaybackReply, PlaybackRequest
 from inhand_schemas.procedures import (
     CONTROL,
@@ -22,11 +23,12 @@ from inhand_schemas.procedures import (
     ShutterRequest,
 )
 from inhand_schemas.topics import PREVIEW, SKELETONS
+from msgspec import structs
 
 from inhand_capture.preview import Previews
 from inhand_capture.publishing import CameraPublisher
 from inhand_capture.reopening import Ending, captures
-from inhand_capture.settings import CaptureSettings, check
+from inhand_capture.settings import CaptureSettings, check, rig_from_camera
 from inhand_capture.shutter import (
     POLL_S,
     EndOfCapture,
@@ -58,31 +60,40 @@ def run(settings: Settings[CaptureSettings]) -> None:
     changed: dict[str, Any] = {}
 
     def open_source() -> Source:
-        options, _, faces = prepared()
-        source = source_factory(chosen.source)({**options, **changed})
-        return viewed(source, chosen.rotate, chosen.masks, faces)
+        ready = prepared()
+        source = source_factory(chosen.source)({**ready.options, **changed})
+        return viewed(source, chosen.rotate, chosen.masks, ready.faces)
 
     shutter = kept_shutter(settings.site, settings.instance)
     with running_daemon("capture", settings, prepare=prepared) as daemon:
-        _, network, _ = prepared()
+        ready = prepared()
         watched = WatchedSource(chosen.source, daemon.health)
         _offer_shutter(daemon, shutter)
         _offer_controls(daemon, watched, changed)
         _offer_playback(daemon, watched)
         try:
-            with _skeleton_stage(daemon, network, chosen, shutter) as stage:
-                _publish(daemon, chosen, open_source, stage, shutter, watched)
+            with _skeleton_stage(daemon, ready.network, chosen, shutter) as stage:
+                _publish(daemon, chosen, open_source, ready.mount, stage, shutter, watched)
         except SourceError as error:
             raise InhandError(f"source {chosen.source}: {error}") from error
 
 
-def _prepare(
-    settings: Settings[CaptureSettings],
-) -> "tuple[Mapping[str, Any], PoseNetwork | None, FaceFinder | None]":
-    """Check the settings, and return the source's options and what looks at its pictures."""
+@dataclass(frozen=True)
+class _Ready:
+    """What the settings name: the source's options, what looks at its pictures, and where the
+    camera is in the rig, None where the source says it."""
+
+    options: Mapping[str, Any]
+    network: "PoseNetwork | None"
+    faces: "FaceFinder | None"
+    mount: Pose | None
+
+
+def _prepare(settings: Settings[CaptureSettings]) -> _Ready:
+    """Check the settings, and load what they name."""
     options, chosen = check(settings), settings.service
     network = _network(chosen)
-    return options, network, _face_finder(chosen, network)
+    return _Ready(options, network, _face_finder(chosen, network), rig_from_camera(settings))
 
 
 def _offer_shutter(daemon: Daemon, shutter: Shutter) -> None:
@@ -173,6 +184,7 @@ def _publish(
     daemon: Daemon,
     chosen: CaptureSettings,
     open_source: Callable[[], Source],
+    mount: Pose | None,
     stage: "SkeletonStage | None",
     shutter: Shutter,
     watched: WatchedSource,
@@ -188,9 +200,12 @@ def _publish(
         return camera.wants_pixels() or previews.wanted() or estimated
 
     def opened(source: Source) -> None:
+        info = source.info
+        if mount is not None:
+            info = structs.replace(info, rig_from_camera=mount)
         if stage is not None:
-            stage.introduce(source.info)
-        camera.introduce(source.info)
+            stage.introduce(info)
+        camera.introduce(info)
         watched.opened(source)
         heard = partial(_has_readers, camera, previews)
         _wait_for_readers(heard, chosen.wait_for_reader_s, daemon, end)

@@ -4,8 +4,10 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.rig_calibration import calibration_of
 from inhand_runtime.settings import FilePath, Section, Settings
 from inhand_runtime.source import SourceError, require_source, source_factory
+from inhand_schemas.messages import Pose
 from pydantic import AfterValidator, Field, model_validator
 
 NO_CAMERA = (
@@ -49,6 +51,9 @@ class CaptureSettings(Section):
 
     Depth is published as ``depth_codec`` says; what is encoded already stays as it is unless that
     is "png16".
+
+    ``calibration`` is the file that ``inhand calibrate`` wrote: where the camera is in the rig,
+    which is published in place of what the source says.
     """
 
     source: Annotated[str, AfterValidator(_installed)]
@@ -60,6 +65,7 @@ class CaptureSettings(Section):
     masks: tuple[Annotated[tuple[Corner, ...], Field(min_length=3)], ...] = ()
     mask_faces: bool = False
     depth_codec: Literal["z16-zstd", "png16"] = "z16-zstd"
+    calibration: FilePath | None = None
 
     def looks_for_people(self) -> bool:
         """Whether a network has to find people in the pictures."""
@@ -93,7 +99,22 @@ def check(settings: Settings[CaptureSettings]) -> Mapping[str, Any]:
     except SourceError as error:
         raise origin.refusal("options", str(error)) from None
     _check_networks(settings)
+    rig_from_camera(settings)
     return options
+
+
+def rig_from_camera(settings: Settings[CaptureSettings]) -> Pose | None:
+    """Read where the camera is in the rig; None where no calibration is named.
+
+    Raises SettingsError for a file that is wrong, or does not name the camera.
+    """
+    path = settings.service.calibration
+    if path is None:
+        return None
+    try:
+        return calibration_of(path, settings.instance).rig_from_camera
+    except SettingsError as error:
+        raise settings.origin.refusal("calibration", str(error)) from None
 
 
 def _check_networks(settings: Settings[CaptureSettings]) -> None:
