@@ -153,8 +153,9 @@ class BoardSights:
         for camera, count in self._twice.items():
             if count > TWO_BOARDS * (count + len(self._sights[camera])):
                 raise CalibrationError(
-                    f"{camera} sees the same markers at two places in {counted(count, 'picture')}: there are "
-                    "two boards of one kind in view; put one away"
+                    f"{camera} sees the same markers at two places in "
+                    f"{counted(count, 'picture')}: there are two boards of one kind in view; put "
+                    "one away"
                 )
         for other, count in seen.items():
             if other != board and count > MIXED * seen.total():
