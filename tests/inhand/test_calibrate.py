@@ -1,6 +1,7 @@
 """`inhand calibrate` from the command line: boards, recordings, a rig that runs, and checks."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,8 @@ from inhand_lab.sensing.board_walk import (
     is_seen,
     looking_at,
 )
-from inhand_runtime.rig_calibration import read_rig_calibration
+from inhand_runtime.rig_calibration import read_rig_calibration, write_rig_calibration
+from inhand_schemas.messages import Pose
 from inhand_schemas.topics import INFO, RGBD
 from played import Entry, write
 from running_rig import RunningRig
@@ -72,9 +74,11 @@ def test_recordings_of_two_hosts_are_calibrated_and_checked(
     assert json.loads(result.read_text())["cameras"]["left"]["intrinsics"] in ("right", "unsure")
 
     assert main(["calibrate", *map(str, recordings), "--check", str(output)]) == 0
-    place = calibration.cameras["left"].rig_from_camera.translation
-    text = output.read_text()
-    output.write_text(text.replace(f"[{place[0]!r}", f"[{place[0] + 0.05!r}"))
+    one = calibration.cameras["left"]
+    x, y, z = one.rig_from_camera.translation
+    bumped = replace(one, rig_from_camera=Pose((x + 0.05, y, z), one.rig_from_camera.rotation))
+    cameras = {**calibration.cameras, "left": bumped}
+    write_rig_calibration(output, replace(calibration, cameras=cameras))
     assert main(["calibrate", *map(str, recordings), "--check", str(output)]) == 1
     assert "moved" in capsys.readouterr().out
 

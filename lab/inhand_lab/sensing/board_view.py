@@ -102,8 +102,8 @@ def view_of_boards(
         _draw(picture, one, poses, lens, light)
     if light.blur_px > 0.0:
         picture = cv2.GaussianBlur(picture, (0, 0), light.blur_px).astype(float)
-    picture = picture * shade + light.noise * random.standard_normal(picture.shape)
-    return np.clip(np.rint(picture), 0, 255).astype(np.uint8)
+    noise = light.noise * random.standard_normal(picture.shape, np.float32)
+    return np.clip(np.rint(picture * shade + noise), 0, 255).astype(np.uint8)
 
 
 def _draw(picture: Array, one: BoardPrint, poses: Array, lens: Lens, light: BoardLight) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from inhand_runtime.pixels import decode_depth, decode_grey
+from inhand_runtime.wording import counted
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo, ColourImage, RgbdFrame
 
@@ -152,8 +153,9 @@ class BoardSights:
         for camera, count in self._twice.items():
             if count > TWO_BOARDS * (count + len(self._sights[camera])):
                 raise CalibrationError(
-                    f"{camera} sees the same markers at two places in {count} pictures: there are "
-                    "two boards of one kind in view; put one away"
+                    f"{camera} sees the same markers at two places in "
+                    f"{counted(count, 'picture')}: there are two boards of one kind in view; put "
+                    "one away"
                 )
         for other, count in seen.items():
             if other != board and count > MIXED * seen.total():
@@ -173,13 +175,13 @@ class BoardSights:
                     "legacy (before OpenCV 4.6)" if board.legacy else "new (OpenCV 4.6 and later)"
                 )
                 pattern = f", of the {kind} pattern"
-            notes.append(f"the board {board.name}{pattern} is seen in {count:,} pictures")
+            notes.append(f"the board {board.name}{pattern} is seen in {counted(count, 'picture')}")
         notes += [
-            f"{camera}: {count} pictures show two boards, and are left out"
+            f"{camera}: left out as they show two boards: {counted(count, 'picture')}"
             for camera, count in sorted(self._twice.items())
         ]
         notes += [
-            f"{camera}: {count} pictures are damaged, and are left out"
+            f"{camera}: left out as damaged: {counted(count, 'picture')}"
             for camera, count in sorted(self._damaged.items())
         ]
         return notes

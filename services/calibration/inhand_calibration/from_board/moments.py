@@ -30,10 +30,10 @@ class MomentParameters:
     moved_px: float = 3.0
     """Movement in any picture since the last moment, at least, that makes another one: moments of a
     board that stands still become their mean."""
-    most_means: int = 4
+    most_means: int = 2
     """Number of instants, at most, by which a mean is better: corners of a board that stands still
     err alike, too."""
-    timing_s: float = 0.004
+    timing_s: float = 0.008
     """Deviation of when corners were seen, beside the camera's own: shutters that roll down the
     picture."""
     most: int = 240
@@ -171,7 +171,7 @@ def corners_of(
                     cameras[index].board.corners[view.numbers],
                     view.pixels,
                     view.velocities,
-                    np.linalg.norm(view.velocities, axis=1) * timing,
+                    np.hypot(np.linalg.norm(view.velocities, axis=1) * timing, view.bend_px),
                     np.full(count, min(view.instants, parameters.most_means) ** -0.5),
                 )
             )

@@ -18,6 +18,7 @@ from inhand_calibration.from_board.adjustment import (
 )
 from inhand_calibration.from_board.alignment import Alignment, align
 from inhand_calibration.from_board.moments import (
+    DEFAULT_MOMENTS,
     Moment,
     common_moments,
     corners_of,
@@ -41,7 +42,8 @@ KNOWN_CLOCK_S = 0.02
 
 
 CLOCK_FLOOR_S = 0.001
-"""Deviation of a clock's offset, at least: boards do not go straight on between two pictures."""
+"""Deviation of a clock's offset, at least, beside that boards do not go straight on between two
+pictures."""
 
 
 @dataclass(frozen=True)
@@ -214,7 +216,9 @@ def _solution(
         own = slice(start, start + 6)
         covariances[index] = _of_camera(bundle.cameras[index], adjusted.covariance[own, own])
         clock_deviations[index] = np.sqrt(adjusted.covariance[start + CLOCK, start + CLOCK])
-    clock_deviations[1:] = np.hypot(clock_deviations[1:], CLOCK_FLOOR_S)
+    doubts = np.array([_timing_doubt(moments, index) for index in range(count)])
+    floor = np.sqrt(CLOCK_FLOOR_S**2 + doubts[0] ** 2 + doubts[1:] ** 2)
+    clock_deviations[1:] = np.hypot(clock_deviations[1:], floor)
     clock_deviations[clock_deviations > KNOWN_CLOCK_S] = np.nan
     return RigSolution(
         tuple(cameras),
@@ -229,6 +233,19 @@ def _solution(
         lens_changes,
         lens_deviations,
     )
+
+
+def _timing_doubt(moments: Sequence[Moment], camera: int) -> float:
+    """By how many seconds a camera may misplace a board that moves, since it goes round bends
+    between two pictures, and alike again and again: the median of its moments."""
+    doubts = [
+        moment.views[camera].bend_px / moment.speed_px_s
+        for moment in moments
+        if camera in moment.views
+        and moment.speed_px_s > DEFAULT_MOMENTS.still_px_s
+        and moment.views[camera].bend_px > 0.0
+    ]
+    return float(np.median(doubts)) if doubts else 0.0
 
 
 def _changed_lenses(

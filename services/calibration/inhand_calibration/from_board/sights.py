@@ -57,12 +57,14 @@ class BoardPose:
 @dataclass(frozen=True)
 class Between:
     """Corners at one instant: numbers (N,), pixels (N, 2) and their velocities (N, 2), pixels a
-    second; or, of a board that stood still, the mean of so many instants."""
+    second; or, of a board that stood still, the mean of so many instants. ``bend_px`` is how far
+    from a straight way they may have gone between two pictures."""
 
     numbers: NDArray[np.int64]
     pixels: Array
     velocities: Array
     instants: int = 1
+    bend_px: float = 0.0
 
     def with_another(self, other: "Between") -> "Between":
         """Return the mean with another instant, of the corners that both have."""
@@ -76,6 +78,7 @@ class Between:
             (1.0 - share) * self.pixels[first] + share * other.pixels[second],
             (1.0 - share) * self.velocities[first] + share * other.velocities[second],
             total,
+            max(self.bend_px, other.bend_px),
         )
 
 
@@ -147,8 +150,23 @@ class CameraSights:
             before.numbers, after.numbers, assume_unique=True, return_indices=True
         )
         start, end = before.pixels[first], after.pixels[second]
-        span = self.times_s[index + 1] - self.times_s[index]
-        return Between(numbers, (1.0 - share) * start + share * end, (end - start) / span)
+        span = float(self.times_s[index + 1] - self.times_s[index])
+        velocities, bend = (end - start) / span, self._bend(index, span)
+        return Between(numbers, (1.0 - share) * start + share * end, velocities, bend_px=bend)
+
+    def _bend(self, index: int, span: float) -> float:
+        """How far from a straight way corners may go between a sight and the next, pixels: by how
+        their velocity differs before and after; or, where that is not seen, as if they stopped."""
+        around = [
+            _velocities(self.sights[one], self.sights[one + 1])
+            for one in (index - 1, index + 1)
+            if 0 <= one < len(self.sights) - 1
+        ]
+        if len(around) == 2 and all(len(one) for one in around):
+            before, after = (np.median(one, axis=0) for one in around)
+            return float(np.linalg.norm(after - before)) * span / 16.0
+        here = np.median(_velocities(self.sights[index], self.sights[index + 1]), axis=0)
+        return float(np.linalg.norm(here)) * span / 4.0
 
     def _held(self, index: int, still_px_s: float, *, moving: bool) -> Between | None:
         """Take a sight as it is; one that moves at its own time alone."""
