@@ -17,7 +17,7 @@ from inhand_tracker.geometry.image import Image
 from inhand_lab.geometry.canvas import Canvas, draw_triangles
 from inhand_lab.geometry.surfaces import Surface
 from inhand_lab.geometry.transforms import Transform
-from inhand_lab.world.room import build_room
+from inhand_lab.world.room import RoomPlan, build_room
 from inhand_lab.world.viewpoint import looking
 
 _ROOM, _OBJECT = 1, 2
@@ -41,7 +41,7 @@ class PerfectCamera:
         fine = _finer(intrinsics, finer)
         canvas = Canvas.blank(fine)
         ahead = position * np.array([1.0, 0.0, 1.0])
-        surface = build_room(random, 0.0, ()).moved(looking(position, ahead))
+        surface = build_room(random, RoomPlan(0.0), ()).moved(looking(position, ahead))
         _draw(canvas, fine, surface, _ROOM)
         return cls(intrinsics, finer, canvas)
 

@@ -35,6 +35,7 @@ from inhand_lab.sensing.skeleton_noise import SkeletonReading
 from inhand_lab.world.enactment import Enactment
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.random_streams import PEOPLE_VERSION
+from inhand_lab.world.room import RoomPlan
 from inhand_lab.world.simulation import Simulation
 from inhand_lab.world.viewpoint import facing_of
 
@@ -91,7 +92,7 @@ def drive(
         camera_from_object=camera_from_world @ enacted.world_from_object,
         contact=enacted.contact,
         camera_from_world=camera_from_world,
-        facing=facing_of(camera_from_world),
+        room=RoomPlan(facing_of(camera_from_world)),
     )
 
 

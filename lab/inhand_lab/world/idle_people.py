@@ -27,6 +27,7 @@ from inhand_lab.world.idle_hands import (
 )
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.parameters import IDLE_CAMERA_PLACING
+from inhand_lab.world.room import RoomPlan
 from inhand_lab.world.simulation import Simulation
 from inhand_lab.world.viewpoint import facing_of, looking
 from inhand_lab.world.walking import walk
@@ -89,7 +90,7 @@ def simulate_idle(
         camera_from_object=Transform(np.array([0.0, 0.0, -9.0]), np.eye(3)).repeated(frames),
         contact=np.full(frames, ContactKind.RESTING, np.uint8),
         camera_from_world=camera_from_world @ Transform(further, np.eye(3)),
-        facing=facing_of(camera_from_world),
+        room=RoomPlan(facing_of(camera_from_world)),
     )
 
 

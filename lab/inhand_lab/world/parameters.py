@@ -33,6 +33,35 @@ class CameraPlacing:
 
 
 @dataclass(frozen=True)
+class RigParameters:
+    """How the cameras of a rig differ that nobody triggers together."""
+
+    clock_offset_s: float = 0.03
+    """Time by which a clock is off from the first camera's, seconds, at the most: what hosts on
+    one network whose clocks are set by it are apart."""
+    clock_drift_ppm: float = 30.0
+    """Microseconds by which a clock is off more every second, at the most: a quartz's tolerance."""
+    dropped_share: Range = (0.0, 0.02)
+    """Share of a camera's frames that are lost."""
+    tries: int = 40
+    """Number of places, usual and other ones each, of which a camera takes the first that is before
+    the walls and from where no furniture hides the person."""
+
+
+@dataclass(frozen=True)
+class RigCamera:
+    """A camera of a rig: its name, and where it stands."""
+
+    name: str
+    around: Range
+    """Angle from the first camera about the person, to the person's left, radians."""
+    around_if_hidden: Range
+    """That angle where furniture hides the person from everywhere there."""
+    height: Range
+    """Height above the floor, metres."""
+
+
+@dataclass(frozen=True)
 class WalkParameters:
     """How people walk."""
 
@@ -48,6 +77,44 @@ class WalkParameters:
     """Distance of a foot from the middle of the way, metres."""
     arm_swing: float = 0.35
     """Angle by which arms swing, radians."""
+
+
+@dataclass(frozen=True)
+class RoamingParameters:
+    """How people walk about and turn while they use a thing.
+
+    They walk slowly enough that their hips go down by a centimetre or so, as whoever carries a cup.
+    """
+
+    leg_s: float = 2.0
+    """Time from one place to the next, seconds, about."""
+    walking: float = 0.22
+    """Mean speed between two places, at the most, metres a second."""
+    turning: float = float(np.radians(50.0))
+    """Mean speed of a turn, at the most, radians a second."""
+    turned: Range = (0.5 * float(np.pi), float(np.pi))
+    """Angle to which somebody turns, now to one side and now to the other, radians; less where time
+    is short."""
+    radius: float = 1.0
+    """Distance from the first place, at the most, metres."""
+    clearance: float = 0.9
+    """Distance from furniture that is enough, metres."""
+    tries: int = 40
+    """Number of places that are tried each time."""
+    aloof: float = 0.5
+    """Share of the first and of the last way, at furniture, on which nobody turns."""
+    cadence: float = 2.0
+    """Steps a second."""
+    swing: float = 0.8
+    """Time for which a foot is lifted, as a share of the time from step to step."""
+    lift: float = 0.06
+    """Height to which a foot is lifted, at the most, metres."""
+    pivot: float = 0.1
+    """Height to which a foot is lifted for a turn on the spot, metres for each radian."""
+    straightest: float = 0.999
+    """Straightness of a leg, as a share of its length, beyond which hips go down instead."""
+    further: float = 1.0
+    """Distance by which the back wall is farther away in a room to walk about in, metres."""
 
 
 @dataclass(frozen=True)
@@ -78,14 +145,36 @@ class IdleHandParameters:
 CAMERA_PLACINGS = {
     "before": CameraPlacing(),
     "around": CameraPlacing(height=(0.7, 2.0), distance=(2.2, 3.8), aside=float(np.pi), tries=20),
+    "far": CameraPlacing(distance=(3.0, 3.6)),
 }
 """Cameras that film people who use an object, by the views that a dataset has of them: from before,
-as one sets a camera up to see what is done, or from anywhere round, from a low shelf to the top of
-one, as far as a Kinect measures well (0.8 to 4 m)."""
+as one sets a camera up to see what is done, from anywhere round, from a low shelf to the top of
+one, as far as a Kinect measures well (0.8 to 4 m), or from before and far enough for people who
+walk about."""
 USUAL_VIEWS = "before"
 """Views of a dataset that names none."""
 IDLE_CAMERA_PLACING = CameraPlacing(distance=(2.9, 3.6), aside=0.5)
 """Cameras before people who use nothing; they look at the world's middle."""
+
+
+def _degrees(least: float, largest: float) -> Range:
+    return float(np.radians(least)), float(np.radians(largest))
+
+
+RIG_CAMERAS = (
+    RigCamera("front", (0.0, 0.0), (0.0, 0.0), CameraPlacing().height),
+    RigCamera("left", _degrees(60.0, 120.0), _degrees(25.0, 150.0), (0.9, 2.0)),
+    RigCamera("right", _degrees(-120.0, -60.0), _degrees(-150.0, -25.0), (0.9, 2.0)),
+    RigCamera("high", _degrees(-50.0, 50.0), _degrees(-120.0, 120.0), (2.1, 2.5)),
+)
+"""Cameras of a rig in the order in which it has them; the first stands as one does that is alone,
+whatever is said of it here."""
+USUAL_RIG = RigParameters()
+"""How the cameras of every simulated rig differ."""
+DEFAULT_ROAMING = RoamingParameters()
+"""How all walk about who do while they use a thing."""
+ROAMING_VIEWS = "far"
+"""Views of people who walk about."""
 DEFAULT_WALK = WalkParameters()
 """How all walk who walk."""
 DEFAULT_IDLE_HANDS = IdleHandParameters()

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.geometry.surfaces import Rgb, Surface, block, join_surfaces
 from inhand_lab.geometry.transforms import Transform, rotation_about
@@ -11,26 +14,62 @@ from inhand_lab.motions.furniture import Furniture
 HALF_WIDTH = 4.0
 BEHIND = 1.1
 """The back wall is this far behind the person, in metres, or somewhat more."""
+AHEAD = 4.5
+"""The wall that the person faces is this far ahead, metres."""
 WALL_HEIGHT = 2.7
+CLUTTER_DEPTH = 0.75
+"""Distance from the back wall, metres, within which its clutter may stand before a camera."""
+FROM_A_WALL = 0.3
+"""Distance of a camera from the other walls, at the least, metres."""
 TILE = 0.12
 UPRIGHT = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
 """Turns the plane z = 0, seen from above, into the plane y = 0, seen from the front."""
 
 
-def build_room(random: np.random.Generator, facing: float, furniture: Furniture) -> Surface:
-    """The room's surface in the person's world.
+@dataclass(frozen=True)
+class RoomPlan:
+    """How a room stands about a person.
 
-    facing is the direction to the camera as a turn to the left of the person's y axis, radians;
-    the back wall is square to it. furniture is what the person uses.
+    ``turn`` is the direction, as a turn to the left of the person's y axis in radians, that the
+    back wall is square to: to the camera, or to a rig's first one. The wall is ``further`` metres
+    behind the person than usual. An ``enclosed`` room has its other three walls as well, which
+    cameras at a person's sides look at.
     """
-    wall = -BEHIND - random.uniform(0.0, 0.7)
-    floor = _patches(random, (-HALF_WIDTH, wall), (HALF_WIDTH, 4.5))
+
+    turn: float
+    further: float = 0.0
+    enclosed: bool = False
+
+
+def build_room(random: np.random.Generator, plan: RoomPlan, furniture: Furniture) -> Surface:
+    """The room's surface in the person's world; ``furniture`` is what the person uses.
+
+    What a room has is the same whether it is enclosed or not.
+    """
+    wall = wall_place(random, plan)
+    floor = _patches(random, (-HALF_WIDTH, wall), (HALF_WIDTH, AHEAD))
     back = _patches(random, (-HALF_WIDTH, 0.0), (HALF_WIDTH, WALL_HEIGHT))
     raised = Transform(np.array([0.0, wall, 0.0]), UPRIGHT)
     pieces = [floor, back.moved(raised), *_pictures(random, wall), *_clutter(random, wall)]
-    turned = Transform(np.zeros(3), rotation_about("z", facing))
+    if plan.enclosed:
+        pieces += _other_walls(random)
+    turned = Transform(np.zeros(3), rotation_about("z", plan.turn))
     room = join_surfaces(pieces).moved(turned)
     return join_surfaces([room, *(block(box.centre, box.size, box.colour) for box in furniture)])
+
+
+def wall_place(random: np.random.Generator, plan: RoomPlan) -> float:
+    """Where the back wall is along the room's y axis, metres: the first that a room draws."""
+    return -BEHIND - random.uniform(0.0, 0.7) - plan.further
+
+
+def in_the_open(plan: RoomPlan, wall: float, position: Array) -> bool:
+    """Whether a camera at a position (3,) in the person's world is before all walls and clutter."""
+    across, along, _ = rotation_about("z", plan.turn).T @ position
+    return bool(
+        wall + CLUTTER_DEPTH < along < AHEAD - FROM_A_WALL
+        and abs(across) < HALF_WIDTH - FROM_A_WALL
+    )
 
 
 def _patches(
@@ -49,6 +88,21 @@ def _patches(
         faces.reshape(-1, 3).astype(np.int32),
         np.repeat(np.clip(shades, 0.0, 255.0), 4, axis=0).astype(np.float32),
     )
+
+
+def _other_walls(random: np.random.Generator) -> list[Surface]:
+    """The walls at the person's sides and before the person, with pictures on them."""
+    pieces = []
+    for turn, distance, corner in (
+        (0.5 * np.pi, HALF_WIDTH, AHEAD),
+        (-0.5 * np.pi, HALF_WIDTH, AHEAD),
+        (np.pi, AHEAD, HALF_WIDTH),
+    ):
+        patches = _patches(random, (-corner, 0.0), (corner, WALL_HEIGHT))
+        raised = patches.moved(Transform(np.array([0.0, -distance, 0.0]), UPRIGHT))
+        around = Transform(np.zeros(3), rotation_about("z", turn))
+        pieces += [part.moved(around) for part in (raised, *_pictures(random, -distance))]
+    return pieces
 
 
 def _pictures(random: np.random.Generator, wall: float) -> list[Surface]:

@@ -44,7 +44,8 @@ from inhand_lab.world.enactment import Enactment
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.parameters import USUAL_VIEWS
 from inhand_lab.world.random_streams import random_stream
-from inhand_lab.world.room import build_room
+from inhand_lab.world.roaming import ROAMING_INTERACTIONS, roam
+from inhand_lab.world.room import RoomPlan, build_room
 from inhand_lab.world.viewpoint import place_camera
 
 USUAL_SECONDS = 12.0
@@ -68,9 +69,9 @@ class Simulation:
     """A recording of T frames with its truth, everything in the camera's frame, in metres.
 
     ``reading`` is the skeleton tracker's; body, camera_from_object and ``contact`` (T,), as values
-    of ContactKind, are the truth. ``facing`` is the direction to the camera as a turn to the left
-    of the person's y axis, radians. ``stages`` are what is done when, in seconds; the last may lie
-    beyond the last frame.
+    of ContactKind, are the truth. ``stages`` are what is done when, in seconds; the last may lie
+    beyond the last frame. ``view`` is the camera's number in a rig (inhand_lab.world.rigs), 0 where
+    it is alone: each has errors of its own in the same room.
     """
 
     interaction: str
@@ -85,9 +86,10 @@ class Simulation:
     camera_from_object: Transform
     contact: Bytes
     camera_from_world: Transform
-    facing: float
+    room: RoomPlan
     furniture: Furniture = ()
     stages: Sequence[Stage] = ()
+    view: int = 0
 
     @property
     def intrinsics(self) -> Intrinsics:
@@ -159,7 +161,7 @@ class Simulation:
             self._still,
             drawing.drawn.area,
         )
-        random = self._random("pixels", self.performance, frame)
+        random = self._random_of_view("pixels", self.performance, frame)
         canvas = replace(drawing.canvas, colour=colour)
         return SensedFrame(
             *sense(canvas, self.camera, random, conditions), drawing.visible_fraction
@@ -168,14 +170,17 @@ class Simulation:
     def _random(self, purpose: str, *more: int) -> np.random.Generator:
         return random_stream(self.seed, self.participant, self.interaction, purpose, *more)
 
+    def _random_of_view(self, purpose: str, *more: int) -> np.random.Generator:
+        return self._random(purpose_of_view(purpose, self.view), *more)
+
     @cached_property
     def _gains(self) -> Array:
         times = np.arange(self.frames) / self.frame_rate
-        return brightness(times, self._random("brightness", self.performance))
+        return brightness(times, self._random_of_view("brightness", self.performance))
 
     @cached_property
     def _lasting(self) -> Place:
-        return any_place(self._random("sensor"))
+        return any_place(self._random_of_view("sensor"))
 
     @cached_property
     def _still(self) -> StillRoom | None:
@@ -183,7 +188,7 @@ class Simulation:
 
     @cached_property
     def _scene(self) -> MovingScene:
-        room = build_room(self._random("room"), self.facing, self.furniture)
+        room = build_room(self._random("room"), self.room, self.furniture)
         return MovingScene(
             draw_room(self.intrinsics, self.camera_from_world, room),
             self.intrinsics,
@@ -198,7 +203,8 @@ class Simulation:
 class Casting:
     """Who does what in which world, for which time, seen from where.
 
-    ``views`` names one of CAMERA_PLACINGS, and ``people`` who lives there.
+    ``views`` names one of CAMERA_PLACINGS, and ``people`` who lives there; who is ``roaming`` walks
+    about and turns while using the thing.
     """
 
     interaction: str
@@ -207,6 +213,11 @@ class Casting:
     performance: int = 0
     views: str = USUAL_VIEWS
     people: People = USUAL_PEOPLE
+    roaming: bool = False
+
+    def person(self) -> SimulatedPerson:
+        """The participant, who is the same in every interaction of a seed."""
+        return sample_person(self.seed, self.participant, self.people)
 
     def random(self, purpose: str, *more: int) -> np.random.Generator:
         """A stream of its own for a purpose."""
@@ -232,47 +243,73 @@ def simulate(
 
 def simulate_cast(cast: Casting, frames: int, camera: Camera) -> Simulation:
     """Simulate as ``simulate`` does; raises ValueError for an unknown interaction."""
-    interaction, performance = cast.interaction, cast.performance
-    if interaction not in INTERACTIONS:
-        raise ValueError(f"no interaction {interaction!r}; there are {', '.join(INTERACTIONS)}")
-    person = sample_person(cast.seed, cast.participant, cast.people)
-    motion = cast.random("motion", performance)
-    enacted = _enact(interaction, person, motion, frames, camera.frame_rate)
+    enacted = enact(cast, frames, camera.frame_rate)
     facing, camera_from_world = place_camera(
-        person, camera.intrinsics, cast.random("camera"), enacted.furniture, cast.views
+        cast.person(), camera.intrinsics, cast.random("camera"), enacted.furniture, cast.views
     )
-    body_in_camera = enacted.body.seen_from(camera_from_world)
-    skeleton = cast.random("skeleton", performance)
+    return film(cast, enacted, camera, Viewpoint(camera_from_world, RoomPlan(facing)))
+
+
+@dataclass(frozen=True)
+class Viewpoint:
+    """Where a camera stands in the person's world, in which room, and its number in a rig."""
+
+    camera_from_world: Transform
+    room: RoomPlan
+    number: int = 0
+
+
+def film(cast: Casting, enacted: Enactment, camera: Camera, viewpoint: Viewpoint) -> Simulation:
+    """What one camera and its skeleton tracker see of what is enacted, a frame a moment."""
+    person, performance = cast.person(), cast.performance
+    body_in_camera = enacted.body.seen_from(viewpoint.camera_from_world)
+    skeleton = cast.random(purpose_of_view("skeleton", viewpoint.number), performance)
     return Simulation(
-        interaction=interaction,
+        interaction=cast.interaction,
         participant=cast.participant,
         seed=cast.seed,
         performance=performance,
         person=person,
-        object_model=INTERACTIONS[interaction].object_model(),
+        object_model=INTERACTIONS[cast.interaction].object_model(),
         camera=camera,
         reading=read_skeleton(person, body_in_camera.joints, camera.frame_rate, skeleton),
         body_in_camera=body_in_camera,
-        camera_from_object=camera_from_world @ enacted.world_from_object,
+        camera_from_object=viewpoint.camera_from_world @ enacted.world_from_object,
         contact=enacted.contact,
-        camera_from_world=camera_from_world,
-        facing=facing,
+        camera_from_world=viewpoint.camera_from_world,
+        room=viewpoint.room,
         furniture=enacted.furniture,
         stages=enacted.stages,
+        view=viewpoint.number,
     )
 
 
-def _enact(
-    interaction: str,
-    person: SimulatedPerson,
-    random: np.random.Generator,
-    frames: int,
-    frame_rate: float,
-) -> Enactment:
-    """The first frames of a performance, mirrored for a left-handed person."""
+def purpose_of_view(purpose: str, view: int) -> str:
+    """Name of a camera's random numbers: those of a rig's first are a single camera's."""
+    return f"{purpose}/{view}" if view else purpose
+
+
+def enact(cast: Casting, frames: int, frame_rate: float) -> Enactment:
+    """The first frames of a performance, mirrored for a left-handed person.
+
+    Raises ValueError for an unknown interaction, and for one that is not done on the way, or by
+    varied people, where somebody is to walk about.
+    """
+    if cast.interaction not in INTERACTIONS:
+        known = ", ".join(INTERACTIONS)
+        raise ValueError(f"no interaction {cast.interaction!r}; there are {known}")
+    if cast.roaming and cast.interaction not in ROAMING_INTERACTIONS:
+        able = ", ".join(ROAMING_INTERACTIONS)
+        raise ValueError(f"nobody walks about in {cast.interaction!r}, but in {able}")
+    if cast.roaming and cast.people != USUAL_PEOPLE:
+        raise ValueError("only usual people walk about: some of the varied ones sit")
+    person, random = cast.person(), cast.random("motion", cast.performance)
     seconds = max(USUAL_SECONDS, frames / frame_rate)
     times = np.arange(round(seconds * frame_rate)) / frame_rate
-    done = INTERACTIONS[interaction].perform(person, times, random)
+    done = INTERACTIONS[cast.interaction].perform(person, times, random)
+    if cast.roaming:
+        vertices = INTERACTIONS[cast.interaction].object_model().vertices
+        done = roam(person, done, vertices, times, cast.random("roaming", cast.performance))
     body = place_body(person, done.posture, done.right_hand, done.left_hand)
     enacted = Enactment(body, done.world_from_object, done.contact, done.furniture, done.stages)[
         :frames

@@ -9,7 +9,12 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_lab.geometry.transforms import Transform, normalised, rotation_about
 from inhand_lab.motions.furniture import Cuboid, Furniture
 from inhand_lab.people.person import SimulatedPerson
-from inhand_lab.world.parameters import CAMERA_PLACINGS, USUAL_VIEWS, CameraPlacing
+from inhand_lab.world.parameters import (
+    CAMERA_PLACINGS,
+    USUAL_VIEWS,
+    CameraPlacing,
+    Range,
+)
 
 SEEN_AT = (0.45, 0.6, 0.75, 0.9)
 """Heights of what a camera must see of a person, as shares of stature."""
@@ -32,8 +37,21 @@ def place_camera(
         facing, position = _position(person, intrinsics, random, placing)
         if not hidden(person, position, furniture):
             break
-    target = np.array([0.0, 0.0, placing.aim * person.height + random.normal(0.0, 0.02)])
-    return facing, looking(position, target)
+    return facing, looking(position, _target(person, random, placing))
+
+
+def place_beside(
+    person: SimulatedPerson,
+    intrinsics: Intrinsics,
+    random: np.random.Generator,
+    placing: CameraPlacing,
+    directions: Range,
+) -> Transform:
+    """camera_from_world of a place for a camera of a rig, in one of these directions, which are
+    turns to the left of the person's y axis in radians; ``aside`` of the placing is not used."""
+    turn = float(random.uniform(*directions))
+    position = _away(person, intrinsics, random, placing, turn)
+    return looking(position, _target(person, random, placing))
 
 
 def _position(
@@ -43,10 +61,25 @@ def _position(
     placing: CameraPlacing,
 ) -> tuple[float, Array]:
     facing = float(random.uniform(-placing.aside, placing.aside))
+    return facing, _away(person, intrinsics, random, placing, facing)
+
+
+def _away(
+    person: SimulatedPerson,
+    intrinsics: Intrinsics,
+    random: np.random.Generator,
+    placing: CameraPlacing,
+    turn: float,
+) -> Array:
+    """A position (3,) in a direction that is a turn to the left of the y axis."""
     fitting = (person.height + placing.headroom) * intrinsics.fy / intrinsics.height
     distance = max(random.uniform(*placing.distance), fitting)
-    ahead = rotation_about("z", facing)[:, 1]
-    return facing, ahead * distance + np.array([0.0, 0.0, random.uniform(*placing.height)])
+    ahead = rotation_about("z", turn)[:, 1]
+    return ahead * distance + np.array([0.0, 0.0, random.uniform(*placing.height)])
+
+
+def _target(person: SimulatedPerson, random: np.random.Generator, placing: CameraPlacing) -> Array:
+    return np.array([0.0, 0.0, placing.aim * person.height + random.normal(0.0, 0.02)])
 
 
 def hidden(person: SimulatedPerson, position: Array, furniture: Furniture) -> bool:

@@ -1,0 +1,206 @@
+"""Rigs of one to four simulated cameras that see the very same performance.
+
+rig = simulate_rig("drinkFromMug", participant=0, seed=1, cameras=3)
+rig.names                          # front, left, right
+rig.cameras[1].joints_in_camera    # what the left camera's skeleton tracker says
+rig.rig_from_camera[1]             # where that camera stands
+rig.stamps_ns(1)                   # what that camera's clock says of its frames
+rig.times_s(1)                     # when they truly were taken, by the rig's time
+rig.dropped[1]                     # which of them are lost
+
+The rig's frame is the person's world: z up, its origin on the floor where the person stands at
+first. The rig's time is the first camera's, which is what ``simulate`` makes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from inhand_tracker.geometry.arrays import Array, Flags
+from numpy.typing import NDArray
+
+from inhand_lab.geometry.transforms import Transform
+from inhand_lab.sensing.cameras import KINECT, Camera
+from inhand_lab.world.enactment import Enactment
+from inhand_lab.world.other_moments import enactment_at
+from inhand_lab.world.parameters import (
+    CAMERA_PLACINGS,
+    DEFAULT_ROAMING,
+    RIG_CAMERAS,
+    ROAMING_VIEWS,
+    USUAL_RIG,
+    USUAL_VIEWS,
+    RigParameters,
+)
+from inhand_lab.world.random_streams import random_stream
+from inhand_lab.world.room import RoomPlan, in_the_open, wall_place
+from inhand_lab.world.simulation import Casting, Simulation, Viewpoint, enact, film
+from inhand_lab.world.viewpoint import hidden, place_beside, place_camera
+
+
+@dataclass(frozen=True)
+class CameraClock:
+    """A camera's clock against the rig's time.
+
+    The rig's time of what the clock says, in seconds from the beginning of a performance, is
+    ``(1 + drift) * said + offset_s``: the offset is what to add to the camera's times to have the
+    rig's, as in a rig's calibration. The camera takes frames regularly by its own clock, the first
+    at ``first_s`` of it.
+    """
+
+    offset_s: float = 0.0
+    drift: float = 0.0
+    first_s: float = 0.0
+
+    def said(self, frames: int, frame_rate: float) -> Array:
+        """What the clock says of frames (T,), seconds."""
+        return self.first_s + np.arange(frames) / frame_rate
+
+    def rig_times(self, said: Array) -> Array:
+        """The rig's times (T,) of what the clock says (T,), seconds."""
+        return (1.0 + self.drift) * said + self.offset_s
+
+
+@dataclass(frozen=True)
+class RigSimulation:
+    """One performance as every camera of a rig sees it, C cameras.
+
+    ``names`` are front, left and right (of the person, who faces the front) and high. A camera's
+    ``dropped`` (T,) is which of its frames are lost on their way: they are simulated, so that
+    whoever wants to compare can, but are not sent or written. Cameras but the first take their last
+    frame before the first does, so that they may have one less.
+    """
+
+    names: tuple[str, ...]
+    cameras: tuple[Simulation, ...]
+    rig_from_camera: tuple[Transform, ...]
+    clocks: tuple[CameraClock, ...]
+    dropped: tuple[Flags, ...]
+
+    def times_s(self, camera: int) -> Array:
+        """The rig's times (T,) of a camera's frames, seconds from the performance's beginning."""
+        return self.clocks[camera].rig_times(self._said(camera))
+
+    def stamps_ns(self, camera: int) -> NDArray[np.int64]:
+        """What a camera's clock says of its frames (T,), nanoseconds; it may begin below 0."""
+        return np.rint(1e9 * self._said(camera)).astype(np.int64)
+
+    def _said(self, camera: int) -> Array:
+        seen = self.cameras[camera]
+        return self.clocks[camera].said(seen.frames, seen.frame_rate)
+
+
+def simulate_rig(
+    interaction: str,
+    participant: int,
+    seed: int,
+    frames: int = 360,
+    cameras: int = 3,
+    camera: Camera = KINECT,
+    performance: int = 0,
+    *,
+    roaming: bool = False,
+) -> RigSimulation:
+    """Simulate somebody who does something before so many cameras, one to four, of one kind.
+
+    The first camera's simulation is what ``simulate`` makes, but for the room's walls behind it,
+    which it does not see. The rig is the same in every performance of a participant's interaction.
+    Whoever is ``roaming`` walks about and turns while using the thing; the cameras stand farther
+    away. Raises ValueError for an interaction that is unknown or not done on the way, another
+    number of cameras, or under two frames.
+    """
+    views = ROAMING_VIEWS if roaming else USUAL_VIEWS
+    cast = Casting(interaction, participant, seed, performance, views, roaming=roaming)
+    return simulate_rig_cast(cast, frames, camera, cameras)
+
+
+def simulate_rig_cast(cast: Casting, frames: int, camera: Camera, cameras: int) -> RigSimulation:
+    """Simulate as ``simulate_rig`` does, and raise what it raises."""
+    if not 1 <= cameras <= len(RIG_CAMERAS):
+        raise ValueError(f"a rig has 1 to {len(RIG_CAMERAS)} cameras, not {cameras}")
+    if frames < 2:
+        raise ValueError(f"a rig takes 2 frames at the least, not {frames}")
+    enacted = enact(cast, frames, camera.frame_rate)
+    viewpoints = place_rig(cast, camera, enacted, cameras)
+    clocks = tuple(_clock(cast, camera.frame_rate, number) for number in range(cameras))
+    filmed = tuple(
+        film(cast, _as_taken(enacted, clock, camera.frame_rate), camera, viewpoint)
+        for clock, viewpoint in zip(clocks, viewpoints, strict=True)
+    )
+    return RigSimulation(
+        tuple(named.name for named in RIG_CAMERAS[:cameras]),
+        filmed,
+        tuple(viewpoint.camera_from_world.inverse() for viewpoint in viewpoints),
+        clocks,
+        tuple(_dropped(cast, seen) for seen in filmed),
+    )
+
+
+def place_rig(
+    cast: Casting, camera: Camera, enacted: Enactment, cameras: int
+) -> tuple[Viewpoint, ...]:
+    """Where the cameras stand: the first as it would alone, the others about the person.
+
+    They are before all walls, and where no furniture hides the person, unless it does from
+    everywhere that is tried.
+    """
+    person = cast.person()
+    facing, camera_from_world = place_camera(
+        person, camera.intrinsics, cast.random("camera"), enacted.furniture, cast.views
+    )
+    further = DEFAULT_ROAMING.further if cast.roaming else 0.0
+    room = RoomPlan(facing, further, enclosed=cameras > 1)
+    wall = wall_place(cast.random("room"), room)
+    viewpoints = [Viewpoint(camera_from_world, room)]
+    for number, named in enumerate(RIG_CAMERAS[1:cameras], start=1):
+        random = cast.random(f"camera/{number}")
+        placing = replace(CAMERA_PLACINGS[cast.views], height=named.height)
+        tried = [
+            place_beside(
+                person, camera.intrinsics, random, placing, (facing + least, facing + largest)
+            )
+            for least, largest in (named.around, named.around_if_hidden)
+            for _ in range(USUAL_RIG.tries)
+        ]
+        before = [place for place in tried if in_the_open(room, wall, _position(place))]
+        clear = [
+            place for place in before if not hidden(person, _position(place), enacted.furniture)
+        ]
+        viewpoints.append(Viewpoint((clear or before)[0], room, number))
+    return tuple(viewpoints)
+
+
+def _position(camera_from_world: Transform) -> Array:
+    return camera_from_world.inverse().translation
+
+
+def _clock(
+    cast: Casting, frame_rate: float, number: int, rig: RigParameters = USUAL_RIG
+) -> CameraClock:
+    """The clock of a camera: the rig's own for the first, else one that nobody has set."""
+    if number == 0:
+        return CameraClock()
+    random = cast.random(f"clock/{number}")
+    offset = random.uniform(-rig.clock_offset_s, rig.clock_offset_s)
+    drift = 1e-6 * random.uniform(-rig.clock_drift_ppm, rig.clock_drift_ppm)
+    first = random.uniform(0.0, 1.0) / frame_rate
+    return CameraClock(offset, drift, (first - offset) / (1.0 + drift))
+
+
+def _as_taken(enacted: Enactment, clock: CameraClock, frame_rate: float) -> Enactment:
+    """What is enacted at the moments in which a camera takes frames."""
+    if clock == CameraClock():
+        return enacted
+    frames = len(enacted.contact)
+    times = clock.rig_times(clock.said(frames, frame_rate))
+    return enactment_at(enacted, frame_rate, times[times <= (frames - 1) / frame_rate])
+
+
+def _dropped(cast: Casting, seen: Simulation, rig: RigParameters = USUAL_RIG) -> Flags:
+    """Which frames (T,) a camera loses; how large a share is a matter of the camera."""
+    share = cast.random(f"drops/{seen.view}").uniform(*rig.dropped_share)
+    random = random_stream(
+        cast.seed, cast.participant, cast.interaction, f"dropped/{seen.view}", cast.performance
+    )
+    return np.asarray(random.random(seen.frames) < share)
