@@ -11,7 +11,8 @@ from inhand_lab.people.person import PEOPLE, USUAL_PEOPLE
 from inhand_lab.sensing.cameras import CAMERAS, KINECT
 from inhand_lab.workers import working
 from inhand_lab.world.interactions import INTERACTIONS
-from inhand_lab.world.parameters import CAMERA_PLACINGS, USUAL_VIEWS
+from inhand_lab.world.parameters import CAMERA_PLACINGS, RIG_CAMERAS, ROAMING_VIEWS, USUAL_VIEWS
+from inhand_lab.world.roaming import ROAMING_INTERACTIONS
 from inhand_lab.world.sheet import write_sheet
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.wording import counted
@@ -43,7 +44,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--views",
         choices=list(CAMERA_PLACINGS),
         default=USUAL_VIEWS,
-        help=f"where cameras stand: before people, or anywhere round them (default: {USUAL_VIEWS})",
+        help="where cameras stand: before people, anywhere round them, or far before them "
+        f"(default: {USUAL_VIEWS})",
+    )
+    parser.add_argument(
+        "--cameras",
+        type=int,
+        default=1,
+        metavar="N",
+        help="so many see each performance, 1 to 4 about the person, unlike clocks (default: 1)",
+    )
+    parser.add_argument(
+        "--roaming",
+        action="store_true",
+        help="people walk about and turn while they use the thing: "
+        + ", ".join(ROAMING_INTERACTIONS),
     )
     parser.add_argument(
         "--people",
@@ -94,10 +109,13 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.participants < 1 or arguments.frames < 1 or arguments.seed < 0:
         raise SettingsError("participants and frames are 1 or more, and the seed is 0 or more")
     people = arguments.bodies is None and arguments.out is not None
-    if not people and (arguments.views, arguments.people) != (USUAL_VIEWS, USUAL_PEOPLE):
+    told = arguments.views, arguments.people, arguments.cameras, arguments.roaming
+    if not people and told != (USUAL_VIEWS, USUAL_PEOPLE, 1, False):
         raise SettingsError(
-            "--views and --people are for a dataset of simulated people: leave them out"
+            "--views, --people, --cameras and --roaming are for a dataset of simulated people: "
+            "leave them out"
         )
+    _check_rig(arguments)
     if arguments.out is None and arguments.sheet is None:
         raise SettingsError("name the new dataset's folder, or a picture with --sheet")
     if arguments.sheet is not None:
@@ -108,6 +126,22 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _check_rig(arguments: argparse.Namespace) -> None:
+    """Raise SettingsError for a rig that cannot be, or what nobody does while walking about."""
+    if not 1 <= arguments.cameras <= len(RIG_CAMERAS):
+        raise SettingsError(f"--cameras is 1 to {len(RIG_CAMERAS)}")
+    if arguments.cameras > 1 and arguments.frames < 2:
+        raise SettingsError("--cameras needs 2 --frames or more: each camera has its own moments")
+    if not arguments.roaming:
+        return
+    if arguments.people != USUAL_PEOPLE:
+        raise SettingsError("only usual people walk about: leave out --people or --roaming")
+    for name in arguments.interactions or ():
+        if name not in ROAMING_INTERACTIONS:
+            able = ", ".join(ROAMING_INTERACTIONS)
+            raise SettingsError(f"nobody walks about in {name!r}; people do in: {able}")
+
+
 def _write_sheet(arguments: argparse.Namespace, interactions: Sequence[str]) -> None:
     arguments.sheet.parent.mkdir(parents=True, exist_ok=True)
     with progress_bar("drawing", len(interactions)) as advance:
@@ -116,7 +150,9 @@ def _write_sheet(arguments: argparse.Namespace, interactions: Sequence[str]) -> 
 
 
 def _generate(arguments: argparse.Namespace) -> Dataset:
-    interactions = arguments.interactions or tuple(INTERACTIONS)
+    known = ROAMING_INTERACTIONS if arguments.roaming else tuple(INTERACTIONS)
+    interactions = arguments.interactions or known
+    far = arguments.roaming and arguments.views == USUAL_VIEWS
     with (
         working(arguments.cluster),
         progress_bar("simulating", len(interactions) * arguments.participants) as advance,
@@ -130,8 +166,10 @@ def _generate(arguments: argparse.Namespace) -> Dataset:
                 arguments.frames,
                 images=not arguments.no_images,
                 camera=CAMERAS[arguments.camera],
-                views=arguments.views,
+                views=ROAMING_VIEWS if far else arguments.views,
                 people=arguments.people,
+                cameras=arguments.cameras,
+                roaming=arguments.roaming,
             ),
             advance,
         )

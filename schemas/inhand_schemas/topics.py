@@ -45,7 +45,8 @@ class Topic(Generic[T]):
 
     ``gaps_are_losses`` says that a key's messages are numbered one by one. Skeletons, poses and
     previews have the numbers of the frames that they are of: who estimates and is behind leaves
-    some out, and previews are of few. ``named`` is the field of a message that has the name of its
+    some out, and previews are of few. So have labels, which every camera of a rig that sees the
+    object publishes on its one key. ``named`` is the field of a message that has the name of its
     key, where one does. ``viewed`` is the type that ``check`` decodes, where large fields can be
     views of what is decoded.
     """
@@ -136,7 +137,7 @@ PREVIEW = Topic("preview", messages.Preview, BULK, gaps_are_losses=False)
 SKELETONS = Topic("skeletons", messages.Skeletons, URGENT, gaps_are_losses=False)
 POSE = Topic("pose", messages.ObjectPose, URGENT, gaps_are_losses=False, named="object")
 EVENT = Topic("event", messages.Event, RELIABLE)
-LABEL = Topic("label", messages.ObjectPose, RELIABLE, named="object")
+LABEL = Topic("label", messages.ObjectPose, RELIABLE, gaps_are_losses=False, named="object")
 HEALTH = Topic("health", messages.Health, URGENT, named="instance")
 
 AnyTopic = (

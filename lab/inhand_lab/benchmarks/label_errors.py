@@ -141,7 +141,7 @@ class _Labelled:
     def of(cls, dataset: Dataset, entry: DatasetEntry, gauge: ErrorGauge) -> "_Labelled":
         """Read a recording of a dataset."""
         path = dataset.path(entry)
-        frames = load_frames(path, entry.object)
+        frames = load_frames(path, entry.object, entry.camera)
         scene = load_scene(path, labelled_camera(frames) or "camera")
         hand = f"{entry.handedness} hand"
         return cls(scene, true_track(frames), gauge, _visible(entry, frames), hand)

@@ -357,3 +357,36 @@ class LikelihoodBiasParameters:
 
 
 DEFAULT_LIKELIHOOD_BIAS = LikelihoodBiasParameters()
+
+
+@dataclass(frozen=True)
+class PeopleCalibrationCheckParameters:
+    """Which rigs are calibrated from people, and what they must reach."""
+
+    seeds: tuple[int, ...] = tuple(range(900, 910))
+    """Seeds of people, walks and cameras: nothing was chosen on them."""
+    seconds: float = 60.0
+    """Time for which somebody walks about."""
+    around_deg: tuple[tuple[float, float], ...] = ((-15.0, 15.0), (60.0, 120.0), (-150.0, -60.0))
+    """Least and largest angle of each camera about the room's middle."""
+    distance_m: tuple[float, float] = (3.2, 4.2)
+    """Least and largest distance of cameras from it."""
+    height_m: tuple[float, float] = (0.8, 2.2)
+    """Least and largest height of cameras."""
+    offset_s: float = 2.0
+    """Time by which a camera's clock is off from the first's, at the most."""
+    drift_ppm: float = 50.0
+    """Microseconds by which it is off more every second, at the most."""
+    dropped_share: float = 0.02
+    """Share of frames that are lost."""
+    frame_rates: tuple[float, ...] = (30.0, 30.0, 30.0)
+    """Rate of each camera, Hz."""
+    aim_mm: float = 15.0
+    """Error of a camera's place relative to the first camera that is good enough."""
+    aim_deg: float = 0.5
+    """Error of its rotation."""
+    aim_ms: float = 5.0
+    """Error of its clock's offset."""
+
+
+DEFAULT_PEOPLE_CALIBRATION_CHECK = PeopleCalibrationCheckParameters()

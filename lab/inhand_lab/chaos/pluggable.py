@@ -34,7 +34,7 @@ class PluggableSource:
         """How the simulated camera sees."""
         return self._camera.info
 
-    def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured]:
+    def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured | None]:
         """Frames until it is unplugged, which raises SourceLostError."""
         for captured in self._camera.captures(wanted):
             if not self._plug.exists():

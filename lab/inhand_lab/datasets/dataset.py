@@ -32,6 +32,7 @@ class DatasetEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
 
     ``frame_rate`` is in Hz; where it is left out the times of the frames show it. ``convention``
     names whose joints the skeletons have, where the recording does not say, or says it wrongly.
+    ``cameras`` are those of a rig that took one performance; whoever reads one takes the first.
     """
 
     file: str
@@ -41,6 +42,12 @@ class DatasetEntry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fie
     handedness: Literal["left", "right"] = "right"
     frame_rate: float | None = None
     convention: Name | None = None
+    cameras: tuple[Name, ...] | None = None
+
+    @property
+    def camera(self) -> str | None:
+        """The camera that readers of one take; None where the recording has one alone."""
+        return self.cameras[0] if self.cameras else None
 
 
 class DatasetFile(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

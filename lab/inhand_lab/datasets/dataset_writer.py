@@ -74,15 +74,21 @@ class DatasetWriter:
 def write_messages(path: Path, messages: Iterable[Message]) -> None:
     """Write a recording of messages, which come in the order of their times; raises
     RecordingError."""
+    write_received(path, ((CAMERA, message.time_ns, message) for message in messages))
+
+
+def write_received(path: Path, received: Iterable[tuple[str, int, Message]]) -> None:
+    """Write a recording of messages of several cameras, each with its camera and the time at which
+    it is received, nanoseconds, in the order of these; raises RecordingError."""
     site = Site()
     with RecordingWriter(path) as writer:
-        for message in messages:
+        for camera, received_ns, message in received:
             topic = _TOPICS[type(message)]
-            name = message.object if isinstance(message, ObjectPose) else CAMERA
+            name = message.object if isinstance(message, ObjectPose) else camera
             writer.write(
                 site.key(topic.stream, name),
                 msgspec.msgpack.encode(message),
-                received_ns=message.time_ns,
+                received_ns=received_ns,
                 captured_ns=message.time_ns,
                 sequence=message.sequence,
             )

@@ -8,10 +8,11 @@ from inhand_runtime.recording.part_file import PART_SUFFIX
 from inhand_schemas.conventions import SIMULATED
 from inhand_schemas.messages import Message, Skeletons
 from inhand_tracker.shape.shape import ObjectShape
+from msgspec.structs import replace as replace_fields
 
 from inhand_lab.cluster import current_cluster
 from inhand_lab.datasets.dataset import CAMERA, START_NS, Dataset, DatasetEntry, DatasetError
-from inhand_lab.datasets.dataset_writer import DatasetWriter, write_messages
+from inhand_lab.datasets.dataset_writer import DatasetWriter, write_messages, write_received
 from inhand_lab.people.person import USUAL_PEOPLE, People
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.workers import in_processes
@@ -24,6 +25,7 @@ from inhand_lab.world.messages import (
 )
 from inhand_lab.world.parameters import USUAL_VIEWS
 from inhand_lab.world.random_streams import GENERATOR_VERSION
+from inhand_lab.world.rigs import RigSimulation, simulate_rig_cast
 from inhand_lab.world.simulation import Casting, Simulation, simulate_cast
 
 GENERATED_RATE = 30
@@ -35,7 +37,8 @@ class GenerationSettings:
     """Settings of a dataset in which every participant does every interaction.
 
     ``images`` leaves nothing out but pictures if it is false. ``views`` names
-    one of CAMERA_PLACINGS, and ``people`` who lives there.
+    one of CAMERA_PLACINGS, and ``people`` who lives there; who is ``roaming`` walks about. With
+    several ``cameras`` each recording holds what all of a rig saw, but the frames that they lost.
     """
 
     interactions: Sequence[str]
@@ -46,6 +49,8 @@ class GenerationSettings:
     camera: Camera = KINECT
     views: str = USUAL_VIEWS
     people: People = USUAL_PEOPLE
+    cameras: int = 1
+    roaming: bool = False
 
 
 @dataclass(frozen=True)
@@ -89,8 +94,19 @@ def generate(
             "images": settings.images,
             "views": settings.views,
             "people": settings.people,
+            **_of_rigs(settings),
         },
     )
+
+
+def _of_rigs(settings: GenerationSettings) -> dict[str, int | bool]:
+    """What is said of a dataset only where it has several cameras, or people who walk about."""
+    said: dict[str, int | bool] = {}
+    if settings.cameras > 1:
+        said["cameras"] = settings.cameras
+    if settings.roaming:
+        said["roaming"] = settings.roaming
+    return said
 
 
 @dataclass(frozen=True)
@@ -131,13 +147,21 @@ def _enact(plan: _Plan) -> tuple[DatasetEntry, ObjectShape]:
         settings.seed,
         views=settings.views,
         people=settings.people,
+        roaming=settings.roaming,
     )
     camera = replace(settings.camera, frame_rate=GENERATED_RATE)
-    simulation = simulate_cast(casting, settings.frames, camera)
-    take = Take(plan.name, f"p{plan.participant:02}", simulation)
     if plan.anew:
         for path in plan.files():
             path.unlink(missing_ok=True)
+    participant = f"p{plan.participant:02}"
+    if settings.cameras > 1:
+        rig = simulate_rig_cast(casting, settings.frames, camera, settings.cameras)
+        first = rig.cameras[0]
+        entry = replace_fields(_entry(plan.name, participant, first), cameras=rig.names)
+        write_received(plan.folder / entry.file, rig_messages(rig, images=settings.images))
+        return entry, shape_of(first.object_model)
+    simulation = simulate_cast(casting, settings.frames, camera)
+    take = Take(plan.name, participant, simulation)
     entry = _write_take(plan.folder, take, images=settings.images)
     return entry, shape_of(simulation.object_model)
 
@@ -163,17 +187,20 @@ def write_takes(
 
 
 def _write_take(folder: Path, take: Take, *, images: bool) -> DatasetEntry:
-    simulation = take.simulation
-    entry = DatasetEntry(
-        file=f"recordings/{take.name}.mcap",
+    entry = _entry(take.name, take.participant, take.simulation)
+    write_messages(folder / entry.file, _messages(take, images=images))
+    return entry
+
+
+def _entry(name: str, participant: str, simulation: Simulation) -> DatasetEntry:
+    return DatasetEntry(
+        file=f"recordings/{name}.mcap",
         interaction=simulation.interaction,
         object=simulation.object_model.name,
-        participant=take.participant,
+        participant=participant,
         handedness=simulation.person.handedness,
         frame_rate=simulation.frame_rate,
     )
-    write_messages(folder / entry.file, _messages(take, images=images))
-    return entry
 
 
 def _finished(writer: DatasetWriter, settings: Mapping[str, str | int | float | bool]) -> Dataset:
@@ -185,20 +212,60 @@ def _messages(take: Take, *, images: bool) -> Iterator[Message]:
     yield camera_info(simulation.intrinsics, simulation.frame_rate, START_NS)
     for frame in range(simulation.frames):
         time_ns = START_NS + round(frame * 1_000_000_000 / simulation.frame_rate)
-        yield Skeletons(
-            sequence=frame,
-            time_ns=time_ns,
-            people=(person_message(simulation, frame),),
-            convention=take.convention,
-        )
-        seen = simulation.render(frame) if images else None
-        yield label_message(
-            simulation,
-            frame,
-            sequence=frame,
-            time_ns=time_ns,
-            camera=CAMERA,
-            visible_fraction=seen.visible_fraction if seen else simulation.visible_fraction(frame),
-        )
-        if seen is not None:
-            yield pixels_message(seen, sequence=frame, time_ns=time_ns)
+        stamp = _Stamp(frame, time_ns, CAMERA, take.convention)
+        yield from _frame_messages(simulation, stamp, images=images)
+
+
+@dataclass(frozen=True)
+class _Stamp:
+    """Which frame of which camera is written, and whose joints its skeletons have."""
+
+    frame: int
+    time_ns: int
+    camera: str
+    convention: str | None = SIMULATED
+
+
+def _frame_messages(simulation: Simulation, stamp: _Stamp, *, images: bool) -> Iterator[Message]:
+    frame, time_ns = stamp.frame, stamp.time_ns
+    yield Skeletons(
+        sequence=frame,
+        time_ns=time_ns,
+        people=(person_message(simulation, frame),),
+        convention=stamp.convention,
+    )
+    seen = simulation.render(frame) if images else None
+    yield label_message(
+        simulation,
+        frame,
+        sequence=frame,
+        time_ns=time_ns,
+        camera=stamp.camera,
+        visible_fraction=seen.visible_fraction if seen else simulation.visible_fraction(frame),
+    )
+    if seen is not None:
+        yield pixels_message(seen, sequence=frame, time_ns=time_ns)
+
+
+def rig_messages(rig: RigSimulation, *, images: bool) -> Iterator[tuple[str, int, Message]]:
+    """Yield what all cameras of a rig send, each with its camera and its time of reception.
+
+    Frames have the times of their cameras' clocks, and are received when they truly are taken, by
+    the rig's time, nanoseconds; those that a camera loses are left out.
+    """
+    for view in rig.views:
+        seen = view.simulation
+        info = camera_info(seen.intrinsics, seen.frame_rate, START_NS, view.rig_from_camera)
+        yield view.name, START_NS, info
+    taken = sorted(
+        (START_NS + round(1e9 * time), number, frame)
+        for number, view in enumerate(rig.views)
+        for frame, time in enumerate(view.times_s())
+        if not view.dropped[frame]
+    )
+    stamps = [START_NS + view.stamps_ns() for view in rig.views]
+    for received_ns, number, frame in taken:
+        view = rig.views[number]
+        stamp = _Stamp(frame, int(stamps[number][frame]), view.name)
+        for message in _frame_messages(view.simulation, stamp, images=images):
+            yield view.name, received_ns, message

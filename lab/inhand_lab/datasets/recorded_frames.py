@@ -36,9 +36,9 @@ def load_frames(
     """Read the skeletons and labels of a recording, in order, without pixels.
 
     Of several cameras the skeletons come from the one in which the labels were made, or else from
-    the ``camera`` that is named. Raises DatasetError where that is not exactly one, for times that
-    are no clock's, units that are no metres, and labels that are of no frame, object or person of
-    the recording.
+    the ``camera`` that is named, and so do the labels where they were made in several. Raises
+    DatasetError where that is not exactly one, for times that are no clock's, units that are no
+    metres, and labels that are of no frame, object or person of the recording.
     """
     labels: list[ObjectPose] = []
     objects: set[str] = set()
@@ -52,6 +52,8 @@ def load_frames(
             if message.object == object_name:
                 labels.append(message)
     check_objects(path, object_name, objects)
+    if camera in {label.camera for label in labels}:
+        labels = [label for label in labels if label.camera == camera]
     labelled = {label.camera for label in labels} or ({camera} if camera else set())
     shown = skeletons.get(_shared_camera(path, labelled, set(skeletons)), [])
     check_times(path, np.array([one.time_ns for one in shown], np.int64))

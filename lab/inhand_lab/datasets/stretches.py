@@ -40,7 +40,7 @@ def entry_frames(dataset: Dataset, entry: DatasetEntry) -> list[RecordedFrame]:
 
     They have the convention that the dataset names, if it names one.
     """
-    frames = load_frames(dataset.path(entry), entry.object)
+    frames = load_frames(dataset.path(entry), entry.object, entry.camera)
     if entry.convention is not None:
         frames = [replace(frame, convention=entry.convention) for frame in frames]
     if isinstance(entry, RecordingStretch):
@@ -58,7 +58,7 @@ def stretches_of(
 
     Raises DatasetError where it is too short.
     """
-    frames = load_frames(dataset.path(entry), entry.object)
+    frames = load_frames(dataset.path(entry), entry.object, entry.camera)
     if not frames:
         raise DatasetError(
             f"{entry.file} holds no skeletons: record it again with a body tracker, or take it "

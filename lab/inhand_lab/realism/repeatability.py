@@ -120,7 +120,7 @@ def main() -> None:
 
 
 def _true_joints(dataset: Dataset, entry: DatasetEntry) -> Array:
-    return true_joints(load_frames(dataset.path(entry), entry.object))
+    return true_joints(load_frames(dataset.path(entry), entry.object, entry.camera))
 
 
 if __name__ == "__main__":

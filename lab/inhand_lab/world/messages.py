@@ -3,12 +3,13 @@
 import numpy as np
 from inhand_runtime.pixels import encode_colour, encode_depth
 from inhand_schemas.fields import Contact, JointState, Vector3
-from inhand_schemas.messages import CameraInfo, ObjectPose, Person, RgbdFrame
+from inhand_schemas.messages import CameraInfo, ObjectPose, Person, Pose, RgbdFrame
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.shape.shape import ObjectShape
 from inhand_tracker.wire.poses import pose_message
 
+from inhand_lab.geometry.transforms import Transform, quaternions
 from inhand_lab.objects.model import ObjectModel
 from inhand_lab.world.simulation import SensedFrame, Simulation
 
@@ -17,8 +18,17 @@ CONTACTS: tuple[Contact, ...] = ("resting", "right_hand", "left_hand", "both_han
 """The message's words for contacts, in the order of ContactKind."""
 
 
-def camera_info(intrinsics: Intrinsics, frame_rate: float, time_ns: int = 0) -> CameraInfo:
-    """The simulated camera's description."""
+def camera_info(
+    intrinsics: Intrinsics,
+    frame_rate: float,
+    time_ns: int = 0,
+    rig_from_camera: Transform | None = None,
+) -> CameraInfo:
+    """The simulated camera's description, with where it stands in a rig of several."""
+    placed = Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
+    if rig_from_camera is not None:
+        turn = quaternions(rig_from_camera.rotation[None])[0]
+        placed = pose_message(rig_from_camera.translation, turn)
     return CameraInfo(
         sequence=0,
         time_ns=time_ns,
@@ -29,6 +39,7 @@ def camera_info(intrinsics: Intrinsics, frame_rate: float, time_ns: int = 0) -> 
         cx=intrinsics.cx,
         cy=intrinsics.cy,
         frame_rate=frame_rate,
+        rig_from_camera=placed,
         description="simulated",
     )
 

@@ -14,6 +14,7 @@ first. The rig's time is the first camera's, which is what ``simulate`` makes.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +27,6 @@ from inhand_lab.world.enactment import Enactment
 from inhand_lab.world.other_moments import enactment_at
 from inhand_lab.world.parameters import (
     CAMERA_PLACINGS,
-    DEFAULT_ROAMING,
     RIG_CAMERAS,
     ROAMING_VIEWS,
     USUAL_RIG,
@@ -63,32 +63,72 @@ class CameraClock:
 
 
 @dataclass(frozen=True)
-class RigSimulation:
-    """One performance as every camera of a rig sees it, C cameras.
+class RigView:
+    """What one camera of a rig sees; ``dropped`` (T,) is which of its frames are lost.
 
-    ``names`` are front, left and right (of the person, who faces the front) and high. A camera's
-    ``dropped`` (T,) is which of its frames are lost on their way: they are simulated, so that
-    whoever wants to compare can, but are not sent or written. Cameras but the first take their last
-    frame before the first does, so that they may have one less.
+    Lost frames are simulated, so that whoever wants to compare can, but are not sent or written.
     """
 
-    names: tuple[str, ...]
-    cameras: tuple[Simulation, ...]
-    rig_from_camera: tuple[Transform, ...]
-    clocks: tuple[CameraClock, ...]
-    dropped: tuple[Flags, ...]
+    name: str
+    simulation: Simulation
+    rig_from_camera: Transform
+    clock: CameraClock
+    dropped: Flags
+
+    def times_s(self) -> Array:
+        """The rig's times (T,) of its frames, seconds from the performance's beginning."""
+        return self.clock.rig_times(self._said())
+
+    def stamps_ns(self) -> NDArray[np.int64]:
+        """What its clock says of its frames (T,), nanoseconds; it may begin below 0."""
+        return np.rint(1e9 * self._said()).astype(np.int64)
+
+    def _said(self) -> Array:
+        return self.clock.said(self.simulation.frames, self.simulation.frame_rate)
+
+
+@dataclass(frozen=True)
+class RigSimulation:
+    """One performance as every camera of a rig sees it.
+
+    Cameras but the first take their last frame before the first does, so that they may have one
+    less.
+    """
+
+    views: tuple[RigView, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names: front, left and right (of the person, who faces the front), and high."""
+        return tuple(view.name for view in self.views)
+
+    @property
+    def cameras(self) -> tuple[Simulation, ...]:
+        """What each camera sees."""
+        return tuple(view.simulation for view in self.views)
+
+    @property
+    def rig_from_camera(self) -> tuple[Transform, ...]:
+        """Where each camera stands."""
+        return tuple(view.rig_from_camera for view in self.views)
+
+    @property
+    def clocks(self) -> tuple[CameraClock, ...]:
+        """The clock of each camera."""
+        return tuple(view.clock for view in self.views)
+
+    @property
+    def dropped(self) -> tuple[Flags, ...]:
+        """Which frames (T,) each camera loses."""
+        return tuple(view.dropped for view in self.views)
 
     def times_s(self, camera: int) -> Array:
         """The rig's times (T,) of a camera's frames, seconds from the performance's beginning."""
-        return self.clocks[camera].rig_times(self._said(camera))
+        return self.views[camera].times_s()
 
     def stamps_ns(self, camera: int) -> NDArray[np.int64]:
         """What a camera's clock says of its frames (T,), nanoseconds; it may begin below 0."""
-        return np.rint(1e9 * self._said(camera)).astype(np.int64)
-
-    def _said(self, camera: int) -> Array:
-        seen = self.cameras[camera]
-        return self.clocks[camera].said(seen.frames, seen.frame_rate)
+        return self.views[camera].stamps_ns()
 
 
 def simulate_rig(
@@ -117,58 +157,72 @@ def simulate_rig(
 
 def simulate_rig_cast(cast: Casting, frames: int, camera: Camera, cameras: int) -> RigSimulation:
     """Simulate as ``simulate_rig`` does, and raise what it raises."""
+    return RigSimulation(simulate_views(cast, frames, camera, cameras, range(cameras)))
+
+
+def simulate_views(
+    cast: Casting, frames: int, camera: Camera, cameras: int, chosen: Iterable[int]
+) -> tuple[RigView, ...]:
+    """Simulate some of a rig's cameras, by number, for whoever needs no others.
+
+    Raises what ``simulate_rig`` raises.
+    """
     if not 1 <= cameras <= len(RIG_CAMERAS):
         raise ValueError(f"a rig has 1 to {len(RIG_CAMERAS)} cameras, not {cameras}")
     if frames < 2:
         raise ValueError(f"a rig takes 2 frames at the least, not {frames}")
     enacted = enact(cast, frames, camera.frame_rate)
-    viewpoints = place_rig(cast, camera, enacted, cameras)
-    clocks = tuple(_clock(cast, camera.frame_rate, number) for number in range(cameras))
-    filmed = tuple(
-        film(cast, _as_taken(enacted, clock, camera.frame_rate), camera, viewpoint)
-        for clock, viewpoint in zip(clocks, viewpoints, strict=True)
-    )
-    return RigSimulation(
-        tuple(named.name for named in RIG_CAMERAS[:cameras]),
-        filmed,
-        tuple(viewpoint.camera_from_world.inverse() for viewpoint in viewpoints),
-        clocks,
-        tuple(_dropped(cast, seen) for seen in filmed),
+    viewpoints = _place_rig(cast, camera, enacted, cameras)
+    return tuple(_view(cast, camera, enacted, viewpoints[number]) for number in chosen)
+
+
+def _view(cast: Casting, camera: Camera, enacted: Enactment, viewpoint: Viewpoint) -> RigView:
+    clock = _clock(cast, camera.frame_rate, viewpoint.number)
+    seen = film(cast, _as_taken(enacted, clock, camera.frame_rate), camera, viewpoint)
+    return RigView(
+        RIG_CAMERAS[viewpoint.number].name,
+        seen,
+        viewpoint.camera_from_world.inverse(),
+        clock,
+        _dropped(cast, seen),
     )
 
 
-def place_rig(
+def _place_rig(
     cast: Casting, camera: Camera, enacted: Enactment, cameras: int
 ) -> tuple[Viewpoint, ...]:
     """Where the cameras stand: the first as it would alone, the others about the person.
 
-    They are before all walls, and where no furniture hides the person, unless it does from
-    everywhere that is tried.
+    They are before all walls, and where no furniture of the first performance hides the person,
+    unless it does from everywhere that is tried.
     """
-    person = cast.person()
     facing, camera_from_world = place_camera(
-        person, camera.intrinsics, cast.random("camera"), enacted.furniture, cast.views
+        cast.person(), camera.intrinsics, cast.random("camera"), enacted.furniture, cast.views
     )
-    further = DEFAULT_ROAMING.further if cast.roaming else 0.0
-    room = RoomPlan(facing, further, enclosed=cameras > 1)
-    wall = wall_place(cast.random("room"), room)
-    viewpoints = [Viewpoint(camera_from_world, room)]
-    for number, named in enumerate(RIG_CAMERAS[1:cameras], start=1):
-        random = cast.random(f"camera/{number}")
-        placing = replace(CAMERA_PLACINGS[cast.views], height=named.height)
-        tried = [
-            place_beside(
-                person, camera.intrinsics, random, placing, (facing + least, facing + largest)
-            )
-            for least, largest in (named.around, named.around_if_hidden)
-            for _ in range(USUAL_RIG.tries)
-        ]
-        before = [place for place in tried if in_the_open(room, wall, _position(place))]
-        clear = [
-            place for place in before if not hidden(person, _position(place), enacted.furniture)
-        ]
-        viewpoints.append(Viewpoint((clear or before)[0], room, number))
-    return tuple(viewpoints)
+    room = replace(cast.room(facing), enclosed=cameras > 1)
+    first = Viewpoint(camera_from_world, room)
+    if cameras > 1 and cast.performance:
+        enacted = enact(replace(cast, performance=0), 2, camera.frame_rate)
+    others = (_place_beside(cast, camera, enacted, room, number) for number in range(1, cameras))
+    return (first, *others)
+
+
+def _place_beside(
+    cast: Casting, camera: Camera, enacted: Enactment, room: RoomPlan, number: int
+) -> Viewpoint:
+    person, named = cast.person(), RIG_CAMERAS[number]
+    random, wall = cast.random(f"camera/{number}"), wall_place(cast.random("room"), room)
+    placing = replace(CAMERA_PLACINGS[cast.views], height=named.height)
+    tried = [
+        place_beside(
+            person, camera.intrinsics, random, placing, (room.turn + least, room.turn + largest)
+        )
+        for least, largest in (named.around, named.around_if_hidden)
+        for _ in range(USUAL_RIG.tries)
+    ]
+    before = [place for place in tried if in_the_open(room, wall, _position(place))]
+    clear = [place for place in before if not hidden(person, _position(place), enacted.furniture)]
+    return Viewpoint((clear or before)[0], room, number)
 
 
 def _position(camera_from_world: Transform) -> Array:

@@ -42,7 +42,7 @@ from inhand_lab.sensing.skeleton_noise import SkeletonReading, read_skeleton
 from inhand_lab.sensing.structured_light import StillRoom
 from inhand_lab.world.enactment import Enactment
 from inhand_lab.world.interactions import INTERACTIONS
-from inhand_lab.world.parameters import USUAL_VIEWS
+from inhand_lab.world.parameters import DEFAULT_ROAMING, USUAL_VIEWS
 from inhand_lab.world.random_streams import random_stream
 from inhand_lab.world.roaming import ROAMING_INTERACTIONS, roam
 from inhand_lab.world.room import RoomPlan, build_room
@@ -219,6 +219,10 @@ class Casting:
         """The participant, who is the same in every interaction of a seed."""
         return sample_person(self.seed, self.participant, self.people)
 
+    def room(self, facing: float) -> RoomPlan:
+        """The room, seen from a direction: deeper for whoever walks about."""
+        return RoomPlan(facing, DEFAULT_ROAMING.further if self.roaming else 0.0)
+
     def random(self, purpose: str, *more: int) -> np.random.Generator:
         """A stream of its own for a purpose."""
         return random_stream(self.seed, self.participant, self.interaction, purpose, *more)
@@ -247,7 +251,7 @@ def simulate_cast(cast: Casting, frames: int, camera: Camera) -> Simulation:
     facing, camera_from_world = place_camera(
         cast.person(), camera.intrinsics, cast.random("camera"), enacted.furniture, cast.views
     )
-    return film(cast, enacted, camera, Viewpoint(camera_from_world, RoomPlan(facing)))
+    return film(cast, enacted, camera, Viewpoint(camera_from_world, cast.room(facing)))
 
 
 @dataclass(frozen=True)

@@ -6,19 +6,24 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from inhand_runtime.settings import Section
 from inhand_runtime.settings_errors import explain, suggestion
-from inhand_runtime.source import Captured, Pixels, SourceError
+from inhand_runtime.source import QUIET_S, Captured, Pixels, SourceError
+from inhand_runtime.wording import counted
 from inhand_schemas.conventions import SIMULATED
 from inhand_schemas.messages import CameraInfo
-from pydantic import AfterValidator, Field, ValidationError
+from pydantic import AfterValidator, Field, ValidationError, model_validator
 
-from inhand_lab.sensing.cameras import CAMERAS
+from inhand_lab.sensing.cameras import CAMERAS, Camera
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.messages import camera_info, label_message, person_message
-from inhand_lab.world.simulation import SensedFrame, Simulation, simulate
+from inhand_lab.world.parameters import RIG_CAMERAS, ROAMING_VIEWS, USUAL_VIEWS
+from inhand_lab.world.rigs import RigView, simulate_views
+from inhand_lab.world.roaming import ROAMING_INTERACTIONS
+from inhand_lab.world.simulation import Casting, SensedFrame, Simulation, simulate_cast
+from inhand_lab.world.staging import Staging, staged_frames
 
 UNNAMED_CAMERA = "simulator"
 """Name of the camera in labels, until capture puts its own in its place."""
@@ -41,7 +46,11 @@ def _known(interaction: str) -> str:
 class SimulatorOptions(Section):
     """``[capture.NAME.options]`` of a simulator.
 
-    ``frames`` make one performance; with ``loop`` the next follows it, each a fresh one.
+    ``frames`` make one performance; with ``loop`` the next follows it, each a fresh one. Of several
+    ``cameras`` about the person this one is number ``view``, 0 the first: all that have the same
+    options but that show the same, as the wall clock says, the first performance from ``start`` on,
+    seconds since the epoch. With ``own_clock`` frames have the times of a clock that is not the
+    host's.
     """
 
     interaction: Annotated[str, AfterValidator(_known)] = "drinkFromMug"
@@ -51,6 +60,26 @@ class SimulatorOptions(Section):
     frames: Annotated[int, Field(ge=1)] = 360
     frame_rate: Annotated[float, Field(gt=0, le=240)] = 30.0
     loop: bool = True
+    roaming: bool = False
+    cameras: Annotated[int, Field(ge=1, le=len(RIG_CAMERAS))] = 1
+    view: Annotated[int, Field(ge=0)] = 0
+    start: Annotated[float, Field(ge=0)] = 0.0
+    own_clock: bool = False
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        if self.view >= self.cameras:
+            raise ValueError(
+                f"view is 0 to {self.cameras - 1} of {counted(self.cameras, 'camera')}"
+            )
+        if self.roaming and self.interaction not in ROAMING_INTERACTIONS:
+            able = ", ".join(ROAMING_INTERACTIONS)
+            raise ValueError(f"nobody walks about in {self.interaction!r}; people do in: {able}")
+        if self.cameras > 1 and self.frames < 2:
+            raise ValueError("several cameras need 2 frames or more: each has its own moments")
+        if self.cameras > 1 and not self.loop and not self.start:
+            raise ValueError("several cameras without loop need start, when it is performed")
+        return self
 
 
 class SimulatorSource:
@@ -64,16 +93,26 @@ class SimulatorSource:
         except ValidationError as error:
             raise SourceError(explain(error, None, ("options",), SimulatorOptions)) from None
         self._closed = threading.Event()
-        self._first: Simulation | None = self._perform(0)
+        self._first: Simulation | None = None
+        self._view: tuple[int, RigView] | None = None
+        if self._options.cameras == 1:
+            self._first = self._perform(0)
+        else:
+            number = self._staging().performance_at(time.time_ns())
+            self._view = number, self._perform_before_rig(number)
 
     @property
     def info(self) -> CameraInfo:
-        """How the simulated camera sees."""
+        """How the simulated camera sees, and where it stands among others."""
         camera = CAMERAS[self._options.camera]
-        return camera_info(camera.intrinsics, self._options.frame_rate)
+        placed = None if self._view is None else self._view[1].rig_from_camera
+        return camera_info(camera.intrinsics, self._options.frame_rate, rig_from_camera=placed)
 
-    def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured]:
+    def captures(self, wanted: Callable[[], bool]) -> Iterator[Captured | None]:
         """Frames when they are due, rendered before that if pixels are wanted."""
+        return self._captures_alone(wanted) if self._view is None else self._in_step(wanted)
+
+    def _captures_alone(self, wanted: Callable[[], bool]) -> Iterator[Captured]:
         period = 1.0 / self._options.frame_rate
         due = time.monotonic()
         due_ns = _on_the_wall(due)
@@ -87,6 +126,21 @@ class SimulatorSource:
                 due_ns = _on_the_wall(due)
             yield _captured(simulation, frame, due_ns, ready)
             due, due_ns = due + period, due_ns + round(1e9 * period)
+
+    def _in_step(self, wanted: Callable[[], bool]) -> Iterator[Captured | None]:
+        """Frames of one camera of a rig when they are due by the wall clock, and none late."""
+        assert self._view is not None
+        for staged in staged_frames(self._staging(), self._perform_before_rig, self._view):
+            simulation, frame = staged.view.simulation, staged.frame
+            while (left_s := 1e-9 * (staged.due_ns - time.time_ns())) > QUIET_S:
+                if self._closed.wait(0.5 * QUIET_S):
+                    return
+                yield None
+            ready = simulation.render(frame) if wanted() else None
+            left_s = 1e-9 * (staged.due_ns - time.time_ns())
+            if self._closed.wait(max(0.0, left_s)):
+                return
+            yield _captured(simulation, frame, staged.stamp_ns, ready)
 
     def close(self) -> None:
         """End ``captures``."""
@@ -108,17 +162,35 @@ class SimulatorSource:
                 current = prepared.result()
 
     def _perform(self, performance: int) -> Simulation:
-        options = self._options
-        simulation = simulate(
-            options.interaction,
-            options.participant,
-            options.seed,
-            options.frames,
-            replace(CAMERAS[options.camera], frame_rate=options.frame_rate),
-            performance,
-        )
+        simulation = simulate_cast(self._cast(performance), self._options.frames, self._camera())
         simulation.prepare()
         return simulation
+
+    def _perform_before_rig(self, performance: int) -> RigView:
+        options, cast = self._options, self._cast(performance)
+        chosen = [options.view]
+        (view,) = simulate_views(cast, options.frames, self._camera(), options.cameras, chosen)
+        view.simulation.prepare()
+        return view
+
+    def _cast(self, performance: int) -> Casting:
+        options = self._options
+        views = ROAMING_VIEWS if options.roaming else USUAL_VIEWS
+        who = options.interaction, options.participant, options.seed
+        return Casting(*who, performance, views, roaming=options.roaming)
+
+    def _camera(self) -> Camera:
+        return replace(CAMERAS[self._options.camera], frame_rate=self._options.frame_rate)
+
+    def _staging(self) -> Staging:
+        options = self._options
+        return Staging(
+            round(1e9 * options.start),
+            round(1e9 * options.frames / options.frame_rate),
+            round(1e9 * PREPARED_AHEAD_S),
+            options.loop,
+            options.own_clock,
+        )
 
 
 def _on_the_wall(moment: float) -> int:

@@ -81,12 +81,12 @@ def walk(
     return place_body(
         person,
         posture,
-        _swung(right, trunk.right_shoulder, trunk, phase),
-        _swung(left, trunk.left_shoulder, trunk, -phase),
+        swung(right, trunk.right_shoulder, trunk, phase),
+        swung(left, trunk.left_shoulder, trunk, -phase),
     )
 
 
-def _swung(hand: Transform, shoulder: Array, trunk: Trunk, angle: Array) -> Transform:
+def swung(hand: Transform, shoulder: Array, trunk: Trunk, angle: Array) -> Transform:
     """A hanging hand turned forwards about its shoulder by angles (T,)."""
     upright = rotation_about("z", heading_of(trunk.world_from_chest))
     turn = upright @ rotation_about("x", angle) @ np.swapaxes(upright, 1, 2)

@@ -1,0 +1,1 @@
+"""Cameras calibrated by a ChArUco board that two or more of them see at the same time."""
