@@ -99,7 +99,9 @@ def track_rig(
     places = {name: _placement(rig.rig_from_camera[n]) for n, name in enumerate(rig.names)}
 
     def follower(cameras: tuple[int, ...], until_s: dict[int, float]) -> _Follower:
-        tracker = new_tracker(model, left_handed=left_handed, seed=tracker_seed)
+        tracker = new_tracker(
+            model, left_handed=left_handed, seed=tracker_seed, several_cameras=len(cameras) > 1
+        )
         chosen = {rig.names[camera]: places[rig.names[camera]] for camera in cameras}
         off = np.full((count, len(model.shape.marked_vertices), 3), np.nan)
         return _Follower(tracker, cameras, RigFrames(chosen, parameters), off, until_s)

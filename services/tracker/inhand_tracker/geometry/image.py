@@ -9,6 +9,8 @@ from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.placement import Placement
 
 Prepared = TypeVar("Prepared")
+MOST_VIEWS = 4
+"""Number of cameras' images of one moment that poses are looked for in at the most."""
 
 
 @dataclass(frozen=True)

@@ -30,20 +30,19 @@ class Agreement:
     """Watches whether cameras agree; ``left_out`` are those that do not, with how far they are off,
     in metres."""
 
-    def __init__(self, cameras: Sequence[str], parameters: RigParameters = DEFAULT_RIG) -> None:
-        self._cameras = tuple(cameras)
+    def __init__(self, parameters: RigParameters = DEFAULT_RIG) -> None:
         self._parameters = parameters
         self._differences: dict[str, _Difference] = {}
         self.left_out: dict[str, float] = {}
 
     def compare(self, seen: Mapping[str, Sequence[Array]], time_ns: int) -> None:
-        """Take what cameras saw at a time: of each, the same people's joints (20, 3) in one frame
-        of reference, all NaN of somebody it does not see."""
+        """Take what cameras saw at a time, those that are believed first: of each, the same
+        people's joints (20, 3) in one frame of reference, all NaN of somebody it does not see."""
         for camera in seen:
             trusted = [one for one in seen if one != camera and (one not in self.left_out)]
             if trusted:
                 self._note(camera, seen[camera], [seen[one] for one in trusted], time_ns)
-        self._decide()
+        self._decide(list(seen))
 
     def _note(
         self, camera: str, own: Sequence[Array], others: Sequence[Sequence[Array]], time_ns: int
@@ -72,7 +71,7 @@ class Agreement:
             before.way + share * (way - before.way), before.seconds + elapsed, time_ns
         )
 
-    def _decide(self) -> None:
+    def _decide(self, cameras: Sequence[str]) -> None:
         """Leave the camera out that is farthest off; take those back that agree again."""
         parameters = self._parameters
         off = {
@@ -85,7 +84,7 @@ class Agreement:
                 self.left_out[camera] = off[camera]
             if off.get(camera, np.inf) < parameters.together_m:
                 del self.left_out[camera]
-        rest = [camera for camera in self._cameras if camera in off and camera not in self.left_out]
+        rest = [camera for camera in cameras if camera in off and camera not in self.left_out]
         if len(rest) < 2:
             return
         candidates = rest[1:] if len(rest) == 2 else rest

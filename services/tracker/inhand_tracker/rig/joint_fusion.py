@@ -26,11 +26,11 @@ def fuse_joints(
     (J, 3) is where joints should be, NaN where that is not known: it only helps where two or more
     cameras see a joint, to choose. Also returns the weights (C, J) that cameras had, from 0 to 1.
     """
-    there = np.isfinite(joints).all(axis=2)
+    there = np.asarray(np.isfinite(joints).all(axis=2))
     information = _information(deviations, rays, parameters.along_factor)
     points = np.where(there[..., None], joints, 0.0)
     if expected is not None:
-        helps = np.isfinite(expected).all(axis=1) & (there.sum(axis=0) >= 2)
+        helps = np.asarray(np.isfinite(expected).all(axis=1) & (there.sum(axis=0) >= 2))
         by_past = np.broadcast_to(_EYE / parameters.expected_m**2, (1, len(expected), 3, 3))
         information = np.concatenate((information, by_past))
         points = np.concatenate((points, np.where(helps[:, None], expected, 0.0)[None]))

@@ -24,17 +24,17 @@ _IMPOSSIBLE = 1e6
 
 class PeopleFuser:
     """Fuses the people of a rig's cameras; ``places`` are the cameras', ``rig_from_camera``, in
-    the frame of reference that the people then are in. The first one is believed where two
-    disagree."""
+    the frame of reference that the people then are in; they may change. The first one is believed
+    where two disagree."""
 
     def __init__(
         self, places: Mapping[str, Placement], parameters: RigParameters = DEFAULT_RIG
     ) -> None:
-        self._places = dict(places)
+        self._places = places
         self._parameters = parameters
         self._tracks: list[PersonTrack] = []
         self._next = 0
-        self._agreement = Agreement(tuple(places), parameters)
+        self._agreement = Agreement(parameters)
         self._compared_ns = 0
         self._together: dict[tuple[int, int], int] = {}
 
@@ -133,7 +133,9 @@ class PeopleFuser:
             for camera, joints in seen.items():
                 joints.append(by_camera.get(camera, nowhere))
         if tracks:
-            self._agreement.compare(seen, time_ns)
+            self._agreement.compare(
+                {camera: seen[camera] for camera in self._places if camera in seen}, time_ns
+            )
 
     def _merge(self, matched: Mapping[int, Sequence[Sighting]], time_ns: int) -> None:
         """Take two for one person, the one of before, whom no camera sees apart, and who have long

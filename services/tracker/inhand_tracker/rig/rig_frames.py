@@ -11,11 +11,12 @@ leaps where a camera fails. The frame's time is that of the first capture.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
 from inhand_schemas.messages import Person
 
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image, OtherView
-from inhand_tracker.geometry.placement import Placement
+from inhand_tracker.geometry.placement import HERE, Placement
 from inhand_tracker.rig.parameters import DEFAULT_RIG, RigParameters
 from inhand_tracker.rig.people_fusing import PeopleFuser
 from inhand_tracker.rig.person_track import FusedPerson
@@ -44,16 +45,28 @@ class RigFrame:
 
 
 class RigFrames:
-    """Joins what the cameras of a rig capture; ``places`` are their ``rig_from_camera``."""
+    """Joins what the cameras of a rig capture; ``places`` are their ``rig_from_camera``, in the
+    order in which they are believed."""
 
     def __init__(
         self, places: Mapping[str, Placement], parameters: RigParameters = DEFAULT_RIG
     ) -> None:
         self._home = next(iter(places))
-        home_from_rig = places[self._home].inverse()
-        self.places = {camera: home_from_rig @ place for camera, place in places.items()}
-        """Each camera's ``home_from_camera``, where home is the first one."""
-        self._fuser = PeopleFuser(self.places, parameters)
+        self._home_from_rig = places[self._home].inverse()
+        self._home_from: dict[str, Placement] = {}
+        self._fuser = PeopleFuser(self._home_from, parameters)
+        for camera, place in places.items():
+            self.place(camera, place)
+
+    def place(self, camera: str, rig_from_camera: Placement) -> None:
+        """Take a camera to be at a place of the rig; the frame of reference stays."""
+        self._home_from[camera] = self._home_from_rig @ rig_from_camera
+
+    def view_of(self, camera: str) -> Placement | None:
+        """Return ``view_from_reference`` of a camera; None of the one whose frame it is."""
+        place = self._home_from[camera]
+        is_home = camera == self._home and np.allclose(place.translation, 0.0, atol=1e-9)
+        return None if is_home else place.inverse()
 
     @property
     def left_out(self) -> Mapping[str, float]:
@@ -77,26 +90,16 @@ class RigFrames:
         """The first camera's image of this very time, with the others beside it."""
         if not shown:
             return None
-        own = next(
-            (
-                replace(image, source=one.camera)
-                for one, image in shown
-                if one.camera == self._home and one.time_ns == time_ns
-            ),
-            None,
-        )
-        if own is None:
-            own = _nothing(shown[0][1].camera)
-        others = tuple(
-            OtherView(
-                replace(image, source=one.camera),
-                self.places[one.camera].inverse(),
-                (one.time_ns - time_ns) / 1e9,
-            )
-            for one, image in shown
-            if one.camera != own.source
-        )
-        return replace(own, others=others)
+        own = _nothing(shown[0][1].camera)
+        others = []
+        for one, image in shown:
+            seen, view = replace(image, source=one.camera), self.view_of(one.camera)
+            if view is None and one.time_ns == time_ns:
+                own = seen
+            else:
+                later_s = (one.time_ns - time_ns) / 1e9
+                others.append(OtherView(seen, view or HERE, later_s))
+        return replace(own, others=tuple(others))
 
 
 def _nothing(camera: Intrinsics) -> Image:

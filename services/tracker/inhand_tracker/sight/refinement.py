@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Flags
+from inhand_tracker.geometry.image import MOST_VIEWS
 from inhand_tracker.geometry.kernels.pose_normals import inverses, squares_by_information
 from inhand_tracker.geometry.placement import HERE
 from inhand_tracker.sight.depth_table import sensor_of
@@ -17,7 +18,7 @@ from inhand_tracker.sight.kernels.gather import GatherSettings
 from inhand_tracker.sight.kernels.inputs import Outlines
 from inhand_tracker.sight.kernels.mixed_offset import Mixing
 from inhand_tracker.sight.kernels.refine import Priors, Steps, refine
-from inhand_tracker.sight.kernels.refine_together import MOST_VIEWS, Views, refine_together
+from inhand_tracker.sight.kernels.refine_together import Views, refine_together
 from inhand_tracker.sight.parameters import SightParameters
 from inhand_tracker.sight.view import PlacedView, SightView
 

@@ -20,7 +20,7 @@ from inhand_tracker.geometry.estimate import AGREEMENT_M, AGREEMENT_RAD, Estimat
 from inhand_tracker.geometry.image import Image, OtherView
 from inhand_tracker.geometry.kernels.pose_normals import share_near
 from inhand_tracker.geometry.motion import Motion
-from inhand_tracker.geometry.placement import Placement
+from inhand_tracker.geometry.placement import HERE, Placement
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, moved_covariance
 from inhand_tracker.geometry.weights import normalised_weights
 from inhand_tracker.methods.follower import Follower, FollowingTracker
@@ -47,9 +47,11 @@ _NOBODY = np.full((20, 3), np.nan)
 
 
 class FusionTracker(FollowingTracker):
-    """Follows one object of one person through the frames of one camera.
+    """Follows one object of one person through the frames of one camera, or of several cameras
+    whose images are beside that one's.
 
-    Raises ModelError for a model of a release that learned no prior.
+    What a first frame of ``several_cameras`` would wait for is compiled with the rest. Raises
+    ModelError for a model of a release that learned no prior.
     """
 
     def __init__(
@@ -60,6 +62,7 @@ class FusionTracker(FollowingTracker):
         terms: Collection[SightTerm] = SIGHT_TERMS,
         parameters: FusionParameters = DEFAULT_FUSION,
         seed: int = 0,
+        several_cameras: bool = False,
     ) -> None:
         if model.prior is None:
             raise ModelError(
@@ -80,15 +83,17 @@ class FusionTracker(FollowingTracker):
             )
             self._sight.compile()
         self._seed = seed
-        self._compile()
+        self._compile(several_cameras=several_cameras)
         self.restart()
 
-    def _compile(self) -> None:
+    def _compile(self, *, several_cameras: bool) -> None:
         """Compile what frames would wait for, by two of somebody usual 2 m ahead: the second one
         takes over what the first one gave."""
         pose = self._mapping.body_poses.mean(axis=0).reshape(20, 3)
         joints = USUAL_HEIGHT_M * pose + np.array([0.0, 0.0, 2.0])
         image = blank_image()
+        if several_cameras:
+            image = replace(image, others=(OtherView(replace(image, source="other"), HERE),))
         self.restart()
         for time_ns in (0, _FRAME_NS):
             estimate = self.step(joints, time_ns, None if self._sight is None else image)

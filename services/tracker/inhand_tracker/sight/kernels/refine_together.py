@@ -20,19 +20,17 @@ from inhand_tracker.sight.kernels.gather import GatherSettings, gather
 from inhand_tracker.sight.kernels.inputs import Outlines, ScoredPixels
 from inhand_tracker.sight.kernels.refine import Priors, Steps, step_poses
 
-MOST_VIEWS = 4
-"""Number of cameras that poses are refined by at the most. Kernels take that many views, some of
-them without a meaning where there are fewer, so that they are compiled once."""
-
 FourPixels = tuple[ScoredPixels, ScoredPixels, ScoredPixels, ScoredPixels]
 FourSettings = tuple[GatherSettings, GatherSettings, GatherSettings, GatherSettings]
 
 
 class Views(NamedTuple):
-    """The first ``count`` of four views: their ``pixels`` and ``settings``, and where the cameras
-    are, ``translations`` (4, 3) and ``rotations`` (4, 4) of view_from_reference."""
+    """The first ``number`` of four views (``MOST_VIEWS``); the others have no meaning, and are
+    there so that this is compiled once, however many cameras see a thing. They have their
+    ``pixels`` and ``settings``, and cameras at ``translations`` (4, 3) and ``rotations`` (4, 4) of
+    view_from_reference."""
 
-    count: int
+    number: int
     pixels: FourPixels
     settings: FourSettings
     translations: Array
@@ -56,7 +54,7 @@ def refine_together(
     for share in steps.shares:
         information[:] = 0.0
         gradients[:] = 0.0
-        for view in range(views.count):
+        for view in range(views.number):
             _add_view(
                 (translations, orientations),
                 share * steps.reaches,
