@@ -5,7 +5,8 @@ from pathlib import Path
 
 import inhand_recorder
 import pytest
-from inhand_recorder.losses import LOSSES_RECORD
+from inhand_recorder.conversion_records import records_of
+from inhand_recorder.losses import LOSSES_RECORD, LossCounter
 from inhand_recorder.merging import (
     MERGE_RECORD,
     HostClock,
@@ -15,6 +16,7 @@ from inhand_recorder.merging import (
     merge_recordings,
     shared_receptions,
 )
+from inhand_recorder.provenance import PUBLISHERS_RECORD, with_publisher
 from inhand_recorder.verification import verify_recording
 from inhand_runtime.recording import (
     RecordedMessage,
@@ -139,3 +141,25 @@ def test_a_pattern_of_nothing_and_an_output_that_is_there_are_refused(tmp_path: 
         merge([one, hall], tmp_path / "all.mcap", [OWN, OWN], ("rgdb/*",))
     with pytest.raises(RecordingError, match="exists already"):
         merge([one, hall], one, [OWN, OWN])
+
+
+def test_files_of_one_name_are_refused_as_their_records_could_not_be_told_apart(
+    tmp_path: Path,
+) -> None:
+    one = write_rig(tmp_path / "kitchen" / "rig.mcap")
+    hall = write_rig(tmp_path / "hall" / "rig.mcap", site=Site(rig="hall"))
+    with pytest.raises(RecordingError, match="have one name: name files after their hosts"):
+        merge([one, hall], tmp_path / "all.mcap", [OWN, OWN])
+
+
+def test_a_key_of_several_publishers_names_them_all() -> None:
+    assert with_publisher("", "capture front") == "capture front"
+    assert with_publisher("capture front", "capture front") == "capture front"
+    both = with_publisher("capture front", "capture left, capture front")
+    assert both == "capture front, capture left"
+    sources = {
+        Path("a.mcap"): {PUBLISHERS_RECORD: {"label/mug": "capture front"}},
+        Path("b.mcap"): {PUBLISHERS_RECORD: {"label/mug": "capture left"}},
+    }
+    joined = records_of(sources, LossCounter(), None)[PUBLISHERS_RECORD]
+    assert joined == {"label/mug": "capture front, capture left"}

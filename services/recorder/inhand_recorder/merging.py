@@ -66,8 +66,16 @@ class Host:
 def hosts_of(recordings: Sequence[Recording], exclude: Sequence[str] = ()) -> list[Host]:
     """Return what is taken of each recording: all but the topics that match a pattern.
 
-    Raises RecordingError for a pattern that matches no topic of any, and where nothing is left.
+    Raises RecordingError for a pattern that matches no topic of any, where nothing is left, and for
+    two files of one name, of which the records could not say which is which.
     """
+    paths = [path for one in recordings for path in one.paths]
+    for number, path in enumerate(paths):
+        for former in paths[:number]:
+            if former.name == path.name:
+                raise RecordingError(
+                    f"{former} and {path} have one name: name files after their hosts"
+                )
     for pattern in exclude:
         if not any(matches(key, pattern) for one in recordings for key in one.keys):
             raise RecordingError(f"no topic matches {pattern!r}: leave it out, or correct it")
@@ -171,7 +179,7 @@ def merge_recordings(
     writer = RecordingWriter(output, part_suffix=MERGING_SUFFIX)
     try:
         counter, standing = LossCounter(), StandingAlone()
-        written = dict.fromkeys((_shown(hosts, number) for number in range(len(hosts))), 0)
+        written = dict.fromkeys((host.name for host in hosts), 0)
         repeated = 0
         streams = (_timed(*one) for one in zip(range(len(hosts)), hosts, clocks, strict=True))
         for number, message in merge(*streams, key=lambda one: one[1].received_ns):
@@ -184,7 +192,7 @@ def merge_recordings(
             else:
                 copy_message(writer, standing.standing(message))
                 counter.count(message.key, message.sequence)
-            written[_shown(hosts, number)] += 1
+            written[hosts[number].name] += 1
             on_message()
         _write_about(writer, hosts, clocks, counter)
         path = writer.close()
@@ -199,12 +207,6 @@ def merge_recordings(
 
 
 MERGING_SUFFIX = ".merging"
-
-
-def _shown(hosts: Sequence[Host], number: int) -> str:
-    """The name of a host's recording, with its number where two have one name."""
-    names = [host.name for host in hosts]
-    return names[number] if names.count(names[number]) == 1 else f"{names[number]} ({number + 1})"
 
 
 def _repeats(hosts: Sequence[Host]) -> list[dict[str, set[Stamp]]]:
@@ -239,9 +241,9 @@ def _write_about(
             attached.setdefault((one.name, one.data), one)
     attach(writer, list(attached.values()))
     sources = {path: of for host in hosts for path, of in host.recording.metadata().items()}
-    about = {"sources": "\n".join(_shown(hosts, number) for number in range(len(hosts)))}
-    for number, clock in enumerate(clocks):
-        about[f"clock of {_shown(hosts, number)}"] = clock_in_words(clock)
+    about = {"sources": "\n".join(path.name for path in sources)}
+    for host, clock in zip(hosts, clocks, strict=True):
+        about[f"clock of {host.name}"] = clock_in_words(clock)
     records = records_of(sources, counter, None)
     for name, values in (records | {MERGE_RECORD: about | losses_by_source(sources)}).items():
         writer.add_metadata(name, values)
