@@ -55,6 +55,7 @@ from inhand.bench_recorder import (
     recorders_table,
     writers_table,
 )
+from inhand.bench_rigs import DEFAULT_SEEDS, add_rig_arguments, measure_rigs
 from inhand.bench_skeleton_tables import actions_table, costs_table, joints_table, rules_table
 from inhand.bench_tables import (
     ablation_table,
@@ -74,6 +75,8 @@ from inhand.bench_tables import (
 from inhand.looking import positive_count
 from inhand.progress import progress_bar, progress_bars
 from inhand.results import write_json
+
+OUTCOME_SEEDS = (9001, 9002, 9003)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -128,9 +131,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--seeds",
         type=int,
         nargs="+",
-        default=[9001, 9002, 9003],
         metavar="S",
-        help="for outcomes: seeds of the people who are watched (default: 9001 9002 9003)",
+        help="for outcomes and rigs: seeds of the people who are watched "
+        f"(default: {' '.join(map(str, OUTCOME_SEEDS))}; for rigs: "
+        f"{' '.join(map(str, DEFAULT_SEEDS))})",
     )
     parser.add_argument(
         "--participants",
@@ -160,6 +164,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="for outcomes, with or without a SOURCE: folders with motion archives of golf swings, "
         "or with UTD-MHAD's skeletons, in which swings and strokes are counted",
     )
+    add_rig_arguments(parser)
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
 
 
@@ -339,7 +344,7 @@ def _outcomes(arguments: argparse.Namespace) -> tuple[RenderableType, dict[str, 
     if arguments.source is not None:
         if arguments.estimated:
             require_network(DEFAULT_NETWORK)
-        chosen = (arguments.source, arguments.seeds, arguments.participants)
+        chosen = (arguments.source, arguments.seeds or OUTCOME_SEEDS, arguments.participants)
         for estimated in (False, True)[: 1 + arguments.estimated]:
             with progress_bar("comparing", steps(*chosen[1:])) as advance:
                 check = check_outcomes(*chosen, advance, estimated=estimated)
@@ -370,6 +375,7 @@ SUBJECTS_HELP = {
     "outcomes": "what is said to be achieved beside what truly was, of simulated people who are "
     "tracked from images",
     "recorder": "writing recordings beside other writers, and what a recorder takes",
+    "rigs": "the error of several cameras together beside that of each alone, and when one fails",
     "skeletons": "skeletons from images: found people, joints' errors, and what a frame costs",
     "tracker": "poses weighed in a second, and what a frame costs, by itself or against other code",
     "training": "time and memory of training by its size",
@@ -401,6 +407,7 @@ SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "objects": _objects,
     "outcomes": _outcomes,
     "recorder": _recorder,
+    "rigs": measure_rigs,
     "skeletons": _skeletons,
     "tracker": _tracker,
     "training": _training,

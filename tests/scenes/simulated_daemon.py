@@ -25,13 +25,15 @@ class Sample:
 
 Due = tuple[float, AnyTopic, Message]
 """When a message arrives, in seconds, on which topic, and which."""
+DueOf = tuple[float, AnyTopic, Message, str]
+"""The same of one of several cameras."""
 
 
 class SimulatedDaemon:
     """Hands out messages when they are due; ends when all were read. ``now`` is the time in
     seconds; whoever works moves it on."""
 
-    def __init__(self, *messages: Due) -> None:
+    def __init__(self, *messages: Due | DueOf) -> None:
         self.site, self.instance = SITE, "test"
         self.stop = threading.Event()
         self.health = HealthBoard("tracker", "test")
@@ -41,8 +43,8 @@ class SimulatedDaemon:
         self.published: list[float] = []
         """When each pose was published."""
         self._samples = [
-            Sample(topic.key(SITE, "camera"), message, due)
-            for due, topic, message in sorted(messages, key=lambda one: one[0])
+            Sample(topic.key(SITE, *camera or ["camera"]), message, due)
+            for due, topic, message, *camera in sorted(messages, key=lambda one: one[0])
         ]
         self._end = max((sample.arrived for sample in self._samples), default=0.0) + SETTLES_S
 
@@ -55,9 +57,8 @@ class SimulatedDaemon:
         assert topic is POSE
         return Publications(self, self.poses.setdefault(name, []))
 
-    def subscribe(self, topic: AnyTopic, name: str, **_bounds: int) -> None:
+    def subscribe(self, topic: AnyTopic, _name: str, **_bounds: int) -> None:
         """Note that a topic is wanted."""
-        assert name == "camera"
         self.subscribed.append(topic)
 
     def receive(self, timeout_s: float) -> Sample | None:
@@ -75,9 +76,9 @@ class SimulatedDaemon:
         """The sample's message."""
         return sample.message
 
-    def dropped(self, topic: AnyTopic) -> int:
+    def dropped(self, topic: AnyTopic, camera: str = "camera") -> int:
         """How many messages of a topic the health counts as dropped."""
-        return self.health.drops().get(topic.key(SITE, "camera"), 0)
+        return self.health.drops().get(topic.key(SITE, camera), 0)
 
 
 class Publications:

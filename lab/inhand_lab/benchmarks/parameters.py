@@ -390,3 +390,29 @@ class PeopleCalibrationCheckParameters:
 
 
 DEFAULT_PEOPLE_CALIBRATION_CHECK = PeopleCalibrationCheckParameters()
+
+
+@dataclass(frozen=True)
+class RigCheckParameters:
+    """How much is simulated where a rig's cameras are compared with each of them alone."""
+
+    interactions: tuple[str, ...] = (
+        "drinkFromMug",
+        "answerPhone",
+        "liftWeights",
+        "hitTennisBall",
+        "putOnGlasses",
+        "sweepFloor",
+    )
+    """What people do; all of it can be done while walking about."""
+    frames: int = 150
+    """Number of frames that are tracked."""
+    people: int = 4
+    """Number of people who are learned from."""
+    learned_frames: int = 150
+    """Number of frames of each of them."""
+    looks: int = 60
+    """Number of frames, about, that an object's colours are learned from."""
+
+
+DEFAULT_RIGS = RigCheckParameters()

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from inhand_schemas.messages import CameraInfo, ObjectPose, RgbdFrame, Skeletons
+from inhand_schemas.messages import CameraInfo, ObjectPose, Pose, RgbdFrame, Skeletons
 
 from inhand_tracker.geometry.camera import intrinsics_of
 from inhand_tracker.geometry.image import Image
@@ -39,9 +39,15 @@ def camera_frame(
     return CameraFrame(skeletons.time_ns, image, camera, effort, skeletons.convention)
 
 
-def source_of(skeletons: Skeletons, camera: str, info: CameraInfo | None) -> SourceFrame:
-    """Say of which frame of a camera poses are."""
-    rig_from_camera = None if info is None else info.rig_from_camera
+def source_of(
+    skeletons: Skeletons,
+    camera: str,
+    info: CameraInfo | None,
+    rig_from_camera: Pose | None = None,
+) -> SourceFrame:
+    """Say of which frame of a camera poses are; where it is says its info, if nobody else."""
+    if rig_from_camera is None and info is not None:
+        rig_from_camera = info.rig_from_camera
     return SourceFrame(skeletons.sequence, skeletons.time_ns, camera, rig_from_camera)
 
 

@@ -3,12 +3,13 @@
 from collections.abc import Mapping
 
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.rig_calibration import read_rig_calibration
 from inhand_runtime.settings import Settings
 from inhand_runtime.settings_errors import suggestion
 from inhand_schemas.joints import Joint
 
 from inhand_tracker.methods.object_tracker import ObjectTracker
-from inhand_tracker.methods.registry import new_tracker
+from inhand_tracker.methods.registry import DEFAULT_METHOD, new_tracker
 from inhand_tracker.model.model import Model, ModelError
 from inhand_tracker.model.model_file import load_model
 from inhand_tracker.people.watching import GivenObjects, RecognisedObjects, Watcher
@@ -19,7 +20,8 @@ from inhand_tracker.settings import TrackerSettings
 
 def check(settings: Settings[TrackerSettings]) -> Watcher:
     """Check all that can be known before a start, and load it; raises SettingsError."""
-    _require_camera(settings)
+    _require_cameras(settings)
+    _require_rig(settings)
     require_files(settings)
     try:
         return load_watcher(settings.instance, settings.service)
@@ -27,18 +29,47 @@ def check(settings: Settings[TrackerSettings]) -> Watcher:
         raise SettingsError(f"[tracker.{settings.instance}]: {error}") from None
 
 
-def _require_camera(settings: Settings[TrackerSettings]) -> None:
+def _require_cameras(settings: Settings[TrackerSettings]) -> None:
     """Raise SettingsError for a camera that no table names.
 
     A file without cameras, and one that joins other machines, follow cameras of elsewhere.
     """
-    cameras = settings.origin.instances.get("capture", ())
-    camera, zenoh = settings.service.camera, settings.zenoh
-    if not cameras or camera in cameras or zenoh.connect or zenoh.listen:
+    tables, zenoh = settings.origin.instances.get("capture", ()), settings.zenoh
+    if not tables or zenoh.connect or zenoh.listen:
         return
-    raise settings.origin.refusal(
-        "camera", f"there is no table [capture.{camera}]" + suggestion(camera, cameras)
-    )
+    setting = "cameras" if settings.service.cameras else "camera"
+    for camera in settings.service.camera_names:
+        if camera not in tables:
+            raise settings.origin.refusal(
+                setting, f"there is no table [capture.{camera}]" + suggestion(camera, tables)
+            )
+
+
+def _require_rig(settings: Settings[TrackerSettings]) -> None:
+    """Raise SettingsError for cameras that cannot track together."""
+    chosen, refusal = settings.service, settings.origin.refusal
+    if not chosen.cameras:
+        if chosen.calibration is not None:
+            raise refusal("calibration", "it is for several cameras: name them in cameras")
+        return
+    if "camera" in chosen.model_fields_set:
+        raise refusal("camera", "name all cameras in cameras, and leave camera out")
+    if len(set(chosen.cameras)) < len(chosen.cameras):
+        raise refusal("cameras", "one is named twice: name each once")
+    if chosen.method != DEFAULT_METHOD:
+        raise refusal(
+            "method", f"{chosen.method} takes one camera: choose {DEFAULT_METHOD}, or name a camera"
+        )
+    if chosen.calibration is None:
+        return
+    calibrated = read_rig_calibration(chosen.calibration).cameras
+    for camera in chosen.cameras:
+        if camera not in calibrated:
+            raise refusal(
+                "calibration",
+                f"{chosen.calibration} does not say where {camera} is: run `inhand calibrate` with "
+                "it, or leave it out of cameras",
+            )
 
 
 def require_files(settings: Settings[TrackerSettings]) -> None:
@@ -104,6 +135,7 @@ def new_trackers(
             left_handed=settings.left_handed,
             terms=settings.likelihood,
             particles=settings.particles,
+            several_cameras=bool(settings.cameras),
             seed=settings.seed,
         )
         for name, model in models.items()

@@ -4,43 +4,36 @@ import logging
 import time
 from collections.abc import Callable, Sequence
 from functools import cache, partial
-from typing import Any
 
-from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.compiled import make_loops
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError
-from inhand_runtime.inbox import UNBOUNDED, Received
+from inhand_runtime.rig_calibration import RigCalibration, read_rig_calibration
 from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
-from inhand_schemas.errors import MessageError
-from inhand_schemas.messages import CameraInfo, ObjectPose, RgbdFrame, Skeletons
+from inhand_schemas.messages import ObjectPose
 from inhand_schemas.procedures import HYPOTHESES, RELOAD, ReloadReply, ReloadRequest
-from inhand_schemas.topics import INFO, POSE, RGBD, SKELETONS
+from inhand_schemas.topics import POSE
 
-from inhand_tracker.frames import camera_frame, frame_image, needs_of, pose_messages, source_of
+from inhand_tracker.cameras import Bodies, Cameras, OneCamera
+from inhand_tracker.frames import needs_of, pose_messages
 from inhand_tracker.hypotheses import HypothesesDesk
 from inhand_tracker.live.effort import Effort, after_step
-from inhand_tracker.live.moments import Moments
 from inhand_tracker.live.shortfalls import Shortfall
 from inhand_tracker.loading import check, load_watcher
 from inhand_tracker.people.following import PeopleWatched
-from inhand_tracker.people.watching import CameraFrame, Watcher
+from inhand_tracker.people.watching import Watcher
+from inhand_tracker.rig_cameras import RigCameras
 from inhand_tracker.settings import TrackerSettings
 
 log = logging.getLogger(__name__)
 
 POLL_S = 0.1
 """Seconds that a look for new messages lasts at the most: the daemon stops within them."""
-MOST_WAITING = 256
-"""Number of skeletons that may arrive during one step and still count for the body's movement."""
 MOST_TAKEN = 1024
 """Number of messages that are taken before the next step: a flood of them must not end all work."""
 LEAVING_S = 0.5
 """Seconds that counting what is left takes at the most when the daemon stops."""
-QUEUE_BYTES = 512 * 2**20
-"""Bytes of skeletons, and of frames, that may wait where every frame matters; beyond them the
-oldest are dropped."""
 FAILURE_LASTS_S = 5.0
 """Seconds for which an object that could not be tracked is a trouble of now."""
 
@@ -57,14 +50,12 @@ class TrackerService:
     ) -> None:
         self._daemon = daemon
         self._now = now
-        self._camera = settings.camera
         self._needs = needs_of(settings)
         self._most_people = settings.people
         self._fresh: PeopleWatched | None = None
         self.desk = HypothesesDesk(daemon.instance)
         self._publishers: dict[str, Publisher[ObjectPose]] = {}
         self._watch(PeopleWatched(new_watcher, settings.people))
-        self._infos = InfoWatch(daemon.health)
         self._pictures = Shortfall(
             daemon.health,
             "pictures",
@@ -77,15 +68,8 @@ class TrackerService:
             "skeletons were skipped: this machine is too slow for all that it tracks",
         )
         self._every = settings.every_frame
-        self._moments: Moments[Skeletons, RgbdFrame] = Moments(
-            pixels=bool(self._needs), every=self._every
-        )
         self._effort = Effort()
-        self._info: CameraInfo | None = None
-        self._subscribe(settings.camera)
-        self._keys = {
-            topic: topic.key(daemon.site, settings.camera) for topic in (INFO, RGBD, SKELETONS)
-        }
+        self._cameras = _cameras_of(daemon, settings)
 
     def run(self) -> None:
         """Track until the daemon stops."""
@@ -95,12 +79,11 @@ class TrackerService:
                 self._fresh = None
                 self._watch(fresh)
             self._take_what_came()
-            moment = self._moments.next(self._now())
-            if moment is not None:
-                self._skip(moment.skipped)
+            skipped = self._cameras.next(self._now())
+            if skipped is not None:
+                self._skip(skipped)
                 began = self._now()
-                self._track(moment.skeleton, moment.frame)
-                if moment.skeleton.people:
+                if self._track():
                     self._adapt(self._now() - began)
         self._leave_what_waits()
 
@@ -120,95 +103,56 @@ class TrackerService:
             if name not in self._publishers:
                 self._publishers[name] = self._daemon.publisher(POSE, name)
 
-    def _subscribe(self, camera: str) -> None:
-        """Let messages arrive: the newest, or all as far as there is memory."""
-        waiting: dict[str, Any] = {"samples": MOST_WAITING}
-        frames: dict[str, Any] = {}
-        if self._every:
-            waiting = frames = {"samples": UNBOUNDED, "size": QUEUE_BYTES}
-        self._daemon.subscribe(INFO, camera)
-        self._daemon.subscribe(SKELETONS, camera, **waiting)
-        if self._needs:
-            self._daemon.subscribe(RGBD, camera, **frames)
-
     def _take_what_came(self) -> None:
         """Take what has come by now, since only then it is known what is the newest; where every
         frame matters, as much as the next moment needs, and let the rest wait in the inbox."""
         self._daemon.health.came_round()
-        if self._every and self._moments.decided():
+        if self._every and self._cameras.decided():
             return
-        timeout_s = min(self._moments.wait_s(self._now()), POLL_S)
+        timeout_s = min(self._cameras.wait_s(self._now()), POLL_S)
         for _ in range(MOST_TAKEN):
             sample = self._daemon.receive(timeout_s)
             if sample is None:
                 return
-            self._take(sample)
-            if self._every and self._moments.decided():
+            self._cameras.take(sample, self._now())
+            if self._every and self._cameras.decided():
                 return
             timeout_s = 0.0
 
-    def _skip(self, skipped: Sequence[Skeletons]) -> None:
+    def _skip(self, skipped: Sequence[Bodies]) -> None:
         """Count moments that are skipped, and remember what bodies did in them."""
-        for skeletons in skipped:
+        for bodies in skipped:
             self._skeletons.note(True)
-            self._people.remember(skeletons.people, skeletons.time_ns, self._note_failure)
-        self._count_unused(len(skipped))
+            self._people.remember(bodies.people, bodies.time_ns, self._note_failure)
+        self._cameras.note_unused(len(skipped))
 
     def _leave_what_waits(self) -> None:
         """Count, at the end, what came and will not be tracked any more."""
         deadline = self._now() + LEAVING_S
         while self._now() < deadline and (sample := self._daemon.receive(0.0)) is not None:
-            self._take(sample)
-        self._count_unused(self._moments.leave())
-
-    def _count_unused(self, skeletons: int) -> None:
-        """Count skeletons that are not tracked, and what frames went unused since the last time."""
-        for topic, count in ((SKELETONS, skeletons), (RGBD, self._moments.take_unused_frames())):
-            if count:
-                self._daemon.health.dropped(self._keys[topic], count)
+            self._cameras.take(sample, self._now())
+        self._cameras.leave()
 
     def _adapt(self, step_s: float) -> None:
         """Fit the next steps into the camera's period, unless every frame takes its time."""
         if not self._every:
-            self._effort = after_step(self._effort, step_s, self._moments.period_s)
+            self._effort = after_step(self._effort, step_s, self._cameras.period_s)
         self._daemon.health.effort = self._effort.share
 
-    def _take(self, sample: Received) -> None:
-        """Keep what a message brings until its frame is tracked."""
-        now = self._now()
-        self._infos.check(now)
-        if sample.key == self._keys[INFO]:
-            if (info := self._daemon.decode(INFO, sample)) is not None:
-                self._info = info
-                self._infos.note(INFO.stream, self._camera, now)
-        elif sample.key == self._keys[RGBD]:
-            if (frame := self._daemon.decode(RGBD, sample)) is not None:
-                self._infos.note(RGBD.stream, self._camera, now)
-                self._moments.add_frame(frame.sequence, frame, sample.arrived)
-        elif (skeletons := self._daemon.decode(SKELETONS, sample)) is not None:
-            self._moments.add_skeleton(skeletons.sequence, skeletons, sample.arrived)
-
-    def _track(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> None:
-        """Track one frame: decode, watch each person, publish."""
-        frame = self._decoded(skeletons, pixels)
+    def _track(self) -> bool:
+        """Track one moment: decode, watch each person, publish; whether somebody is in it."""
+        live = self._cameras.look(self._effort.share)
         self._skeletons.note(False)
         if self._needs:
-            self._pictures.note(frame.image is None)
-        objects = self._people.see(skeletons.people, frame, self._note_failure)
-        source = source_of(skeletons, self._camera, self._info)
-        for message in pose_messages(objects, source, frame):
+            self._pictures.note(live.frame.image is None)
+        objects = self._people.see(live.people, live.frame, self._note_failure)
+        for message in pose_messages(objects, live.source, live.frame):
             self._publishers[message.object].put(message)
-        self.desk.answer(self._people, source)
+        if live.frame.view_from_reference is None:
+            self.desk.answer(self._people, live.source)
         self._note_bodies()
-        self._daemon.health.latency(skeletons.time_ns)
-
-    def _decoded(self, skeletons: Skeletons, pixels: RgbdFrame | None) -> CameraFrame:
-        image = None
-        try:
-            image = frame_image(pixels, self._info, self._needs)
-        except MessageError as error:
-            self._daemon.health.malformed(self._keys[RGBD], error)
-        return camera_frame(skeletons, image, self._info, self._effort.share)
+        self._daemon.health.latency(live.frame.time_ns)
+        return bool(live.people)
 
     def _note_bodies(self) -> None:
         """Say while skeletons are of another convention than the models, and cannot be mapped, or
@@ -229,6 +173,18 @@ class TrackerService:
         text = f"cannot track {name}: {type(error).__name__}: {error}"
         self._daemon.health.trouble(f"object {name}", text, lasts_s=FAILURE_LASTS_S)
         log.debug("where it happened", exc_info=error)
+
+
+def _cameras_of(daemon: Daemon, settings: TrackerSettings) -> Cameras:
+    """The camera or the rig of cameras that settings name; raises SettingsError for a calibration
+    that cannot be read."""
+    needs, every = needs_of(settings), settings.every_frame
+    if not settings.cameras:
+        return OneCamera(daemon, settings.camera, needs, every=every)
+    calibration = RigCalibration({})
+    if settings.calibration is not None:
+        calibration = read_rig_calibration(settings.calibration)
+    return RigCameras(daemon, settings.cameras, needs, calibration, every=every)
 
 
 def run(settings: Settings[TrackerSettings]) -> None:

@@ -6,6 +6,7 @@ from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.kernels.sphere_way import farthest_way
+from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian
 
 
@@ -33,19 +34,22 @@ class BoundingSphere:
         """Give the spheres' centres (P, 3) of poses by their pivots (P, 3) and rotations (P, 4)."""
         return pivots + rotations.rotate(orientations, self.centre - self._pivot)
 
-    def way(self, earlier: PoseGaussian, now: PoseGaussian, camera: Intrinsics) -> float:
+    def way(
+        self,
+        earlier: PoseGaussian,
+        now: PoseGaussian,
+        camera: Intrinsics,
+        view_from_reference: Placement | None = None,
+    ) -> float:
         """Pixels that the sphere goes between two poses' means: the farthest that one of six points
-        of it does, opposite in pairs. 0 where none is before the camera."""
-        return float(
-            farthest_way(
-                self.middles(earlier.centre, earlier.rotation),
-                earlier.rotation,
-                self.middles(now.centre, now.rotation),
-                now.rotation,
-                self.radius,
-                camera.lens,
-            )
-        )
+        of it does, opposite in pairs. 0 where none is before the camera, which stands at
+        ``view_from_reference``, or where poses are of."""
+        places = [
+            (self.middles(pose.centre, pose.rotation), pose.rotation) for pose in (earlier, now)
+        ]
+        if view_from_reference is not None:
+            places = [view_from_reference.poses(*place) for place in places]
+        return float(farthest_way(*places[0], *places[1], self.radius, camera.lens))
 
     def arm(self, rotation: Array) -> Array:
         """Give the way (3,) from the object's origin to the pivot, as a rotation (4,) turns it."""

@@ -1,12 +1,14 @@
 """A tracker's estimate of a pose, and the estimate that weighted particles give."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.placement import Placement
+from inhand_tracker.geometry.pose_gaussian import turn_blocks
 
 # What confidence is, is part of the message (ObjectPose.confidence): it cannot be tuned.
 AGREEMENT_M = 0.10
@@ -29,6 +31,17 @@ class Estimate:
     translation: Array | None = None
     rotation: Array | None = None
     covariance: Array | None = None
+
+    def seen_from(self, place: Placement) -> "Estimate":
+        """Return the estimate in the frame of a camera, ``view_from_reference`` from where it is
+        in."""
+        if self.translation is None or self.rotation is None:
+            return self
+        translation, rotation = place.poses(self.translation, self.rotation)
+        turned = None
+        if self.covariance is not None:
+            turned = turn_blocks(self.covariance, rotations.to_matrix(place.rotation))
+        return replace(self, translation=translation, rotation=rotation, covariance=turned)
 
 
 LOST = Estimate("lost", 0.0)

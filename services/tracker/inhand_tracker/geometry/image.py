@@ -6,8 +6,11 @@ from typing import Any, TypeVar
 
 from inhand_tracker.geometry.arrays import Bytes, Singles
 from inhand_tracker.geometry.camera import Intrinsics
+from inhand_tracker.geometry.placement import Placement
 
 Prepared = TypeVar("Prepared")
+MOST_VIEWS = 4
+"""Number of cameras' images of one moment that poses are looked for in at the most."""
 
 
 @dataclass(frozen=True)
@@ -15,16 +18,25 @@ class Image:
     """Holds what of a frame was decoded, and the camera that took it.
 
     ``grey`` (H, W) is the luminance, ``colour`` (H, W, 3) RGB, ``depth`` (h, w) the depth of the
-    same view in metres, 0 where nothing was measured.
+    same view in metres, 0 where nothing was measured. ``others`` are images of other cameras of the
+    same moment, and ``source`` names this one's camera among them: what a method learns of a
+    camera's images it keeps by that. An image may hold nothing beside the others.
     """
 
     grey: Bytes | None
     camera: Intrinsics
     depth: Singles | None = None
     colour: Bytes | None = None
+    source: str = ""
+    others: tuple["OtherView", ...] = ()
     _prepared: dict[Callable[["Image"], Any], Any] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
+
+    @property
+    def has_pixels(self) -> bool:
+        """Whether the image itself holds anything."""
+        return any(one is not None for one in (self.grey, self.depth, self.colour))
 
     def once(self, prepare: Callable[["Image"], Prepared]) -> Prepared:
         """Give what a function makes of this image; it is called once, however often asked."""
@@ -32,3 +44,14 @@ class Image:
             self._prepared[prepare] = prepare(self)
         prepared: Prepared = self._prepared[prepare]
         return prepared
+
+
+@dataclass(frozen=True)
+class OtherView:
+    """Holds an image of another camera, which stands at ``view_from_reference`` from the camera
+    of the image that it is beside; it was captured ``later_s`` seconds after that one, or, below 0,
+    before."""
+
+    image: Image
+    view_from_reference: Placement
+    later_s: float = 0.0

@@ -53,3 +53,31 @@ class EffortParameters:
 
 DEFAULT_MOMENTS = MomentsParameters()
 DEFAULT_EFFORT = EffortParameters()
+
+
+@dataclass(frozen=True)
+class JoiningParameters:
+    """How captures of several cameras are joined; all were set by hand."""
+
+    patience: float = 0.6
+    """Periods that a moment waits, at the most, for what other cameras captured about then, and for
+    frames: cameras that nobody synchronises capture up to half a period later."""
+    takeover: float = 0.8
+    """Periods that a moment of a later camera of the rig waits for an earlier one's."""
+    reach: float = 1.5
+    """Periods from a moment within which what a camera captured is of use for it."""
+    alive_periods: float = 3.5
+    """Periods of a camera without anything from it after which it is not waited for."""
+    most_missed: int = 5
+    """Number of moments, one after the other, for which a camera came too late, after which it is
+    not waited for until it comes in time."""
+    odd_clock_s: float = 0.25
+    """Seconds by which what a camera captured arrives earlier or later than the others', from
+    which on its clock is wrong."""
+    restart_s: float = 1.0
+    """Seconds that a clock goes back from which on it is another time's: a replay began anew."""
+    most_captures: int = 64
+    """Number of captures of a camera that wait for a moment."""
+
+
+DEFAULT_JOINING = JoiningParameters()

@@ -31,12 +31,13 @@ ALL_TERMS: tuple[AnyTerm, ...] = get_args(AnyTerm)
 @dataclass(frozen=True)
 class TrackerOptions:
     """What a tracker is made with beside its model; ``particles`` is the method's own where
-    None."""
+    None. It may get images of ``several_cameras``."""
 
     left_handed: bool
     terms: tuple[AnyTerm, ...]
     particles: int | None
     seed: int
+    several_cameras: bool = False
 
 
 @dataclass(frozen=True)
@@ -64,6 +65,7 @@ def _new_fusion(model: Model, options: TrackerOptions) -> ObjectTracker:
         terms=[term for term in SIGHT_TERMS if term in options.terms],
         parameters=replace(DEFAULT_FUSION, hypotheses=hypotheses),
         seed=options.seed,
+        several_cameras=options.several_cameras,
     )
 
 
@@ -125,8 +127,10 @@ def new_tracker(
     terms: Collection[AnyTerm] | None = None,
     particles: int | None = None,
     seed: int = 0,
+    several_cameras: bool = False,
 ) -> ObjectTracker:
-    """A tracker for one object; ``terms`` and ``particles`` are the method's own where None.
+    """A tracker for one object; ``terms`` and ``particles`` are the method's own where None. It is
+    ready for images of ``several_cameras`` where it may get such.
 
     Raises SettingsError for terms that the method does not know, and ModelError for a model that
     it cannot use.
@@ -137,4 +141,5 @@ def new_tracker(
         raise SettingsError(
             f"{method} does not weigh {unknown[0]!r}; it knows: {', '.join(chosen.terms)}"
         )
-    return chosen.new(model, TrackerOptions(left_handed, tuple(terms), particles, seed))
+    options = TrackerOptions(left_handed, tuple(terms), particles, seed, several_cameras)
+    return chosen.new(model, options)

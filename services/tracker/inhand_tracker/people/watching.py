@@ -2,13 +2,14 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import LOST, Estimate
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.recognition.cascade import Cascade
 from inhand_tracker.recognition.recognition import Recognition
@@ -23,6 +24,9 @@ class CameraFrame:
 
     ``effort``, above 0 and up to 1, is the share of the trackers' usual work that it is worth;
     ``convention`` names whose joints the people in it have, None where that is not said.
+
+    Where the camera is not the one in whose frame people and poses are, it stands at
+    ``view_from_reference`` from that.
     """
 
     time_ns: int
@@ -30,6 +34,12 @@ class CameraFrame:
     camera: Intrinsics | None = None
     effort: float = 1.0
     convention: str | None = None
+    view_from_reference: Placement | None = None
+
+    def seen(self, estimate: Estimate) -> Estimate:
+        """Return an estimate in the frame of this camera."""
+        place = self.view_from_reference
+        return estimate if place is None else estimate.seen_from(place)
 
 
 @dataclass(frozen=True)
@@ -128,8 +138,8 @@ def _track(
     tracker.effort = frame.effort
     tracker.convention = frame.convention
     estimate = tracker.step(joints, frame.time_ns, frame.image)
-    outline = None if frame.camera is None else tracker.outline(estimate, frame.camera)
-    return WatchedObject(name, estimate, outline)
+    outline = None if frame.camera is None else tracker.outline(frame.seen(estimate), frame.camera)
+    return WatchedObject(name, frame.seen(estimate), outline)
 
 
 class RecognisedObjects(Watcher):
@@ -155,6 +165,7 @@ class RecognisedObjects(Watcher):
         self._cascade.convention = frame.convention
         try:
             recognition = self._cascade.step(joints, frame.time_ns, frame.image, frame.camera)
+            recognition = replace(recognition, estimate=frame.seen(recognition.estimate))
             outline = None
             if frame.camera is not None:
                 outline = self._cascade.outline(recognition, frame.camera)

@@ -4,19 +4,23 @@ What nothing is seen of stays where it is, or where a prior wants it. The measur
 ``kernels/gather``.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Flags
+from inhand_tracker.geometry.image import MOST_VIEWS
 from inhand_tracker.geometry.kernels.pose_normals import inverses, squares_by_information
+from inhand_tracker.geometry.placement import HERE
 from inhand_tracker.sight.depth_table import sensor_of
 from inhand_tracker.sight.kernels.gather import GatherSettings
 from inhand_tracker.sight.kernels.inputs import Outlines
 from inhand_tracker.sight.kernels.mixed_offset import Mixing
 from inhand_tracker.sight.kernels.refine import Priors, Steps, refine
+from inhand_tracker.sight.kernels.refine_together import Views, refine_together
 from inhand_tracker.sight.parameters import SightParameters
-from inhand_tracker.sight.view import SightView
+from inhand_tracker.sight.view import PlacedView, SightView
 
 _REFINED_TERMS = [0, 1, 3]
 """Edges, region and depth; the interior's colours hardly change with a small step."""
@@ -121,6 +125,40 @@ class PoseRefiner:
             )
         return Moved(*moved, parameters.information_share * information)
 
+    def refine_together(
+        self,
+        poses: tuple[Array, Array],
+        views: Sequence[PlacedView],
+        prior: PosePrior | None,
+        trust: float,
+    ) -> Moved:
+        """Move poses as ``refine`` does, by several views at once, each of which counts by
+        ``trust`` times its sharpness; raises ValueError for more than ``MOST_VIEWS``."""
+        parameters, count = self._parameters, len(poses[0])
+        moved = poses[0].astype(np.float64), poses[1].astype(np.float64)
+        priors, reaches = self._priors(prior, count)
+        information = np.zeros((count, 6, 6))
+        first, last = parameters.thin_steps, self._shares[-1]
+        for outlines, shares, mixes in (
+            (self._thin, self._shares[:first], False),
+            (self._outlines, self._shares[first:], False),
+            (self._outlines, np.full(parameters.mixed_steps, last), True),
+        ):
+            settings = [
+                self._settings(one.view, trust * one.sharpness * self._thinness(outlines))
+                for one in views
+            ]
+            settings = [one._replace(mixes=mixes and bool(one.wanted[1])) for one in settings]
+            refine_together(
+                moved,
+                priors,
+                Steps(shares, reaches, self._damping),
+                outlines,
+                _views_of(views, settings),
+                information,
+            )
+        return Moved(*moved, parameters.information_share * information)
+
     def _thinness(self, outlines: Outlines) -> float:
         """How many points one of these outlines' stands for."""
         return self._outlines.points.shape[2] / outlines.points.shape[2]
@@ -147,6 +185,23 @@ class PoseRefiner:
             outline_weight=trust * parameters.outline_point_weight,
             surface_weight=trust * parameters.surface_point_weight,
         )
+
+
+def _views_of(views: Sequence[PlacedView], settings: Sequence[GatherSettings]) -> Views:
+    """Lay views out for kernels; the last one stands for those that are not there."""
+    if not 1 <= len(views) <= MOST_VIEWS:
+        raise ValueError(f"poses are refined by 1 to {MOST_VIEWS} views, not by {len(views)}")
+    first, second, third, fourth = (min(n, len(views) - 1) for n in range(MOST_VIEWS))
+    order = first, second, third, fourth
+    pixels = [one.view.pixels for one in views]
+    places = [one.view_from_reference or HERE for one in views]
+    return Views(
+        len(views),
+        (pixels[first], pixels[second], pixels[third], pixels[fourth]),
+        (settings[first], settings[second], settings[third], settings[fourth]),
+        np.array([places[number].translation for number in order]),
+        np.array([places[number].rotation for number in order]),
+    )
 
 
 def _usual_settings(wanted: Flags, returned: float, parameters: SightParameters) -> GatherSettings:

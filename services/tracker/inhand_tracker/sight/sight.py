@@ -7,7 +7,7 @@ farther away, which speaks against.
 """
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from typing import Literal, get_args
 
@@ -28,8 +28,8 @@ from inhand_tracker.sight.kernels.inputs import Outlines
 from inhand_tracker.sight.kernels.weigh import VISIBLE
 from inhand_tracker.sight.light import LightWatch, surrounding_tint
 from inhand_tracker.sight.parameters import DEFAULT_SIGHT, SightParameters
-from inhand_tracker.sight.refinement import PosePrior, PoseRefiner, Refined
-from inhand_tracker.sight.view import SightView, view_frame
+from inhand_tracker.sight.refinement import Moved, PosePrior, PoseRefiner, Refined
+from inhand_tracker.sight.view import PlacedView, SightView, view_frame
 from inhand_tracker.sight.weighing import PoseWeigher
 
 SightTerm = Literal["edges", "region", "interior", "depth"]
@@ -177,12 +177,41 @@ class Sight:
         The frame counts by ``trust``: less than 1 where earlier frames showed the same.
         """
         moved = self._refiner.refine((translations, orientations), view, prior, trust)
+        return self._likelier((translations, orientations), moved, [PlacedView(view)], prior, trust)
+
+    def refine_together(
+        self,
+        translations: Array,
+        orientations: Array,
+        views: Sequence[PlacedView],
+        prior: PosePrior | None = None,
+        trust: float = 1.0,
+    ) -> Refined:
+        """Move poses (K, 3) and (K, 4), as ``refine`` does, to where several views and the prior
+        agree best; each view counts by ``trust`` times its sharpness. The log-likelihoods are
+        those of the views' sum, by their sharpness."""
+        poses = translations, orientations
+        moved = self._refiner.refine_together(poses, views, prior, trust)
+        return self._likelier(poses, moved, views, prior, trust)
+
+    def _likelier(
+        self,
+        poses: tuple[Array, Array],
+        moved: Moved,
+        views: Sequence[PlacedView],
+        prior: PosePrior | None,
+        trust: float,
+    ) -> Refined:
+        """Take poses, (K, 3) and (K, 4), back to where they were if they did not become
+        likelier."""
+        translations, orientations = poses
         count = len(translations)
         both = (
             np.concatenate((translations, moved.translations)),
             np.concatenate((orientations, moved.rotations)),
         )
-        before, after = self.log_likelihood(*both, view).reshape(2, count)
+        each = [one.sharpness * self.log_likelihood(*one.poses(*both), one.view) for one in views]
+        before, after = sum(each[1:], each[0]).reshape(2, count)
         gain = trust * (after - before)
         if prior is not None:
             expected = prior.log_density(both[0].reshape(2, -1, 3), both[1].reshape(2, -1, 4))

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from inhand_tracker.geometry.arrays import Array, Bytes, Singles
+from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.sight.colours import Colours, colour_scores
 from inhand_tracker.sight.frame import SightFrame
 from inhand_tracker.sight.kernels.inputs import ScoredPixels
@@ -41,6 +42,27 @@ class SightView:
             np.zeros(size, np.float32) if depth is None else depth,
             np.zeros((*size, 3), np.uint8) if frame.colour is None else frame.colour,
         )
+
+
+@dataclass(frozen=True)
+class PlacedView:
+    """A view of one of several cameras, ``view_from_reference`` from the frame of reference that
+    poses are in; None where it is the camera's own. It counts by its ``sharpness``, from 0 to 1."""
+
+    view: SightView
+    view_from_reference: Placement | None = None
+    sharpness: float = 1.0
+
+    def poses(self, translations: Array, orientations: Array) -> tuple[Array, Array]:
+        """Take poses (P, 3) and (P, 4) to the camera's frame."""
+        if self.view_from_reference is None:
+            return translations, orientations
+        return self.view_from_reference.poses(translations, orientations)
+
+    def points(self, points: Array) -> Array:
+        """Take points (..., 3) to the camera's frame."""
+        place = self.view_from_reference
+        return points if place is None else place.points(points)
 
 
 def view_frame(

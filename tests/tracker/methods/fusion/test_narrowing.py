@@ -10,6 +10,7 @@ from inhand_tracker.geometry.pose_gaussian import PoseGaussian
 from inhand_tracker.methods.fusion.narrowing import Hypotheses, narrow
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION
 from inhand_tracker.methods.fusion.posterior import ImagePosterior
+from inhand_tracker.sight.view import PlacedView
 
 WIDE = PoseGaussian(
     TRUE.centre + np.array([0.2, -0.1, 0.15]),
@@ -22,8 +23,8 @@ def narrowed(rounds: int, seed: int) -> tuple[Hypotheses, Hypotheses]:
     """The hypotheses before and after some rounds."""
     random = np.random.default_rng(seed)
     parameters = replace(DEFAULT_FUSION, narrowing_rounds=rounds)
-    sphere, view = BoundingSphere(np.zeros(3), 0.1), View(None, None)
-    posterior = ImagePosterior(GaussianSight(), sphere, view, alone(WIDE), 1.0, parameters)
+    sphere, views = BoundingSphere(np.zeros(3), 0.1), (PlacedView(View(None, None)),)
+    posterior = ImagePosterior(GaussianSight(), sphere, views, alone(WIDE), 1.0, parameters)
     poses = alone(WIDE).sample(DEFAULT_FUSION.hypotheses, random)
     first = Hypotheses(*poses, posterior.scores(*poses)[0])
     return first, narrow(posterior, first, random)

@@ -9,6 +9,7 @@ from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
 from inhand_tracker.methods.fusion.posterior import ImagePosterior
+from inhand_tracker.sight.view import PlacedView
 
 WIDE = PoseGaussian(TRUE.centre, TRUE.rotation, np.diag([0.2**2] * 3 + [0.5**2] * 3))
 ELSEWHERE = replace(WIDE, centre=TRUE.centre + np.array([1.0, 0.0, 0.0]))
@@ -23,7 +24,9 @@ def posterior(
 ) -> ImagePosterior:
     belief = PoseMixture(parts, np.full(len(parts), 1.0 / len(parts)))
     sphere = BoundingSphere(np.zeros(3), 0.1)
-    return ImagePosterior(sight, sphere, View(None, None), belief, sharpness, parameters)
+    return ImagePosterior(
+        sight, sphere, (PlacedView(View(None, None)),), belief, sharpness, parameters
+    )
 
 
 @pytest.mark.parametrize("sharpness", [1.0, 0.25])

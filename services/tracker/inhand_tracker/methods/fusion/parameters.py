@@ -80,6 +80,11 @@ class FusionParameters:
     blurred_pixels: float = 40.0
     """Pixels that an object goes from frame to frame where its image counts half: its outline is a
     smear. Decided on real bodies (`inhand simulate --bodies`), where a fast club misled."""
+    late_doubt: float = 0.3
+    """Share of the way that an object goes between two cameras' images by which it may be
+    elsewhere than it is expected to go."""
+    late_pixels: float = 3.0
+    """Pixels of such doubt by which an image counts half."""
     region_margin: float = 1.3
     """Radius, in the object's radii, of what is prepared of an image around each hypothesis."""
     most_pixels: int = 30_000

@@ -1,4 +1,4 @@
-"""How likely poses are by one image and by what is believed beforehand; the likeliest of them."""
+"""How likely poses are by a moment's images and by what is believed beforehand; the likeliest."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,22 +17,22 @@ from inhand_tracker.geometry.pose_gaussian import (
     roots_of,
 )
 from inhand_tracker.methods.fusion.parameters import FusionParameters
-from inhand_tracker.sight.refinement import PosePrior
+from inhand_tracker.sight.refinement import PosePrior, Refined
 from inhand_tracker.sight.sight import Sight
-from inhand_tracker.sight.view import SightView
+from inhand_tracker.sight.view import PlacedView
 
 
 @dataclass(frozen=True)
 class ImagePosterior:
-    """One object's poses, judged by a view of an image and by a belief.
+    """One object's poses, judged by the views of one camera or several and by a belief.
 
-    The image counts by its ``sharpness``, from 0 to 1. Where the search is ``thorough``, poses are
-    near the truth before they are refined.
+    The images count by ``sharpness``, from 0 to 1, and each view by its own times that. Where the
+    search is ``thorough``, poses are near the truth before they are refined.
     """
 
     sight: Sight
     sphere: BoundingSphere
-    view: SightView
+    views: tuple[PlacedView, ...]
     belief: PoseMixture
     sharpness: float
     parameters: FusionParameters
@@ -42,19 +42,33 @@ class ImagePosterior:
         self, centres: Array, orientations: Array, *, quickly: bool = False
     ) -> tuple[Array, Array]:
         """Return the log-posterior (P,) of poses (P, 3) and (P, 4), up to a constant, and the
-        image's log-likelihood in it, untempered, (P,); ``quickly`` as ``Sight.weigh``."""
-        origins = self.sphere.origins(centres, orientations)
-        weighed = self.sight.weigh(origins, orientations, self.view, quickly=quickly)
-        return self.scores_by(weighed, centres, orientations)
+        images' log-likelihood in it, untempered, (P,); ``quickly`` as ``Sight.weigh``."""
+        return self.scores_by(
+            self.weighed(centres, orientations, quickly=quickly), centres, orientations
+        )
 
-    def scores_by(self, weighed: Array, centres: Array, orientations: Array) -> tuple[Array, Array]:
-        """Return the ``scores`` of poses that ``Sight.weigh`` has weighed, (P, 5)."""
-        seen = self.sight.log_likelihood_by(weighed, self.view)
+    def weighed(self, centres: Array, orientations: Array, *, quickly: bool = False) -> list[Array]:
+        """Return what ``Sight.weigh`` finds of poses (P, 3) and (P, 4) in each view, (P, 5)."""
+        origins = self.sphere.origins(centres, orientations)
+        return [
+            self.sight.weigh(*one.poses(origins, orientations), one.view, quickly=quickly)
+            for one in self.views
+        ]
+
+    def scores_by(
+        self, weighed: Sequence[Array], centres: Array, orientations: Array
+    ) -> tuple[Array, Array]:
+        """Return the ``scores`` of poses that were ``weighed`` in each view, (P, 5)."""
+        each = [
+            one.sharpness * self.sight.log_likelihood_by(scores, one.view)
+            for one, scores in zip(self.views, weighed, strict=True)
+        ]
+        seen = sum(each[1:], each[0])
         expected = self.belief.log_density(centres, orientations)
         return self._tempered(seen) + expected, seen
 
     def weigh(self, modes: Sequence[PoseGaussian], seen: Array) -> PoseMixture:
-        """Weigh modes by their probability (Laplace's approximation); ``seen`` (K,) is the image's
+        """Weigh modes by their probability (Laplace's approximation); ``seen`` (K,) is the images'
         log-likelihood of each."""
         expected = self.belief.log_density(*means_of(modes))
         roots = roots_of(np.array([mode.covariance for mode in modes]))
@@ -63,7 +77,7 @@ class ImagePosterior:
 
     def modes(self, centres: Array, orientations: Array) -> tuple[list[PoseGaussian], Array]:
         """Find where image and belief agree best near each start (S, 3), (S, 4), each once; also
-        the image's log-likelihood (K,) there."""
+        the images' log-likelihood (K,) there."""
         nearest = np.argmax(self.belief.log_densities(centres, orientations), axis=0)
         order = np.argsort(nearest, kind="stable")
         starts, nearest = (centres[order], orientations[order]), nearest[order]
@@ -82,17 +96,15 @@ class ImagePosterior:
         arms = self.sphere.arm(turns)
         information = inverses(np.array([part.covariance for part in parts]))
         of_origins = moved_information(information, arms)
-        refined = self.sight.refine(
+        refined = self._refine(
             self.sphere.origins(centres, orientations),
             orientations,
-            self.view,
             PosePrior(
                 (places - arms)[nearest],
                 turns[nearest],
                 of_origins[nearest],
                 self._most_off(),
             ),
-            self.parameters.refinement_temper * self.sharpness,
         )
         arms = self.sphere.arm(refined.rotations)
         seen = moved_information(refined.information, -arms)
@@ -101,6 +113,13 @@ class ImagePosterior:
         chosen = self._each_once(*means)
         modes = list(map(PoseGaussian, means[0][chosen], means[1][chosen], covariances[chosen]))
         return modes, refined.log_likelihoods[chosen]
+
+    def _refine(self, origins: Array, orientations: Array, prior: PosePrior) -> Refined:
+        """Refine poses (S, 3) and (S, 4) of the object's origin."""
+        trust = self.parameters.refinement_temper * self.sharpness
+        if len(self.views) == 1 and self.views[0].view_from_reference is None:
+            return self.sight.refine(origins, orientations, self.views[0].view, prior, trust)
+        return self.sight.refine_together(origins, orientations, self.views, prior, trust)
 
     def _each_once(self, centres: Array, orientations: Array) -> Indices:
         """Choose poses (S, 3), (S, 4) of which none is the same as one before."""

@@ -1,9 +1,10 @@
-"""Looking for an object in an image: hypotheses from what is believed, weighed by what is seen.
+"""Looking for an object in images: hypotheses from what is believed, weighed by what is seen.
 
-The image weighs hypotheses (``posterior``), and the likeliest of them are refined, beside what was
-believed.
+The image of one camera, or those of several of the same moment, weigh hypotheses (``posterior``),
+and the likeliest of them are refined, beside what was believed.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.camera import NEAREST_M, Intrinsics
 from inhand_tracker.geometry.image import Image
+from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, means_of
 from inhand_tracker.methods.fusion.narrowing import Hypotheses, narrow
 from inhand_tracker.methods.fusion.parameters import FusionParameters
@@ -19,13 +21,26 @@ from inhand_tracker.methods.fusion.posterior import ImagePosterior
 from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.frame import Region, SightFrame, prepare
 from inhand_tracker.sight.kernels.spheres_region import spheres_region
+from inhand_tracker.sight.light import LightWatch
 from inhand_tracker.sight.sight import Sight
 from inhand_tracker.sight.support import Support
-from inhand_tracker.sight.view import SightView
+from inhand_tracker.sight.view import PlacedView, SightView
+
+
+@dataclass(frozen=True)
+class SideLook:
+    """An image of another camera, which stands at ``view_from_reference`` from the frame of
+    reference that poses are in at the moment that is looked at; it counts by ``sharpness``, from 0
+    to 1."""
+
+    image: Image
+    view_from_reference: Placement
+    sharpness: float
 
 
 class ImageSearch:
-    """Looks for one object in one image after the other, and learns its colours on the way."""
+    """Looks for one object in one moment's images after the other, and learns its colours on the
+    way: each camera sees colours, and light, of its own."""
 
     def __init__(
         self, sight: Sight, sphere: BoundingSphere, parameters: FusionParameters, seed: int
@@ -34,15 +49,14 @@ class ImageSearch:
         self._sphere = sphere
         self._parameters = parameters
         self._random = np.random.default_rng(seed)
-        self._colours = sight.start()
-        self._light = sight.watch_light()
+        self._eyes: dict[str, _Eye] = {}
         self._looks = 0
         self._found: _Found | None = None
         self._support: Support | None = None
         self.convinces = False
-        """Whether the last image supports the pose that was found."""
+        """Whether the last images support the pose that was found."""
         self.tried: Hypotheses | None = None
-        """The last look's hypotheses; None where the object was out of the image."""
+        """The last look's hypotheses; None where the object was out of the images."""
 
     def look(
         self,
@@ -51,26 +65,38 @@ class ImageSearch:
         joints: Array,
         sharpness: float,
         effort: float = 1.0,
+        others: Sequence[SideLook] = (),
         *,
         thoroughly: bool = False,
     ) -> PoseGaussian | None:
-        """Return what is believed after a look at the image; None where the object is out of it.
+        """Return what is believed after a look at an image, and those of ``others``; None where the
+        object is out of them.
 
         ``joints`` (20, 3) in the camera frame; an image counts by ``sharpness``, from 0 to 1; fewer
         hypotheses are tried with less ``effort`` than 1. ``thoroughly`` where bodies say little of
-        the object: hypotheses are narrowed down then, as they are where a sharp image supports none
+        the object: hypotheses are narrowed down then, as they are where sharp images support none
         of the poses that were found.
         """
         self._support = None
         parameters = self._parameters.with_effort(effort)
         hypotheses = belief.sample(parameters.hypotheses, self._random)
-        region = self._region(self._sphere.middles(*hypotheses), image.camera)
-        if region is None:
+        glances = [_Glance(image, None, sharpness)] if image.has_pixels or not others else []
+        glances += [_Glance(one.image, one.view_from_reference, one.sharpness) for one in others]
+        opened = self._open_all(glances, belief.parts[0], hypotheses, joints)
+        if not opened:
             self._found = self.tried = None
             self.convinces = False
             return None
-        view = self._open(belief.parts[0], image, region, joints)
-        posterior = ImagePosterior(self._sight, self._sphere, view, belief, sharpness, parameters)
+        sharpest = max(glance.sharpness for glance, _ in opened)
+        views = tuple(
+            PlacedView(
+                view,
+                glance.view_from_reference,
+                1.0 if glance.sharpness == sharpest else glance.sharpness / sharpest,
+            )
+            for glance, view in opened
+        )
+        posterior = ImagePosterior(self._sight, self._sphere, views, belief, sharpest, parameters)
         posterior, scores = self._compare_unseen(posterior, *hypotheses)
         self.tried = Hypotheses(*hypotheses, scores)
         found = None if thoroughly else self._modes(posterior, self.tried)
@@ -80,26 +106,56 @@ class ImageSearch:
             found = self._modes(posterior, self.tried)
         modes, seen = found
         weighed = posterior.weigh(modes, seen)
-        if self._looks % parameters.looks_to_learn == 0:
-            best = int(np.argmax(weighed.weights))
-            shown = seen[best] > parameters.learning_log_likelihood
-            rate = parameters.learning_rate if shown else 0.0
-            self._learn_colours(modes[best], view.frame, of_object=rate)
+        best = int(np.argmax(weighed.weights))
+        names = [glance.image.source for glance, _ in opened]
+        self._learn(names, posterior, modes[best], float(seen[best]))
         self._looks += 1
-        self._found = _Found(modes, posterior.view, self._colours, joints)
-        best = seen[int(np.argmax(weighed.weights))]
-        self.convinces = best >= parameters.unconvincing_log_likelihood
+        colours = [self._eyes[name].colours for name in names]
+        self._found = _Found(modes, posterior.views, colours, joints)
+        self.convinces = seen[best] >= parameters.unconvincing_log_likelihood
         return weighed.moments()
 
     @property
     def support(self) -> Support | None:
-        """The last image's support for the object; None where it shows nothing of it.
+        """The last images' support for the object; None where they show nothing of it.
 
         It is found when it is first asked for: only recognition does.
         """
         if self._support is None and self._found is not None:
             self._support = self._supported(self._found)
         return self._support
+
+    def _open_all(
+        self,
+        glances: Sequence["_Glance"],
+        guess: PoseGaussian,
+        hypotheses: tuple[Array, Array],
+        joints: Array,
+    ) -> list[tuple["_Glance", SightView]]:
+        """Prepare the images that hypotheses (P, 3), (P, 4) lie in."""
+        middles = self._sphere.middles(*hypotheses)
+        opened = []
+        for glance in glances:
+            region = self._region(glance.points(middles), glance.image.camera)
+            eye = self._eye(glance.image.source)
+            if region is None:
+                eye.opened = False
+                continue
+            placed = _placed(guess, glance.view_from_reference)
+            view = self._open(eye, placed, glance.image, region, glance.points(joints))
+            opened.append((glance, view))
+        return opened
+
+    def _eye(self, source: str) -> "_Eye":
+        """What is known of a camera's images."""
+        if source not in self._eyes:
+            number = len(self._eyes)
+            self._eyes[source] = _Eye(number, self._sight.start(), self._sight.watch_light())
+        return self._eyes[source]
+
+    def _teaches(self, eye: "_Eye") -> bool:
+        """Whether a camera's image is one that teaches; those of several take turns."""
+        return (self._looks + eye.number) % self._parameters.looks_to_learn == 0
 
     def _region(self, centres: Array, camera: Intrinsics) -> Region | None:
         """The part of the image that hypotheses (P, 3) lie in; None where they are out of it."""
@@ -116,29 +172,34 @@ class ImageSearch:
         across = 2.0 * reach * camera.fx / max(float(guess.centre[2]), NEAREST_M)
         return across * across
 
-    def _open(self, guess: PoseGaussian, image: Image, region: Region, joints: Array) -> SightView:
-        """Prepare a region of the image, in the light of training; in the first one the
-        surroundings' colours are learned."""
+    def _open(
+        self, eye: "_Eye", guess: PoseGaussian, image: Image, region: Region, joints: Array
+    ) -> SightView:
+        """Prepare a region of an image, in the light of training; in a camera's first one the
+        surroundings' colours are learned. Guess and joints are in that camera's frame."""
         own_pixels = self._own_pixels(guess, image.camera)
         most_pixels = max(self._parameters.most_pixels, 2.0 * own_pixels)
-        if self._looks % self._parameters.looks_to_learn == 0:
-            self._light.watch(image, joints)
-        frame = prepare(image, region, self._parameters.sight, most_pixels, self._light.gains)
-        if self._found is None:
-            self._learn_colours(guess, frame, of_object=0.0)
-        return self._sight.view(frame, self._colours, joints)
+        if self._teaches(eye):
+            eye.light.watch(image, joints)
+        frame = prepare(image, region, self._parameters.sight, most_pixels, eye.light.gains)
+        if not eye.opened:
+            self._learn_colours(eye, guess, frame, of_object=0.0)
+        eye.opened = True
+        return self._sight.view(frame, eye.colours, joints)
 
     def _compare_unseen(
         self, posterior: ImagePosterior, centres: Array, orientations: Array
     ) -> tuple[ImagePosterior, Array]:
         """The posterior in which not to be seen is as likely as to be, by poses (P, 3), (P, 4) of
         what is believed, and their log-posterior (P,)."""
-        origins = self._sphere.origins(centres, orientations)
-        weighed = self._sight.weigh(origins, orientations, posterior.view, quickly=True)
+        weighed = posterior.weighed(centres, orientations, quickly=True)
         parameters = posterior.parameters
-        trust = parameters.image_temper * max(posterior.sharpness, parameters.least_sharpness)
-        view = self._sight.compare_unseen(weighed, posterior.view, trust)
-        posterior = replace(posterior, view=view)
+        views = []
+        for one, scores in zip(posterior.views, weighed, strict=True):
+            sharpness = max(posterior.sharpness * one.sharpness, parameters.least_sharpness)
+            trust = parameters.image_temper * sharpness
+            views.append(replace(one, view=self._sight.compare_unseen(scores, one.view, trust)))
+        posterior = replace(posterior, views=tuple(views))
         return posterior, posterior.scores_by(weighed, centres, orientations)[0]
 
     def _modes(
@@ -157,10 +218,34 @@ class ImageSearch:
             np.concatenate((turns[believed], likeliest.orientations)),
         )
 
-    def _learn_colours(self, pose: PoseGaussian, frame: SightFrame, *, of_object: float) -> None:
-        """Learn the surroundings' colours at a pose; a share ``of_object`` of the object's, too."""
-        self._colours = self._sight.learn(
-            self._colours,
+    def _learn(
+        self, names: Sequence[str], posterior: ImagePosterior, pose: PoseGaussian, seen: float
+    ) -> None:
+        """Learn colours from the images whose turn it is, at the likeliest pose, of which all
+        images together have a log-likelihood of ``seen``."""
+        parameters = posterior.parameters
+        for name, one in zip(names, posterior.views, strict=True):
+            eye = self._eyes[name]
+            if not self._teaches(eye):
+                continue
+            own = seen if len(names) == 1 else self._seen_in(one, pose)
+            rate = parameters.learning_rate if own > parameters.learning_log_likelihood else 0.0
+            placed = _placed(pose, one.view_from_reference)
+            self._learn_colours(eye, placed, one.view.frame, of_object=rate)
+
+    def _seen_in(self, one: PlacedView, pose: PoseGaussian) -> float:
+        """The log-likelihood of a pose by one view alone."""
+        origin = self._sphere.origins(pose.centre[None], pose.rotation[None])
+        poses = one.poses(origin, pose.rotation[None])
+        return float(self._sight.log_likelihood(*poses, one.view)[0])
+
+    def _learn_colours(
+        self, eye: "_Eye", pose: PoseGaussian, frame: SightFrame, *, of_object: float
+    ) -> None:
+        """Learn the surroundings' colours at a pose in a camera's frame; a share ``of_object`` of
+        the object's, too."""
+        eye.colours = self._sight.learn(
+            eye.colours,
             frame,
             pose.centre - self._sphere.arm(pose.rotation),
             pose.rotation,
@@ -169,25 +254,77 @@ class ImageSearch:
         )
 
     def _supported(self, found: "_Found") -> Support:
-        """The image's support by the colours of training: what was learned since may be another
-        thing's."""
-        trained = replace(found.colours, of_object=self._sight.start().of_object, mixed=None)
-        trained_view = self._sight.view(found.view.frame, trained, found.joints)
+        """The images' mean support by the colours of training: what was learned since may be
+        another thing's."""
         centres, orientations = means_of(found.modes)
         origins = self._sphere.origins(centres, orientations)
-        terms = self._sight.log_likelihoods_by_term(origins, orientations, trained_view)
+        of_object = self._sight.start().of_object
+        by_training = []
+        for one, colours in zip(found.views, found.colours, strict=True):
+            trained = replace(colours, of_object=of_object, mixed=None)
+            joints = one.points(found.joints)
+            view = self._sight.view(one.view.frame, trained, joints)
+            poses = one.poses(origins, orientations)
+            by_training.append(self._sight.log_likelihoods_by_term(*poses, view))
+        terms = _mean_terms(by_training)
         best = int(np.argmax(sum(terms.values())))
-        by_training = {term: float(values[best]) for term, values in terms.items()}
-        if trained.of_object is None:
-            return Support(**by_training)
+        supported = {term: float(values[best]) for term, values in terms.items()}
+        if of_object is None:
+            return Support(**supported)
         pose = origins[best : best + 1], orientations[best : best + 1]
-        by_learning = self._sight.log_likelihoods_by_term(*pose, found.view)
-        recoloured = float(by_learning["interior"][0]) - by_training["interior"]
-        return Support(**by_training, recoloured=recoloured)
+        by_learning = _mean_terms(
+            [
+                self._sight.log_likelihoods_by_term(*one.poses(*pose), one.view)
+                for one in found.views
+            ]
+        )
+        recoloured = float(by_learning["interior"][0]) - supported["interior"]
+        return Support(**supported, recoloured=recoloured)
+
+
+def _mean_terms(each: Sequence[Mapping[str, Array]]) -> dict[str, Array]:
+    """Average the terms (P,) of several views."""
+    first, *others = each
+    if not others:
+        return dict(first)
+    return {term: np.mean([one[term] for one in each], axis=0) for term in first}
+
+
+def _placed(pose: PoseGaussian, place: Placement | None) -> PoseGaussian:
+    """Take a distribution's mean to a camera's frame; its covariance stays as it is."""
+    if place is None:
+        return pose
+    centre, rotation = place.poses(pose.centre, pose.rotation)
+    return replace(pose, centre=centre, rotation=rotation)
+
+
+@dataclass(frozen=True)
+class _Glance:
+    """An image that is looked at; ``view_from_reference`` is None for that of the reference."""
+
+    image: Image
+    view_from_reference: Placement | None
+    sharpness: float
+
+    def points(self, points: Array) -> Array:
+        """Take points (..., 3) to the camera's frame."""
+        place = self.view_from_reference
+        return points if place is None else place.points(points)
+
+
+@dataclass
+class _Eye:
+    """What is known of one camera's images: its ``number`` among those that were looked at, the
+    colours as it sees them, and the light; ``opened`` is whether its last image was looked at."""
+
+    number: int
+    colours: Colours
+    light: LightWatch
+    opened: bool = False
 
 
 def _unconvincing(seen: Array, posterior: ImagePosterior) -> bool:
-    """Whether a sharp image supports none of the poses that were found, by its log-likelihoods."""
+    """Whether sharp images support none of the poses that were found, by their log-likelihoods."""
     parameters = posterior.parameters
     return bool(
         posterior.sharpness >= parameters.least_narrowed_sharpness
@@ -197,10 +334,10 @@ def _unconvincing(seen: Array, posterior: ImagePosterior) -> bool:
 
 @dataclass(frozen=True)
 class _Found:
-    """What a look found: the modes in a view, the colours after it, and the person's joints
-    (20, 3)."""
+    """What a look found: the modes in the views, each view's colours after it, and the person's
+    joints (20, 3)."""
 
     modes: list[PoseGaussian]
-    view: SightView
-    colours: Colours
+    views: tuple[PlacedView, ...]
+    colours: list[Colours]
     joints: Array

@@ -12,12 +12,15 @@ import numpy as np
 from inhand_tracker.body.reader import Body, BodyReader
 from inhand_tracker.body.skeleton import mirror_joints
 from inhand_tracker.body.window import BodyWindow, continues
+from inhand_tracker.geometry import rotations
 from inhand_tracker.geometry.arrays import Array, Singles
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.considered import Considered
 from inhand_tracker.geometry.estimate import AGREEMENT_M, AGREEMENT_RAD, Estimate
-from inhand_tracker.geometry.image import Image
+from inhand_tracker.geometry.image import Image, OtherView
 from inhand_tracker.geometry.kernels.pose_normals import share_near
+from inhand_tracker.geometry.motion import Motion
+from inhand_tracker.geometry.placement import HERE, Placement
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, moved_covariance
 from inhand_tracker.geometry.weights import normalised_weights
 from inhand_tracker.methods.follower import Follower, FollowingTracker
@@ -31,7 +34,7 @@ from inhand_tracker.methods.fusion.belief import (
     steady_before,
 )
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
-from inhand_tracker.methods.fusion.search import ImageSearch
+from inhand_tracker.methods.fusion.search import ImageSearch, SideLook
 from inhand_tracker.model.model import Model, ModelError
 from inhand_tracker.sight.sight import SIGHT_TERMS, Sight, SightTerm, blank_image
 from inhand_tracker.sight.support import Support
@@ -44,9 +47,11 @@ _NOBODY = np.full((20, 3), np.nan)
 
 
 class FusionTracker(FollowingTracker):
-    """Follows one object of one person through the frames of one camera.
+    """Follows one object of one person through the frames of one camera, or of several cameras
+    whose images are beside that one's.
 
-    Raises ModelError for a model of a release that learned no prior.
+    What a first frame of ``several_cameras`` would wait for is compiled with the rest. Raises
+    ModelError for a model of a release that learned no prior.
     """
 
     def __init__(
@@ -57,6 +62,7 @@ class FusionTracker(FollowingTracker):
         terms: Collection[SightTerm] = SIGHT_TERMS,
         parameters: FusionParameters = DEFAULT_FUSION,
         seed: int = 0,
+        several_cameras: bool = False,
     ) -> None:
         if model.prior is None:
             raise ModelError(
@@ -77,15 +83,17 @@ class FusionTracker(FollowingTracker):
             )
             self._sight.compile()
         self._seed = seed
-        self._compile()
+        self._compile(several_cameras=several_cameras)
         self.restart()
 
-    def _compile(self) -> None:
+    def _compile(self, *, several_cameras: bool) -> None:
         """Compile what frames would wait for, by two of somebody usual 2 m ahead: the second one
         takes over what the first one gave."""
         pose = self._mapping.body_poses.mean(axis=0).reshape(20, 3)
         joints = USUAL_HEIGHT_M * pose + np.array([0.0, 0.0, 2.0])
         image = blank_image()
+        if several_cameras:
+            image = replace(image, others=(OtherView(replace(image, source="other"), HERE),))
         self.restart()
         for time_ns in (0, _FRAME_NS):
             estimate = self.step(joints, time_ns, None if self._sight is None else image)
@@ -133,7 +141,7 @@ class FusionFollower(Follower):
         looks = self._search is not None and image is not None
         expected = self._expectation.expect(body, descriptions, apart=looks)
         belief = self._carry_over(expected, time_ns)
-        seen = self._look(belief, expected, body, image)
+        seen = self._look(belief, expected, body, time_ns, image)
         believed = belief.parts[0] if seen is None else seen
         self._before = self._after(expected, believed, time_ns)
         return self._state(believed, seen=seen is not None)
@@ -148,7 +156,8 @@ class FusionFollower(Follower):
             return None
         belief = carry_on(before, time_ns, self._parameters)
         sharpness = self._sharpness(Expected(belief.parts[-1]), image)
-        seen = self._search.look(belief, image, _NOBODY, sharpness, self.effort)
+        others = self._others(belief, Expected(belief.parts[-1]), image, time_ns)
+        seen = self._search.look(belief, image, _NOBODY, sharpness, self.effort, others)
         if seen is None or not self._search.convinces:
             return None
         self._before = self._after(Expected(seen), seen, time_ns)
@@ -193,29 +202,75 @@ class FusionFollower(Follower):
         return carry_over(before, expected, time_ns, persistence_s, self._parameters)
 
     def _look(
-        self, belief: PoseMixture, expected: Expected, body: Body, image: Image | None
+        self,
+        belief: PoseMixture,
+        expected: Expected,
+        body: Body,
+        time_ns: int,
+        image: Image | None,
     ) -> PoseGaussian | None:
         """What is believed after a look at the image; None where it shows nothing of the object."""
         if self._search is None or image is None:
             return None
         joints = mirror_joints(body.joints) if self._expectation.left_handed else body.joints
         sharpness = self._sharpness(expected, image)
+        others = self._others(belief, expected, image, time_ns)
         seen = self._search.look(
-            belief, image, joints, sharpness, self.effort, thoroughly=expected.strange
+            belief, image, joints, sharpness, self.effort, others, thoroughly=expected.strange
         )
         self._looked = True
         return seen
 
-    def _sharpness(self, expected: Expected, image: Image) -> float:
+    def _others(
+        self, belief: PoseMixture, expected: Expected, image: Image, time_ns: int
+    ) -> list[SideLook]:
+        """The images of other cameras, as if they had been captured when this one was: what moves
+        the object on its way to where it is believed to be goes on for as long as they are later.
+
+        The longer that is, and the farther the object goes meanwhile, the less they count.
+        """
+        if not image.others:
+            return []
+        motion = self._motion(belief.parts[0], time_ns)
+        return [self._other(one, motion, expected) for one in image.others]
+
+    def _other(self, one: OtherView, motion: Motion, expected: Expected) -> SideLook:
+        place = one.view_from_reference @ motion.placement(one.later_s)
+        sharpness = self._sharpness(expected, one.image, one.view_from_reference)
+        early = one.view_from_reference.points(motion.start)
+        late = place.points(motion.start)
+        camera = one.image.camera
+        off = np.nan_to_num(camera.project(late) - camera.project(early))
+        doubt = self._parameters.late_doubt * float(np.linalg.norm(off))
+        sharpness /= 1.0 + (doubt / self._parameters.late_pixels) ** 2
+        return SideLook(one.image, place, sharpness)
+
+    def _motion(self, believed: PoseGaussian, time_ns: int) -> Motion:
+        """How the object moves about a time at which it is believed somewhere."""
+        before = self._before
+        if before is None or not continues(before.time_ns, time_ns):
+            return Motion(believed.centre, np.zeros(3), np.zeros(3))
+        elapsed_s = (time_ns - before.time_ns) / 1e9
+        was = before.believed
+        turned = rotations.to_vector(
+            rotations.multiply(believed.rotation, rotations.conjugate(was.rotation))
+        )
+        went = believed.centre - was.centre
+        return Motion(believed.centre, went / elapsed_s, turned / elapsed_s)
+
+    def _sharpness(
+        self, expected: Expected, image: Image, view_from_reference: Placement | None = None
+    ) -> float:
         """Sharpness, from 0 to 1, of an object that moved to where it is expected, as far as it was
         moving already: a body's glitch blurs nothing. It is whole where the posture is strange, as
         even a smear says more than the body does."""
         before = self._before
         if before is None or expected.strange:
             return 1.0
-        way = self._sphere.way(before.expected.whole, expected.whole, image.camera)
+        lens, place = image.camera, view_from_reference
+        way = self._sphere.way(before.expected.whole, expected.whole, lens, place)
         if before.earlier is not None:
-            went = self._sphere.way(before.earlier.believed, before.believed, image.camera)
+            went = self._sphere.way(before.earlier.believed, before.believed, lens, place)
             way = min(way, self._parameters.quickening * went)
         return 1.0 / (1.0 + (way / self._parameters.blurred_pixels) ** 2)
 

@@ -45,32 +45,46 @@ def refine(
     what the frame said of each at the last of them."""
     translations, orientations = poses
     gradients = np.zeros((len(translations), 6))
-    root, off = np.empty((6, 6)), np.empty(6)
     for share in steps.shares:
         information[:] = 0.0
         gradients[:] = 0.0
         equations = Equations(information, gradients)
         reaches = share * steps.reaches
         gather(translations, orientations, reaches, outlines, pixels, settings, equations)
-        for pose in range(len(translations)):
-            gradient = gradients[pose]
-            set_deviation(
-                translations[pose],
-                orientations[pose],
-                priors.translations[pose],
-                priors.rotations[pose],
-                off,
-            )
-            for row in range(6):
-                for column in range(6):
-                    gradient[row] += priors.information[pose, row, column] * off[column]
-                    root[row, column] = (
-                        information[pose, row, column] + priors.information[pose, row, column]
-                    )
-                root[row, row] += steps.damping[row]
-            if find_root(root, root):
-                solve(root, gradient)
-                _move(translations[pose], orientations[pose], gradient)
+        step_poses(poses, priors, steps.damping, information, gradients)
+
+
+@njit(cache=True, nogil=True)
+def step_poses(
+    poses: tuple[Array, Array],
+    priors: Priors,
+    damping: Array,
+    information: Array,
+    gradients: Array,
+) -> None:
+    """Move poses by one step, by ``information`` (K, 6, 6) and ``gradients`` (K, 6), which are
+    used up, and by their priors."""
+    translations, orientations = poses
+    root, off = np.empty((6, 6)), np.empty(6)
+    for pose in range(len(translations)):
+        gradient = gradients[pose]
+        set_deviation(
+            translations[pose],
+            orientations[pose],
+            priors.translations[pose],
+            priors.rotations[pose],
+            off,
+        )
+        for row in range(6):
+            for column in range(6):
+                gradient[row] += priors.information[pose, row, column] * off[column]
+                root[row, column] = (
+                    information[pose, row, column] + priors.information[pose, row, column]
+                )
+            root[row, row] += damping[row]
+        if find_root(root, root):
+            solve(root, gradient)
+            _move(translations[pose], orientations[pose], gradient)
 
 
 @njit(cache=True, nogil=True)

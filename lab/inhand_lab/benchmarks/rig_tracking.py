@@ -1,0 +1,197 @@
+"""Tracks an object through a simulated rig's frames: by each camera alone, by all, and with one
+camera that fails."""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from inhand_tracker.geometry import rotations
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.estimate import Estimate
+from inhand_tracker.geometry.image import Image
+from inhand_tracker.geometry.placement import Placement
+from inhand_tracker.methods.object_tracker import ObjectTracker
+from inhand_tracker.methods.registry import new_tracker
+from inhand_tracker.model.model import Model
+from inhand_tracker.rig.parameters import DEFAULT_RIG, RigParameters
+from inhand_tracker.rig.rig_frames import Capture, RigFrames
+from inhand_tracker.wire.conversion import joints_of
+
+from inhand_lab.benchmarks.rendered_images import rendered_image
+from inhand_lab.geometry.transforms import Transform, quaternions
+from inhand_lab.world.messages import person_message
+from inhand_lab.world.rigs import RigSimulation
+
+JUMP_S = 1.0
+"""Seconds after a camera has failed within which poses may leap by that."""
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Errors of T frames by one tracker: ``vertex_m`` (T,), the mean distance of the marked
+    vertices, and ``changes_m`` (T,), that of the ways by which they are off from where they were
+    off by a frame before; NaN where there is no pose. ``frame_ms`` is the median of the processor
+    time that a frame took."""
+
+    vertex_m: Array
+    changes_m: Array
+    frame_ms: float
+
+    @property
+    def mean_m(self) -> float:
+        """Mean vertex error of the frames with a pose, in metres."""
+        return float(np.nanmean(self.vertex_m)) if np.isfinite(self.vertex_m).any() else np.nan
+
+    @property
+    def without_pose(self) -> int:
+        """Number of frames without a pose."""
+        return int(np.isnan(self.vertex_m).sum())
+
+
+@dataclass(frozen=True)
+class RigErrors:
+    """Errors of a rig's ``single`` cameras by name, of all ``fused``, and, where a camera failed at
+    some time, of the rig with that one, ``killed``; ``jump_m`` is by how much it leapt then, and
+    ``usual_jump_m`` by how much the whole rig did at that time."""
+
+    single: dict[str, Errors]
+    fused: Errors
+    killed: Errors | None = None
+    jump_m: float = 0.0
+    usual_jump_m: float = 0.0
+
+
+@dataclass
+class _Follower:
+    """A tracker by some of the cameras, and where it has the marked vertices, (T, M, 3) off the
+    truth."""
+
+    tracker: ObjectTracker
+    cameras: tuple[int, ...]
+    frames: RigFrames
+    off: Array
+    until_s: dict[int, float]
+    took_ms: list[float] = field(default_factory=list)
+
+
+def track_rig(
+    rig: RigSimulation,
+    model: Model,
+    *,
+    tracker_seed: int = 0,
+    killed: int | None = None,
+    parameters: RigParameters = DEFAULT_RIG,
+    on_frame: Callable[[], None] = lambda: None,
+    images: Callable[[int, int], Image] | None = None,
+    singles: bool = True,
+) -> RigErrors:
+    """Track through a rig; the camera ``killed``, a number, fails in the middle of it.
+
+    Each camera's clock is known, but not its drift. ``images`` gives a camera's frame, where it is
+    not rendered anew.
+    """
+    show = images or (lambda camera, frame: rendered_image(rig.cameras[camera], frame))
+    # The others take their last frame before the first one does.
+    count, every = rig.cameras[0].frames - 1, tuple(range(len(rig.cameras)))
+    middle_s = rig.times_s(0)[count // 2]
+    left_handed = rig.cameras[0].person.handedness == "left"
+    places = {name: _placement(rig.rig_from_camera[n]) for n, name in enumerate(rig.names)}
+
+    def follower(cameras: tuple[int, ...], until_s: dict[int, float]) -> _Follower:
+        tracker = new_tracker(
+            model, left_handed=left_handed, seed=tracker_seed, several_cameras=len(cameras) > 1
+        )
+        chosen = {rig.names[camera]: places[rig.names[camera]] for camera in cameras}
+        off = np.full((count, len(model.shape.marked_vertices), 3), np.nan)
+        return _Follower(tracker, cameras, RigFrames(chosen, parameters), off, until_s)
+
+    alone = [follower((camera,), {}) for camera in every] if singles else []
+    fused = follower(every, {})
+    failing = [] if killed is None else [follower(every, {killed: middle_s})]
+    for frame in range(count):
+        captures = dict(_captures(rig, frame, show))
+        for one in (*alone, fused, *failing):
+            _follow(one, rig, frame, captures, model)
+        on_frame()
+    result = [_errors(one) for one in (*alone, fused, *failing)]
+    single = dict(zip(rig.names, result, strict=False)) if singles else {}
+    if killed is None:
+        return RigErrors(single, result[-1])
+    after = slice(count // 2, count // 2 + round(JUMP_S * rig.cameras[0].frame_rate))
+    jumps = [_largest(one.changes_m[after]) for one in result[-2:]]
+    return RigErrors(single, result[-2], result[-1], jumps[1], jumps[0])
+
+
+def _captures(
+    rig: RigSimulation, tick: int, show: Callable[[int, int], Image]
+) -> Iterator[tuple[int, tuple[int, Capture]]]:
+    """Give what each camera, by its number, captured nearest to a frame of the first one, within
+    half a period, with the number of its frame; not what was lost."""
+    now_s = rig.times_s(0)[tick]
+    period_s = 1.0 / rig.cameras[0].frame_rate
+    for number, seen in enumerate(rig.cameras):
+        times_s = rig.times_s(number)
+        frame = int(np.argmin(np.abs(times_s - now_s)))
+        if abs(times_s[frame] - now_s) > period_s / 2.0 or rig.dropped[number][frame]:
+            continue
+        said_ns = int(rig.stamps_ns(number)[frame])
+        time_ns = said_ns + round(1e9 * (1.0 + rig.clocks[number].offset_s))
+        people = [person_message(seen, frame)]
+        capture = Capture(rig.names[number], time_ns, people, show(number, frame))
+        yield number, (frame, capture)
+
+
+def _follow(
+    one: _Follower,
+    rig: RigSimulation,
+    tick: int,
+    captures: dict[int, tuple[int, Capture]],
+    model: Model,
+) -> None:
+    """Let a tracker take what its cameras captured."""
+    there = [
+        camera
+        for camera in one.cameras
+        if camera in captures
+        and rig.times_s(camera)[captures[camera][0]] < one.until_s.get(camera, np.inf)
+    ]
+    if not there:
+        return
+    began = time.process_time_ns()
+    estimate = _step(one, [captures[camera][1] for camera in there], alone=len(one.cameras) == 1)
+    one.took_ms.append((time.process_time_ns() - began) / 1e6)
+    if estimate.translation is None or estimate.rotation is None:
+        return
+    first = there[0]
+    # Poses are in the frame of the first of its cameras.
+    home_from_first = rig.rig_from_camera[one.cameras[0]].inverse() @ rig.rig_from_camera[first]
+    true = home_from_first @ rig.cameras[first].camera_from_object[captures[first][0]]
+    vertices = model.shape.marked_vertices
+    estimated = rotations.rotate(estimate.rotation, vertices) + estimate.translation
+    one.off[tick] = estimated - true.apply(vertices)
+
+
+def _step(one: _Follower, captures: Sequence[Capture], *, alone: bool) -> Estimate:
+    """Take what cameras captured about the same time; one that is alone goes without a rig."""
+    first = captures[0]
+    if alone:
+        (person,) = first.people
+        return one.tracker.step(joints_of(person), first.time_ns, first.image)
+    frame = one.frames.join(captures)
+    joints = frame.people[0].joints if frame.people else None
+    return one.tracker.step(joints, frame.time_ns, frame.image)
+
+
+def _errors(one: _Follower) -> Errors:
+    changes = np.diff(one.off, axis=0, prepend=one.off[:1])
+    vertex, change = (np.linalg.norm(off, axis=2).mean(axis=1) for off in (one.off, changes))
+    return Errors(vertex, change, float(np.median(one.took_ms)) if one.took_ms else np.nan)
+
+
+def _largest(values: Array) -> float:
+    return float(np.nanmax(values)) if np.isfinite(values).any() else np.nan
+
+
+def _placement(rig_from_camera: Transform) -> Placement:
+    return Placement(rig_from_camera.translation, quaternions(rig_from_camera.rotation[None])[0])

@@ -1,0 +1,1 @@
+"""What several cameras see of the same people, brought together in one frame of reference."""
