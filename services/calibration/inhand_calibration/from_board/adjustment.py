@@ -41,8 +41,8 @@ class AdjustmentParameters:
     centre_prior: float = 0.05
     """The same of principal points, a share of the picture's width."""
     alike: float = 2.5
-    """Factor on covariances, since corners of a picture err alike: by light, blur and how pixels lie.
-    As drawn views of other seeds than the benchmark's showed (`inhand bench calibration`);
+    """Factor on covariances, since corners of a picture err alike, by light, blur and pixels:
+    as drawn views showed, checked on others by `inhand bench calibration`;
     1 where their errors are independent."""
     least_deviation_px: float = 0.02
     """Deviation of a corner, pixels, at least."""
