@@ -40,6 +40,10 @@ class AdjustmentParameters:
     adjusted too."""
     centre_prior: float = 0.05
     """The same of principal points, a share of the picture's width."""
+    alike: float = 2.5
+    """Factor on covariances, since corners of a picture err alike, by light, blur and pixels:
+    as drawn views showed, checked on others by `inhand bench calibration`;
+    1 where their errors are independent."""
     least_deviation_px: float = 0.02
     """Deviation of a corner, pixels, at least."""
 
@@ -389,7 +393,7 @@ def _covariance(
         steps = (pulls @ inverse)[:, own]
         together = float(np.einsum("mi,ij,mj->", steps, block, steps)) / len(own)
         scales[own] = np.maximum(scales[own], together * moments / max(moments - 1, 1))
-    scale = np.sqrt(scales)
+    scale = np.sqrt(problem.parameters.alike * scales)
     size = CAMERA_PARAMETERS * len(problem.lenses)
     every = np.zeros((size, size))
     every[np.ix_(problem.free, problem.free)] = inverse * scale[:, None] * scale
