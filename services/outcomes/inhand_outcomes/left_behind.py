@@ -12,6 +12,7 @@ import numpy as np
 
 from inhand_outcomes.arrays import Array, Flags
 from inhand_outcomes.hands import HANDS, hand_distances
+from inhand_outcomes.stillness import still_frames
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -63,7 +64,12 @@ def left_behind(
     hands = hand_distances(track, thing)
     with np.errstate(invalid="ignore"):
         held = track.seen & (hands < parameters.near_m).any(axis=1)
-    rests = held & trusted & ~worn & _still(track, parameters.rest_s, parameters)
+    rests = (
+        held
+        & trusted
+        & ~worn
+        & still_frames(track, parameters.rest_s, parameters.wander_m, parameters.least_seen)
+    )
     poses, covariances = track.poses.copy(), track.covariances.copy()
     lies = np.zeros(len(track), bool)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], rests.astype(int), [0]])))
@@ -92,20 +98,7 @@ def left_behind(
 
 
 def _still(track: Track, seconds: float, parameters: LeftBehindParameters) -> Flags:
-    """Frames (T,) before which a thing has stayed where it is for so long."""
-    firsts = np.searchsorted(track.times, track.times - seconds + 1e-6)
-    counts = np.arange(len(track)) - firsts + 1
-    rows = firsts[:, None] + np.arange(int(counts.max(initial=1)))
-    inside = np.arange(rows.shape[1]) < counts[:, None]
-    rows = np.minimum(rows, len(track) - 1)
-    seen = inside & track.seen[rows]
-    numbers = np.maximum(seen.sum(axis=1), 1)
-    places = track.positions[rows]
-    middles = (places * seen[..., None]).sum(axis=1) / numbers[:, None]
-    wander = np.linalg.norm(places - middles[:, None], axis=2)
-    still = np.where(seen, wander, 0.0).max(axis=1) < parameters.wander_m
-    still &= track.seen & (seen.sum(axis=1) >= parameters.least_seen * counts)
-    return np.asarray(still & (track.times - track.times[0] >= seconds - 1e-6))
+    return still_frames(track, seconds, parameters.wander_m, parameters.least_seen)
 
 
 def _rested(

@@ -14,6 +14,7 @@ from inhand_outcomes.gathering import Gathering, Holding, Sighting, Sightings
 from inhand_outcomes.handling import LEFT_IN_USE, PLACE, handling
 from inhand_outcomes.in_hand import in_hand
 from inhand_outcomes.lasting import LastingOutcomes
+from inhand_outcomes.leaps import without_leaps
 from inhand_outcomes.outcome import Outcome, outcome_id
 from inhand_outcomes.parameters import DEFAULT_GATHERING, GatheringParameters
 from inhand_outcomes.room import LEVEL, Room
@@ -158,7 +159,7 @@ class Watcher:
 
     def _measure(self, holding: Holding, followed: Followed, *, ended: bool) -> list[Outcome]:
         """What is settled now of a track."""
-        track = followed.gathering.track(self.room)
+        track = self._track(holding, followed)
         first_ns, last_ns = followed.gathering.first_ns, followed.gathering.last_ns
         sightings = list(followed.gathering.sightings)
         found = [
@@ -179,6 +180,10 @@ class Watcher:
         outcomes += followed.lasting.follow(lasting, last_ns, ended=ended)
         self.told.setdefault(holding.object, {}).update({one.kind: one for one in outcomes})
         return outcomes
+
+    def _track(self, holding: Holding, followed: Followed) -> Track:
+        track, thing = followed.gathering.track(self.room), self.things.get(holding.object)
+        return track if thing is None else without_leaps(track, thing)
 
     def _handed(self, holding: Holding, followed: Followed, outcome: Outcome) -> Outcome:
         """What was left in use is handed over, where somebody else has it then."""
