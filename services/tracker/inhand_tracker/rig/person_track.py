@@ -111,7 +111,7 @@ class PersonTrack:
 
     def _move_to(self, joints: Array, time_ns: int) -> None:
         """Take new joints (20, 3), where they are known."""
-        known = np.isfinite(joints).all(axis=1) & np.isfinite(self.joints).all(axis=1)
+        known = np.asarray(np.isfinite(joints).all(axis=1) & np.isfinite(self.joints).all(axis=1))
         elapsed = (time_ns - self.time_ns) / 1e9
         if elapsed > 0.0:
             share = 1.0 - np.exp(-elapsed / self.parameters.velocity_time_s)
