@@ -14,6 +14,7 @@ from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import new_tracker
 from inhand_tracker.model.model import Model
+from inhand_tracker.prior.calibration import CHI_SQUARE_90
 from inhand_tracker.rig.parameters import DEFAULT_RIG, RigParameters
 from inhand_tracker.rig.rig_frames import Capture, RigFrames
 from inhand_tracker.wire.conversion import joints_of
@@ -34,11 +35,13 @@ CLOCK_READINGS = 50
 class Errors:
     """Errors of T frames by one tracker: ``vertex_m`` (T,), the mean distance of the marked
     vertices, and ``changes_m`` (T,), that of the ways by which they are off from where they were
-    off by a frame before; NaN where there is no pose. ``frame_ms`` is the median of the processor
-    time that a frame took."""
+    off by a frame before; NaN where there is no pose. ``region_share`` is that of the poses whose
+    90 % region holds the truth, and ``frame_ms`` the median of the processor time that a frame
+    took."""
 
     vertex_m: Array
     changes_m: Array
+    region_share: float
     frame_ms: float
 
     @property
@@ -75,6 +78,7 @@ class _Follower:
     frames: RigFrames
     off: Array
     until_s: dict[int, float]
+    within: list[bool] = field(default_factory=list)
     took_ms: list[float] = field(default_factory=list)
 
 
@@ -173,6 +177,7 @@ def _follow(
     vertices = model.shape.marked_vertices
     estimated = rotations.rotate(estimate.rotation, vertices) + estimate.translation
     one.off[tick] = estimated - true.apply(vertices)
+    one.within.append(_holds(estimate, true))
 
 
 def _step(one: _Follower, captures: Sequence[Capture], *, alone: bool) -> Estimate:
@@ -186,11 +191,21 @@ def _step(one: _Follower, captures: Sequence[Capture], *, alone: bool) -> Estima
     return one.tracker.step(joints, frame.time_ns, frame.image)
 
 
+def _holds(estimate: Estimate, true: Transform) -> bool:
+    """Whether the 90 % region that an estimate states holds the true pose."""
+    assert estimate.rotation is not None
+    true_rotation = quaternions(true.rotation[None])[0]
+    turn = rotations.multiply(estimate.rotation, rotations.conjugate(true_rotation))
+    off = np.concatenate((estimate.translation - true.translation, rotations.to_vector(turn)))
+    return bool(off @ np.linalg.solve(estimate.covariance, off) <= CHI_SQUARE_90)
+
+
 def _errors(one: _Follower) -> Errors:
     changes = np.diff(one.off, axis=0, prepend=one.off[:1])
     vertex, change = (np.linalg.norm(off, axis=2).mean(axis=1) for off in (one.off, changes))
     took_ms = float(np.median(one.took_ms)) - _clock_ms() if one.took_ms else np.nan
-    return Errors(vertex, change, took_ms)
+    share = float(np.mean(one.within)) if one.within else np.nan
+    return Errors(vertex, change, share, took_ms)
 
 
 def _clock_ms() -> float:
