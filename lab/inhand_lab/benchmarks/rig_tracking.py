@@ -193,7 +193,9 @@ def _step(one: _Follower, captures: Sequence[Capture], *, alone: bool) -> Estima
 
 def _holds(estimate: Estimate, true: Transform) -> bool:
     """Whether the 90 % region that an estimate states holds the true pose."""
+    assert estimate.translation is not None
     assert estimate.rotation is not None
+    assert estimate.covariance is not None
     true_rotation = quaternions(true.rotation[None])[0]
     turn = rotations.multiply(estimate.rotation, rotations.conjugate(true_rotation))
     off = np.concatenate((estimate.translation - true.translation, rotations.to_vector(turn)))
