@@ -17,6 +17,7 @@ from inhand_lab.demonstration.preparation import train_demonstration, write_rig_
 from inhand_lab.demonstration.review import Review, review
 from inhand_lab.demonstration.typical_frame import draw_typical_frame
 from inhand_lab.world.interactions import INTERACTIONS
+from inhand_lab.world.parameters import RIG_CAMERAS
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.supervisor_watch import supervised
 from inhand_runtime.wording import counted
@@ -31,7 +32,9 @@ from inhand.results import write_json
 
 DEFAULT_INTERACTION = "drinkFromMug"
 DEFAULT_SECONDS = 12.0
-READY_WITHIN_S = 60.0
+READY_WITHIN_S = 120.0
+"""Seconds until the first pose, at the most: a tracker's first start compiles its loops, and that
+took more than a minute on two cores with twenty processes."""
 ERROR_BOUND_CM = 12.0
 
 
@@ -45,6 +48,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--seconds", type=float, default=DEFAULT_SECONDS, metavar="S", help="how long to track"
+    )
+    parser.add_argument(
+        "--cameras",
+        type=int,
+        default=1,
+        metavar="N",
+        help="so many see the person, who walks about where the hands allow it, 1 to "
+        f"{len(RIG_CAMERAS)} (default: 1)",
     )
     parser.add_argument(
         "--camera-like",
@@ -61,6 +72,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Exit code 1 when a frame was lost or the error is beyond the bound."""
     if not 1 <= arguments.seconds <= 3600:
         raise SettingsError("--seconds is 1 to 3600")
+    if not 1 <= arguments.cameras <= len(RIG_CAMERAS):
+        raise SettingsError(f"--cameras is 1 to {len(RIG_CAMERAS)}")
     if arguments.camera_like:
         require_network(DEFAULT_NETWORK)
     began = time.monotonic()
@@ -76,6 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.interaction,
         model_path.resolve(),
         "estimated" if arguments.camera_like else "source",
+        arguments.cameras,
     )
     _run_rig(config, arguments.seconds)
     recording = _only_recording(folder / "recordings")
@@ -94,7 +108,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run_rig(config: Path, seconds: float) -> None:
-    """Camera, tracker and recorder as three processes, for some seconds from the first pose on."""
+    """Cameras, tracker and recorder as processes, for some seconds from the first pose on."""
     command = [sys.executable, "-m", "inhand", "up", "--config", str(config)]
     with open_look(config) as look:
         look.follow(POSE)

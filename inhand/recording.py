@@ -21,6 +21,7 @@ from inhand.looking import output
 from inhand.recording_convert import add_action as add_convert_action
 from inhand.recording_export import add_action as add_export_action
 from inhand.recording_import import add_action as add_import_action
+from inhand.recording_merge import add_action as add_merge_action
 from inhand.recording_redact import add_action as add_redact_action
 from inhand.results import listing, write_json
 from inhand.retrack import add_action as add_retrack_action
@@ -57,6 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_retrack_action(actions)
 
     add_convert_action(actions)
+    add_merge_action(actions)
     add_export_action(actions)
     add_import_action(actions)
     add_redact_action(actions)

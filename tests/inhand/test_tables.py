@@ -5,8 +5,8 @@ import io
 import pytest
 from inhand_runtime.inbox import Received
 from inhand_schemas.keys import Site
-from inhand_schemas.messages import CameraInfo, ObjectPose, Skeletons
-from inhand_schemas.topics import INFO, LABEL, POSE, SKELETONS
+from inhand_schemas.messages import CameraInfo, ObjectPose, RgbdFrame, Skeletons
+from inhand_schemas.topics import INFO, LABEL, POSE, RGBD, SKELETONS
 from rich.console import Console, RenderableType
 from running_rig import RunningRig
 
@@ -79,9 +79,11 @@ def test_times_of_a_replay_are_no_delay(delay_ns: int, delay_ms: float | None) -
     assert rate["delay_ms"] == delay_ms
 
 
-def test_what_a_tracker_leaves_out_is_no_loss() -> None:
+def test_numbers_that_trackers_leave_out_or_cameras_share_are_no_losses() -> None:
     measured = Meter()
     for number in (0, 5):
+        key, frame = RGBD.key(SITE, "x"), RgbdFrame(sequence=number, time_ns=NOW_NS)
+        measured.add(Received(key, RGBD.encode(frame), RGBD.encoding, NOW_NS))
         pose = ObjectPose(
             sequence=number, time_ns=NOW_NS, object="mug", camera="x", state="lost", confidence=0.0
         )
@@ -89,7 +91,7 @@ def test_what_a_tracker_leaves_out_is_no_loss() -> None:
             key = topic.key(SITE, "mug")
             measured.add(Received(key, topic.encode(pose), topic.encoding, NOW_NS))
     lost = {key.split("/")[3]: rate["lost"] for key, rate in measured.rates().items()}
-    assert lost == {"pose": 0, "label": 4}
+    assert lost == {"pose": 0, "label": 0, "rgbd": 4}
 
 
 def shown_lines(table: RenderableType) -> list[str]:

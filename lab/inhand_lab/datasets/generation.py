@@ -6,7 +6,7 @@ from pathlib import Path
 
 from inhand_runtime.recording.part_file import PART_SUFFIX
 from inhand_schemas.conventions import SIMULATED
-from inhand_schemas.messages import Message, Skeletons
+from inhand_schemas.messages import Message, Person, Skeletons
 from inhand_tracker.shape.shape import ObjectShape
 from msgspec.structs import replace as replace_fields
 
@@ -16,6 +16,7 @@ from inhand_lab.datasets.dataset_writer import DatasetWriter, write_messages, wr
 from inhand_lab.people.person import USUAL_PEOPLE, People
 from inhand_lab.sensing.cameras import KINECT, Camera
 from inhand_lab.workers import in_processes
+from inhand_lab.world.handover import HandoverSimulation
 from inhand_lab.world.messages import (
     camera_info,
     label_message,
@@ -218,12 +219,18 @@ def _messages(take: Take, *, images: bool) -> Iterator[Message]:
 
 @dataclass(frozen=True)
 class _Stamp:
-    """Which frame of which camera is written, and whose joints its skeletons have."""
+    """Which frame of which camera is written, and whose joints its skeletons have.
+
+    ``people`` are whom it shows, None for the simulation's person alone, and ``holder`` is the
+    number of who has the object.
+    """
 
     frame: int
     time_ns: int
     camera: str
     convention: str | None = SIMULATED
+    people: tuple[Person, ...] | None = None
+    holder: int | None = 0
 
 
 def _frame_messages(simulation: Simulation, stamp: _Stamp, *, images: bool) -> Iterator[Message]:
@@ -231,11 +238,11 @@ def _frame_messages(simulation: Simulation, stamp: _Stamp, *, images: bool) -> I
     yield Skeletons(
         sequence=frame,
         time_ns=time_ns,
-        people=(person_message(simulation, frame),),
+        people=((person_message(simulation, frame),) if stamp.people is None else stamp.people),
         convention=stamp.convention,
     )
     seen = simulation.render(frame) if images else None
-    yield label_message(
+    label = label_message(
         simulation,
         frame,
         sequence=frame,
@@ -243,11 +250,24 @@ def _frame_messages(simulation: Simulation, stamp: _Stamp, *, images: bool) -> I
         camera=stamp.camera,
         visible_fraction=seen.visible_fraction if seen else simulation.visible_fraction(frame),
     )
+    yield replace_fields(label, person=stamp.holder)
     if seen is not None:
         yield pixels_message(seen, sequence=frame, time_ns=time_ns)
 
 
-def rig_messages(rig: RigSimulation, *, images: bool) -> Iterator[tuple[str, int, Message]]:
+def handover_messages(
+    handover: HandoverSimulation, *, images: bool
+) -> Iterator[tuple[str, int, Message]]:
+    """Yield what all cameras send of two people who hand over a mug, as ``rig_messages`` does.
+
+    A label's person is who has the mug, by that camera's number; None where it does not see them.
+    """
+    return rig_messages(handover.rig, images=images, handover=handover)
+
+
+def rig_messages(
+    rig: RigSimulation, *, images: bool, handover: HandoverSimulation | None = None
+) -> Iterator[tuple[str, int, Message]]:
     """Yield what all cameras of a rig send, each with its camera and its time of reception.
 
     Frames have the times of their cameras' clocks, and are received when they truly are taken, by
@@ -267,5 +287,8 @@ def rig_messages(rig: RigSimulation, *, images: bool) -> Iterator[tuple[str, int
     for received_ns, number, frame in taken:
         view = rig.views[number]
         stamp = _Stamp(frame, int(stamps[number][frame]), view.name)
+        if handover is not None:
+            people, holder = handover.people(number, frame), handover.holder(number, frame)
+            stamp = replace(stamp, people=people, holder=holder)
         for message in _frame_messages(view.simulation, stamp, images=images):
             yield view.name, received_ns, message

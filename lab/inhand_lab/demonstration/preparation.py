@@ -1,6 +1,7 @@
 """Prepares a demonstration: a learned model, and the settings of its rig."""
 
 import socket
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,6 +11,8 @@ from inhand_tracker.model.model_file import save_model
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.demonstration.parameters import DEFAULT_DEMONSTRATION
 from inhand_lab.training.model_training import train
+from inhand_lab.world.parameters import RIG_CAMERAS
+from inhand_lab.world.roaming import ROAMING_INTERACTIONS
 
 
 def train_demonstration(
@@ -33,13 +36,17 @@ def train_demonstration(
     return model, path
 
 
-def write_rig_file(folder: Path, interaction: str, model: Path, skeletons: str = "source") -> Path:
-    """Write the settings of a rig with a simulated camera, on a free port of this machine; its
-    ``skeletons`` are the source's, or estimated from its pictures."""
+def write_rig_file(
+    folder: Path, interaction: str, model: Path, skeletons: str = "source", cameras: int = 1
+) -> Path:
+    """Write the settings of a rig with simulated cameras, on a free port of this machine; their
+    ``skeletons`` are the source's, or estimated from their pictures."""
     path = folder / "rig.toml"
     meeting = f'[zenoh]\nmeeting = "tcp/127.0.0.1:{free_port()}"'
-    tables = rig_tables(folder, interaction, model, skeletons).values()
-    lines = ['rig = "demo"', meeting, '[log]\nlevel = "warning"', *tables]
+    tables = rig_tables(folder, interaction, model, skeletons)
+    if cameras > 1:
+        tables |= tables_of_several(interaction, model, skeletons, cameras)
+    lines = ['rig = "demo"', meeting, '[log]\nlevel = "warning"', *tables.values()]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return path
 
@@ -59,6 +66,29 @@ def rig_tables(
         ),
         "tracker": f'[tracker.follower]\ncamera = "camera"\nmodel = "{model}"',
         "recorder": f'[recorder.disk]\nfolder = "{folder / "recordings"}"',
+    }
+
+
+def tables_of_several(
+    interaction: str, model: Path, skeletons: str, cameras: int
+) -> dict[str, str]:
+    """Return the tables of several simulated cameras that show the same, from now on, and of a
+    tracker that sees by all of them; people walk about where the interaction lets them."""
+    names = [named.name for named in RIG_CAMERAS[:cameras]]
+    start, roaming = int(time.time()), interaction in ROAMING_INTERACTIONS
+    captures = [
+        f'[capture.{name}]\nsource = "simulator"\nskeletons = "{skeletons}"\n'
+        f"wait_for_reader_s = 30\n[capture.{name}.options]\n"
+        f'interaction = "{interaction}"\n'
+        f"participant = {DEFAULT_DEMONSTRATION.unseen_participant}\n"
+        f"seed = {DEFAULT_DEMONSTRATION.seed}\n"
+        f"cameras = {cameras}\nview = {view}\nstart = {start}\nroaming = {str(roaming).lower()}"
+        for view, name in enumerate(names)
+    ]
+    listed = ", ".join(f'"{name}"' for name in names)
+    return {
+        "capture": "\n".join(captures),
+        "tracker": f'[tracker.follower]\ncameras = [{listed}]\nmodel = "{model}"',
     }
 
 

@@ -1,18 +1,26 @@
 """Reviews a rig's recording: traffic, latency, and errors where truth was recorded."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from inhand_runtime.recording import RecordedMessage, read_metadata, read_recording
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import Health, ObjectPose
 from inhand_schemas.topics import HEALTH, LABEL, POSE, SKELETONS, topic_of
-from inhand_tracker.geometry.arrays import Array, Indices
+from inhand_tracker.geometry.arrays import Array
 
 from inhand_lab.evaluation.vertex_error import vertex_error
+
+
+class FrameName(NamedTuple):
+    """Which frame of which camera a pose, or a label, is of."""
+
+    camera: str
+    sequence: int
 
 
 @dataclass(frozen=True)
@@ -30,17 +38,17 @@ class Review:
     """The results of a review.
 
     ``traffic`` is by stream, without health. ``latencies_ms`` (P,) are from a frame's capture to
-    its pose at the recorder. ``sequences`` (S,) are those of the frames with both a pose and a
-    label, ``vertex_errors_m`` (S,) their errors. ``skipped_frames`` is how many frames the tracker
+    its pose at the recorder. ``frames`` are the S frames with both a pose and a label,
+    ``vertex_errors_m`` (S,) their errors. ``skipped_frames`` is how many frames the tracker
     left out because it was behind.
     """
 
     traffic: dict[str, Traffic]
     latencies_ms: Array
-    sequences: Indices
+    frames: Sequence[FrameName]
     vertex_errors_m: Array
-    poses: dict[int, ObjectPose]
-    labels: dict[int, ObjectPose]
+    poses: dict[FrameName, ObjectPose]
+    labels: dict[FrameName, ObjectPose]
     skipped_frames: int
 
 
@@ -51,8 +59,8 @@ class _Contents:
     object_name: str
     recorded: Counter[str] = field(default_factory=Counter)
     health: dict[str, Health] = field(default_factory=dict)
-    poses: dict[int, ObjectPose] = field(default_factory=dict)
-    labels: dict[int, ObjectPose] = field(default_factory=dict)
+    poses: dict[FrameName, ObjectPose] = field(default_factory=dict)
+    labels: dict[FrameName, ObjectPose] = field(default_factory=dict)
     latencies_ms: list[float] = field(default_factory=list)
 
     def take(self, sample: RecordedMessage) -> None:
@@ -68,7 +76,7 @@ class _Contents:
             message = sample.message()
             if isinstance(message, ObjectPose):
                 kept = self.poses if sample.topic is POSE else self.labels
-                kept[message.sequence] = message
+                kept[FrameName(message.camera, message.sequence)] = message
 
 
 def review(path: Path, object_name: str, marked_vertices: Array) -> Review:
@@ -77,20 +85,21 @@ def review(path: Path, object_name: str, marked_vertices: Array) -> Review:
     for sample in read_recording(path):
         contents.take(sample)
     poses, labels = contents.poses, contents.labels
-    sequences = [
-        sequence
-        for sequence, pose in poses.items()
-        if pose.camera_from_object is not None and sequence in labels
+    frames = [
+        frame
+        for frame, pose in poses.items()
+        if pose.camera_from_object is not None and frame in labels
     ]
     errors = [
-        float(vertex_error(_pose(poses[s]), _pose(labels[s]), marked_vertices)) for s in sequences
+        float(vertex_error(_pose(poses[one]), _pose(labels[one]), marked_vertices))
+        for one in frames
     ]
     return Review(
         _traffic(
             contents.recorded, contents.health.values(), read_metadata(path).get("losses", {})
         ),
         np.array(contents.latencies_ms),
-        np.array(sequences, np.int64),
+        frames,
         np.array(errors),
         poses,
         labels,
@@ -124,7 +133,8 @@ def _traffic(
         before = streams.get(stream, Traffic(0, 0, 0, 0))
         streams[stream] = Traffic(
             before.published + published,
-            before.received + int(noted.get("received", 0)),
+            # A number twice in a row is noted once: of labels it may be that of another camera.
+            before.received + max(int(noted.get("received", 0)), recorded[key]),
             before.recorded + recorded[key],
             before.lost + _lost(key, published - recorded[key], int(noted.get("lost", 0))),
         )

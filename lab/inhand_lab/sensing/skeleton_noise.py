@@ -44,11 +44,17 @@ def read_skeleton(
     frame_rate: float,
     random: np.random.Generator,
     noise: SkeletonNoise = DEFAULT_NOISE.skeleton,
+    covered: Flags | None = None,
 ) -> SkeletonReading:
-    """The tracker's reading of joints (T, 20, 3) in the camera's frame."""
+    """The tracker's reading of joints (T, 20, 3) in the camera's frame.
+
+    ``covered`` (T, 20) is which of them somebody else hides.
+    """
     seen = _ends_as_seen(true_joints, noise.reading)
     speed = speeds(seen, frame_rate)
     hidden = hidden_joints(person, true_joints, noise.reading)
+    if covered is not None:
+        hidden |= covered
     guessed = _soften(hidden, frame_rate, noise.reading)
     widened = 1.0 + (noise.reading.guess_factor - 1.0) * guessed
     stirred = stirring(seen, frame_rate, noise.wandering)
@@ -107,13 +113,34 @@ def _last_seen(
 def hidden_joints(person: SimulatedPerson, joints: Array, noise: SkeletonReadingNoise) -> Flags:
     """Whether (T, 20) another limb or the trunk stands between a joint and the camera."""
     hidden = np.zeros(joints.shape[:2], bool)
-    trunk = (0, 2, 0.065, 0.065)
-    for parent, child, root, tip in [trunk, *(limb[:4] for limb in LIMB_SOLIDS)]:
-        radius = 0.5 * (root + tip) * person.height * person.girth
+    for parent, child, radius in _capsules(person):
         covered = _crosses(joints, joints[:, parent], joints[:, child], radius, noise)
         covered[:, [parent, child]] = False
         hidden |= covered
     return hidden
+
+
+def joints_behind(
+    person: SimulatedPerson,
+    body: Array,
+    joints: Array,
+    noise: SkeletonReadingNoise = DEFAULT_NOISE.skeleton.reading,
+) -> Flags:
+    """Whether (T, 20) a person with joints ``body`` (T, 20, 3) hides the joints (T, 20, 3) of
+    somebody else from the camera."""
+    hidden = np.zeros(joints.shape[:2], bool)
+    for parent, child, radius in _capsules(person):
+        hidden |= _crosses(joints, body[:, parent], body[:, child], radius, noise)
+    return hidden
+
+
+def _capsules(person: SimulatedPerson) -> list[tuple[int, int, float]]:
+    """A person's trunk and limbs: two joints and the radius about the line between them, metres."""
+    trunk = (0, 2, 0.065, 0.065)
+    return [
+        (parent, child, 0.5 * (root + tip) * person.height * person.girth)
+        for parent, child, root, tip in [trunk, *(limb[:4] for limb in LIMB_SOLIDS)]
+    ]
 
 
 def _crosses(

@@ -11,6 +11,7 @@ from inhand_tracker.wire.poses import pose_message
 
 from inhand_lab.geometry.transforms import Transform, quaternions
 from inhand_lab.objects.model import ObjectModel
+from inhand_lab.sensing.skeleton_noise import SkeletonReading
 from inhand_lab.world.simulation import SensedFrame, Simulation
 
 JOINT_STATES: tuple[JointState, ...] = ("missing", "inferred", "tracked")
@@ -46,17 +47,20 @@ def camera_info(
 
 def person_message(simulation: Simulation, frame: int) -> Person:
     """The simulated skeleton tracker's person in one frame."""
-    states = tuple(JOINT_STATES[state] for state in simulation.joint_states[frame])
+    return read_person(simulation.reading, frame, 0)
+
+
+def read_person(reading: SkeletonReading, frame: int, number: int) -> Person:
+    """A person of that number as a skeleton tracker reads them in one frame."""
+    states = tuple(JOINT_STATES[state] for state in reading.states[frame])
     return Person(
-        id=0,
+        id=number,
         joints=tuple(
             (0.0, 0.0, 0.0) if state == "missing" else (x, y, z)
-            for state, (x, y, z) in zip(
-                states, simulation.joints_in_camera[frame].tolist(), strict=True
-            )
+            for state, (x, y, z) in zip(states, reading.joints[frame].tolist(), strict=True)
         ),
         states=states,
-        confidences=tuple(simulation.joint_confidences[frame].tolist()),
+        confidences=tuple(reading.confidences[frame].tolist()),
     )
 
 

@@ -118,6 +118,44 @@ class RoamingParameters:
 
 
 @dataclass(frozen=True)
+class HandoverParameters:
+    """How two people meet, hand something over and pass each other; times are seconds from the
+    beginning, places metres in each one's frame, ahead of where they stand for it and to the right.
+    """
+
+    ahead: float = 0.42
+    """Distance ahead of each at which the thing changes hands, metres."""
+    aside: float = 0.10
+    """Distance to the right of each at which it does, metres."""
+    height: float = 0.64
+    """Height at which it does, as a share of the mean stature."""
+    comes_s: Range = (0.2, 4.2)
+    """From when to when they walk up to each other."""
+    from_m: float = 0.8
+    """Distance that each comes, metres."""
+    offered_s: Range = (4.0, 5.0)
+    """From when to when the giver holds it out."""
+    reached_s: Range = (4.4, 5.5)
+    """From when to when the taker reaches for it."""
+    handed_s: float = 5.9
+    """When it changes hands."""
+    lingering_s: float = 0.3
+    """Time for which both hands stay there then, seconds."""
+    way_s: float = 0.9
+    """Time in which the giver's arm sinks, and the taker's comes back with it, seconds."""
+    passes_s: tuple[float, float, float] = (7.2, 9.0, 14.4)
+    """From when, over when, to when they walk past each other."""
+    evades_m: tuple[float, float] = (-0.35, 0.10)
+    """To where each steps aside first, metres."""
+    leaves_m: tuple[float, float] = (-0.35, 1.45)
+    """To where each goes, past the other, metres."""
+    most_covered: float = 0.6
+    """Share of joints that somebody else hides beyond which nobody is followed."""
+    forgotten_s: float = 0.5
+    """Time after which who comes back is somebody new to a skeleton tracker, seconds."""
+
+
+@dataclass(frozen=True)
 class IdleHandParameters:
     """How long hands gesture, fidget and hang."""
 
@@ -173,6 +211,8 @@ USUAL_RIG = RigParameters()
 """How the cameras of every simulated rig differ."""
 DEFAULT_ROAMING = RoamingParameters()
 """How all walk about who do while they use a thing."""
+DEFAULT_HANDOVER = HandoverParameters()
+"""How all hand things over."""
 ROAMING_VIEWS = "far"
 """Views of people who walk about."""
 DEFAULT_WALK = WalkParameters()

@@ -167,11 +167,32 @@ def simulate_views(
 
     Raises what ``simulate_rig`` raises.
     """
+    _check_size(cameras, frames)
+    enacted = enact(cast, frames, camera.frame_rate)
+    return _views(cast, enacted, camera, cameras, chosen)
+
+
+def simulate_enacted(
+    cast: Casting, enacted: Enactment, camera: Camera, cameras: int
+) -> RigSimulation:
+    """Simulate a rig before something that is enacted by whoever is cast.
+
+    Raises ValueError for another number of cameras, or under two frames.
+    """
+    _check_size(cameras, len(enacted.contact))
+    return RigSimulation(_views(cast, enacted, camera, cameras, range(cameras)))
+
+
+def _check_size(cameras: int, frames: int) -> None:
     if not 1 <= cameras <= len(RIG_CAMERAS):
         raise ValueError(f"a rig has 1 to {len(RIG_CAMERAS)} cameras, not {cameras}")
     if frames < 2:
         raise ValueError(f"a rig takes 2 frames at the least, not {frames}")
-    enacted = enact(cast, frames, camera.frame_rate)
+
+
+def _views(
+    cast: Casting, enacted: Enactment, camera: Camera, cameras: int, chosen: Iterable[int]
+) -> tuple[RigView, ...]:
     viewpoints = _place_rig(cast, camera, enacted, cameras)
     return tuple(_view(cast, camera, enacted, viewpoints[number]) for number in chosen)
 

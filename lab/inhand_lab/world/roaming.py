@@ -50,6 +50,21 @@ class Way:
         )
 
 
+@dataclass(frozen=True)
+class WayPoint:
+    """Where somebody rests at a time, seconds: a turn to the left and a place on the floor.
+
+    The turn there is over, and the next begins, while the body still walks: ``turned`` and
+    ``turning`` are these times.
+    """
+
+    time: float
+    turned: float
+    turning: float
+    turn: float
+    place: tuple[float, float]
+
+
 def roam(
     person: SimulatedPerson,
     done: Performance,
@@ -57,11 +72,21 @@ def roam(
     times: Array,
     random: np.random.Generator,
 ) -> Performance:
-    """The performance at times (T,), done while walking about with an object of vertices (V, 3).
+    """The performance at times (T,), done while walking about with an object of vertices (V, 3)."""
+    return walk_along(person, done, vertices, times, _keys(done, random))
+
+
+def walk_along(
+    person: SimulatedPerson,
+    done: Performance,
+    vertices: Array,
+    times: Array,
+    keys: Sequence[WayPoint],
+) -> Performance:
+    """The performance at times (T,), done on a way, with an object of vertices (V, 3).
 
     Hips go down where a step needs it, hands and object with them, but nothing into the floor.
     """
-    keys = _keys(done, random)
     body = _way(times, keys)
     right, left = (_stepping(times, keys, side, done.posture) for side in (0, 1))
     level = body.transform(np.zeros(len(times)))
@@ -85,24 +110,12 @@ def roam(
     )
 
 
-@dataclass(frozen=True)
-class _Key:
-    """Where somebody rests at a time, seconds; the turn there is over, and the next begins, while
-    the body still walks: ``turned`` and ``turning`` are these times."""
-
-    time: float
-    turned: float
-    turning: float
-    turn: float
-    place: tuple[float, float]
-
-
-def _keys(done: Performance, random: np.random.Generator) -> list[_Key]:
+def _keys(done: Performance, random: np.random.Generator) -> list[WayPoint]:
     """Places to go to in turn, from the first one and back to it."""
     start, end = _carried(done.stages)
     roaming = DEFAULT_ROAMING
     bounds = np.linspace(start, end, max(round((end - start) / roaming.leg_s), 2) + 1)
-    keys = [_Key(start, start, start + roaming.aloof * (bounds[1] - start), 0.0, (0.0, 0.0))]
+    keys = [WayPoint(start, start, start + roaming.aloof * (bounds[1] - start), 0.0, (0.0, 0.0))]
     # Nobody turns beside the furniture that they come from and go back to.
     last_turned = end - roaming.aloof * (end - bounds[-2])
     side = random.choice([-1.0, 1.0])
@@ -116,9 +129,9 @@ def _keys(done: Performance, random: np.random.Generator) -> list[_Key]:
         step = roaming.walking * (time - before.time)
         reach = min(roaming.radius, roaming.walking * (end - time))
         place = _place(random, done.furniture, np.array(before.place), step, reach)
-        keys.append(_Key(time, time, time, float(turn), place))
+        keys.append(WayPoint(time, time, time, float(turn), place))
         side = -side if abs(turn) >= roaming.turned[0] else side
-    return [*keys, _Key(end, last_turned, end, 0.0, (0.0, 0.0))]
+    return [*keys, WayPoint(end, last_turned, end, 0.0, (0.0, 0.0))]
 
 
 def _carried(stages: Sequence[Stage]) -> tuple[float, float]:
@@ -151,7 +164,7 @@ def _clearance(box: Cuboid, place: Array) -> float:
     return float(np.linalg.norm(np.maximum(apart, 0.0)))
 
 
-def _way(times: Array, keys: list[_Key]) -> Way:
+def _way(times: Array, keys: Sequence[WayPoint]) -> Way:
     turns = [(keys[0].turning, keys[0].turn)]
     for before, key in pairwise(keys):
         if before.turning > turns[-1][0]:
@@ -160,13 +173,14 @@ def _way(times: Array, keys: list[_Key]) -> Way:
     return Way(track(times, turns), track(times, [(key.time, key.place) for key in keys]))
 
 
-def _stepping(times: Array, keys: list[_Key], side: int, posture: Posture) -> Transform:
+def _stepping(times: Array, keys: Sequence[WayPoint], side: int, posture: Posture) -> Transform:
     """One foot, world_from_foot (T): the right one's (0) steps and the left one's (1) alternate."""
     roaming = DEFAULT_ROAMING
     beat = 1.0 / roaming.cadence
     landings = np.arange(keys[0].time + side * beat, keys[-1].time + 3.0 * beat, 2.0 * beat)
     stands = _way(np.concatenate([[keys[0].time], landings + beat]), keys)
-    turn, place = np.zeros(len(times)), np.zeros((len(times), 2))
+    turn = np.full(len(times), stands.turn[0])
+    place = np.repeat(stands.place[:1], len(times), axis=0)
     lift = np.zeros(len(times))
     changes = zip(landings, np.diff(stands.turn), np.diff(stands.place, axis=0), strict=True)
     for landing, turned, moved in changes:

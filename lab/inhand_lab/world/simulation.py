@@ -65,13 +65,23 @@ class SensedFrame:
 
 
 @dataclass(frozen=True)
+class Companion:
+    """Somebody else in a simulation of T frames, in the camera's frame, as the tracker reads them
+    and as they truly are."""
+
+    person: SimulatedPerson
+    body_in_camera: BodyMotion
+    reading: SkeletonReading
+
+
+@dataclass(frozen=True)
 class Simulation:
     """A recording of T frames with its truth, everything in the camera's frame, in metres.
 
     ``reading`` is the skeleton tracker's; body, camera_from_object and ``contact`` (T,), as values
     of ContactKind, are the truth. ``stages`` are what is done when, in seconds; the last may lie
     beyond the last frame. ``view`` is the camera's number in a rig (inhand_lab.world.rigs), 0 where
-    it is alone: each has errors of its own in the same room.
+    it is alone: each has errors of its own in the same room. ``others`` are there besides.
     """
 
     interaction: str
@@ -90,6 +100,7 @@ class Simulation:
     furniture: Furniture = ()
     stages: Sequence[Stage] = ()
     view: int = 0
+    others: tuple[Companion, ...] = ()
 
     @property
     def intrinsics(self) -> Intrinsics:
@@ -192,8 +203,13 @@ class Simulation:
         return MovingScene(
             draw_room(self.intrinsics, self.camera_from_world, room),
             self.intrinsics,
-            build_person_surface(self.person, self.true_joints_in_camera[0]),
-            self.body_in_camera,
+            tuple(
+                (build_person_surface(person, body.joints[0]), body)
+                for person, body in (
+                    (self.person, self.body_in_camera),
+                    *((one.person, one.body_in_camera) for one in self.others),
+                )
+            ),
             object_surface(self.object_model),
             self.camera_from_object,
         )

@@ -9,7 +9,7 @@ from inhand_recorder.clips import CLIP_RECORD
 from inhand_recorder.clock import CLOCK_RECORD, format_clock_steps, parse_clock_steps
 from inhand_recorder.journal import PAUSES_RECORD
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter, format_losses, parse_losses
-from inhand_recorder.provenance import OBJECTS_RECORD, PUBLISHERS_RECORD
+from inhand_recorder.provenance import OBJECTS_RECORD, PUBLISHERS_RECORD, with_publisher
 
 CONVERSION_RECORD = "conversion"
 """The name of the metadata record in which a converted file says what it was made of."""
@@ -66,6 +66,8 @@ def _carried(sources: Mapping[Path, Records]) -> dict[str, dict[str, str]]:
                 continue
             if name in _JOINED:
                 known = records.setdefault(name, {})
+                if name == PUBLISHERS_RECORD:
+                    values = {k: with_publisher(known.get(k, ""), v) for k, v in values.items()}
                 known.update({key: one for key, one in values.items() if one or key not in known})
                 continue
             if name == CONVERSION_RECORD or records.get(name, values) != values:

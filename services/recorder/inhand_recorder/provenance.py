@@ -16,13 +16,22 @@ RECORDER_RECORD = "recorder"
 """The name of the metadata record, first in each file of a recorder, that says by what it was
 written."""
 PUBLISHERS_RECORD = "publishers"
-"""The name of the metadata record that says which instance published on each key."""
+"""The name of the metadata record that says which instance, or instances, published on each key."""
 OBJECTS_RECORD = "objects"
 """The name of the metadata record that says of which objects poses came, and what is known of
 each."""
 NO_MODEL = "no model of it on the recorder's host"
 MOST_PUBLISHERS = 10_000
 """Number of keys whose publishers, and of objects whose names, are remembered."""
+MOST_OF_ONE_KEY = 16
+"""Number of publishers of one key that are remembered, the first ones."""
+
+
+def with_publisher(publishers: str, more: str) -> str:
+    """Return the publishers of a key, as the record says them, with those of another such value;
+    a key may have several, as labels of one object in the cameras of a rig."""
+    names = [*filter(None, publishers.split(", ")), *filter(None, more.split(", "))]
+    return ", ".join(list(dict.fromkeys(names))[:MOST_OF_ONE_KEY])
 
 
 class Provenance:
@@ -50,7 +59,8 @@ class Provenance:
         for key, topic in health.topics.items():
             known = key in self._publishers or len(self._publishers) < MOST_PUBLISHERS
             if topic.published and known:
-                self._publishers[key] = f"{health.service} {health.instance}"
+                instance = f"{health.service} {health.instance}"
+                self._publishers[key] = with_publisher(self._publishers.get(key, ""), instance)
 
     def records(self) -> Mapping[str, Mapping[str, str]]:
         """Return the named records of a file that begins or ends now."""

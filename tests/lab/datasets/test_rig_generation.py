@@ -5,12 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from inhand_lab.datasets.dataset import Dataset, load_dataset
+from inhand_lab.datasets.dataset_writer import write_received
+from inhand_lab.datasets.generation import handover_messages
 from inhand_lab.datasets.labelled_sequence import labelled_sequence
 from inhand_lab.datasets.recorded_frames import load_frames
+from inhand_lab.world.handover import simulate_handover
 from inhand_lab.world.rigs import RigSimulation, simulate_rig
 from inhand_recorder.inspection import inspect_recording
 from inhand_runtime.recording import read_recording
-from inhand_schemas.messages import CameraInfo
+from inhand_schemas.messages import CameraInfo, ObjectPose, Skeletons
 
 from inhand.__main__ import main
 
@@ -98,3 +101,20 @@ def test_a_rig_that_cannot_be_is_refused_in_one_line(
 ) -> None:
     assert main(["simulate", str(tmp_path / "out"), *options]) == 2
     assert line in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_handover_is_recorded_with_whom_each_camera_sees_and_who_has_the_mug(
+    tmp_path: Path,
+) -> None:
+    handover = simulate_handover(2, cameras=2, frames=200)
+    path = tmp_path / "handover.mcap"
+    write_received(path, handover_messages(handover, images=False))
+    sent = list(read_recording(path, streams=("skeletons", "label")))
+    left = [one.message() for one in sent if one.name == "left"]
+    kept = np.flatnonzero(~handover.rig.dropped[1])
+    for frame, message in zip(kept, left, strict=True):
+        assert isinstance(message, Skeletons)
+        assert message.people == handover.people(1, frame)
+    labels = [one.message() for one in sent if one.name == "mug"]
+    holders = {one.person for one in labels if isinstance(one, ObjectPose)}
+    assert {0, 1} <= holders

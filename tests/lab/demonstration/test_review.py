@@ -3,11 +3,12 @@
 from pathlib import Path
 
 import numpy as np
-from inhand_lab.demonstration.review import Traffic, review
+from inhand_lab.demonstration.review import FrameName, Traffic, review
 from inhand_runtime.recording import RecordingWriter
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import ObjectPose, Pose
 from inhand_schemas.topics import LABEL, POSE
+from msgspec.structs import replace
 
 VERTICES = np.array([[0.1, 0.0, 0.0], [0.0, 0.2, 0.0]])
 
@@ -27,6 +28,8 @@ def message(sequence: int, x: float | None) -> ObjectPose:
 def test_poses_are_compared_with_the_labels_of_their_frames(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     labels = [message(sequence, 0.0) for sequence in range(3)]
+    # Another camera's frames have the same numbers.
+    labels += [replace(message(sequence, 0.7), camera="left") for sequence in range(3)]
     poses = [message(0, 0.01), message(1, None), message(2, 0.03), message(3, 0.5)]
     with RecordingWriter(path) as writer:
         for topic, messages in ((LABEL, labels), (POSE, poses)):
@@ -39,8 +42,8 @@ def test_poses_are_compared_with_the_labels_of_their_frames(tmp_path: Path) -> N
                     sequence=one.sequence,
                 )
     reviewed = review(path, "mug", VERTICES)
-    assert reviewed.sequences.tolist() == [0, 2]
+    assert [frame.sequence for frame in reviewed.frames] == [0, 2]
     np.testing.assert_allclose(reviewed.vertex_errors_m, [0.01, 0.03])
     np.testing.assert_allclose(reviewed.latencies_ms, np.full(4, 5.0))
-    assert reviewed.traffic == {"label": Traffic(0, 0, 3, 0), "pose": Traffic(0, 0, 4, 0)}
-    assert reviewed.poses[3] == poses[3]
+    assert reviewed.traffic == {"label": Traffic(0, 6, 6, 0), "pose": Traffic(0, 4, 4, 0)}
+    assert reviewed.poses[FrameName("camera", 3)] == poses[3]
