@@ -88,14 +88,7 @@ class ImageSearch:
             self.convinces = False
             return None
         sharpest = max(glance.sharpness for glance, _ in opened)
-        views = tuple(
-            PlacedView(
-                view,
-                glance.view_from_reference,
-                1.0 if glance.sharpness == sharpest else glance.sharpness / sharpest,
-            )
-            for glance, view in opened
-        )
+        views = tuple(glance.placed(view, sharpest) for glance, view in opened)
         posterior = ImagePosterior(self._sight, self._sphere, views, belief, sharpest, parameters)
         posterior, scores = self._compare_unseen(posterior, *hypotheses)
         self.tried = Hypotheses(*hypotheses, scores)
@@ -310,6 +303,11 @@ class _Glance:
         """Take points (..., 3) to the camera's frame."""
         place = self.view_from_reference
         return points if place is None else place.points(points)
+
+    def placed(self, view: SightView, sharpest: float) -> PlacedView:
+        """Place the view of this image, which counts as a share of the ``sharpest`` one."""
+        share = 1.0 if self.sharpness == sharpest else self.sharpness / sharpest
+        return PlacedView(view, self.view_from_reference, share)
 
 
 @dataclass
