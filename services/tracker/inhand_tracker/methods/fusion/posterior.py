@@ -27,7 +27,8 @@ class ImagePosterior:
     """One object's poses, judged by the views of one camera or several and by a belief.
 
     The images count by ``sharpness``, from 0 to 1, and each view by its own times that. Where the
-    search is ``thorough``, poses are near the truth before they are refined.
+    search is ``thorough``, poses are near the truth before they are refined. Several cameras show
+    the object as ``shown`` whole sharp images do.
     """
 
     sight: Sight
@@ -37,6 +38,13 @@ class ImagePosterior:
     sharpness: float
     parameters: FusionParameters
     thorough: bool = False
+    shown: float = 1.0
+
+    @property
+    def unconvincing(self) -> float:
+        """Log-likelihood below which the images do not support a pose: each that shows the object
+        should."""
+        return self.shown * self.parameters.unconvincing_log_likelihood
 
     def scores(
         self, centres: Array, orientations: Array, *, quickly: bool = False

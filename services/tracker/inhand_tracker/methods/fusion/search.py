@@ -21,6 +21,7 @@ from inhand_tracker.methods.fusion.posterior import ImagePosterior
 from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.frame import Region, SightFrame, prepare
 from inhand_tracker.sight.kernels.spheres_region import spheres_region
+from inhand_tracker.sight.kernels.weigh import VISIBLE
 from inhand_tracker.sight.light import LightWatch
 from inhand_tracker.sight.sight import Sight
 from inhand_tracker.sight.support import Support
@@ -105,7 +106,7 @@ class ImageSearch:
         self._looks += 1
         colours = [self._eyes[name].colours for name in names]
         self._found = _Found(modes, posterior.views, colours, joints)
-        self.convinces = seen[best] >= parameters.unconvincing_log_likelihood
+        self.convinces = seen[best] >= posterior.unconvincing
         return weighed.moments()
 
     @property
@@ -193,7 +194,8 @@ class ImageSearch:
             trust = parameters.image_temper * sharpness
             views.append(replace(one, view=self._sight.compare_unseen(scores, one.view, trust)))
         posterior = replace(posterior, views=tuple(views))
-        return posterior, posterior.scores_by(weighed, centres, orientations)[0]
+        scores = posterior.scores_by(weighed, centres, orientations)[0]
+        return replace(posterior, shown=_shown(posterior, weighed, scores)), scores
 
     def _modes(
         self, posterior: ImagePosterior, tried: Hypotheses
@@ -321,12 +323,22 @@ class _Eye:
     opened: bool = False
 
 
+def _shown(posterior: ImagePosterior, weighed: Sequence[Array], scores: Array) -> float:
+    """Number of whole sharp images that show the object as several cameras do, one at the least,
+    by the likeliest of poses that were ``weighed`` in each view, (P, 5)."""
+    if len(weighed) == 1:
+        return 1.0
+    best = int(np.argmax(scores))
+    each = zip(posterior.views, weighed, strict=True)
+    return max(1.0, float(sum(one.sharpness * seen[best, VISIBLE] for one, seen in each)))
+
+
 def _unconvincing(seen: Array, posterior: ImagePosterior) -> bool:
     """Whether sharp images support none of the poses that were found, by their log-likelihoods."""
     parameters = posterior.parameters
     return bool(
         posterior.sharpness >= parameters.least_narrowed_sharpness
-        and seen.max() < parameters.unconvincing_log_likelihood
+        and seen.max() < posterior.unconvincing
     )
 
 
