@@ -61,7 +61,7 @@ def rigs_table(checks: Sequence[RigCheck]) -> Table:
     names = list(checks[0].single_m)
     table = Table("", title="vertex error, cm")
     columns = (*names, "best", "mean", "all", "all / best", "all / mean", "no pose", "leap, cm")
-    for column in (*columns, "cost"):
+    for column in (*columns, "in region", "cost"):
         table.add_column(column, justify="right")
     for check in checks:
         table.add_row(
@@ -70,6 +70,7 @@ def rigs_table(checks: Sequence[RigCheck]) -> Table:
             *_errors(check.best_m, check.mean_m, check.fused_m),
             f"{check.without_pose} of {check.frames}",
             f"{100 * check.jump_m:.1f} ({check.killed})",
+            f"{100 * check.region_share:.0f} %",
             f"{check.fused_ms / check.single_ms:.2f}",
         )
     whole = _whole(checks)
@@ -80,6 +81,7 @@ def rigs_table(checks: Sequence[RigCheck]) -> Table:
         *_errors(whole["best_m"], whole["mean_m"], whole["fused_m"]),
         f"{100 * whole['without_pose']:.2f} %",
         f"{100 * whole['jump_m']:.1f}",
+        f"{100 * whole['region_share']:.0f} %",
         f"{whole['cost_ratio']:.2f}",
     )
     return table
@@ -101,6 +103,7 @@ def _whole(checks: Sequence[RigCheck]) -> dict[str, float]:
         "without_pose": sum(check.without_pose for check in checks) / frames,
         "killed_without_pose": sum(check.killed_without_pose for check in checks) / frames,
         "jump_m": max(check.jump_m for check in checks),
+        "region_share": float(np.mean([check.region_share for check in checks])),
         "cost_ratio": float(np.median([check.fused_ms / check.single_ms for check in checks])),
     }
 

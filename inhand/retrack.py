@@ -114,6 +114,11 @@ def _tasks(arguments: argparse.Namespace) -> "list[Retracking]":
         load_watcher(settings.instance, settings.service)
     except ModelError as error:
         raise SettingsError(str(error)) from None
+    if settings.service.cameras and arguments.camera is None:
+        raise SettingsError(
+            "recordings are tracked again by one camera, and the settings name several: choose "
+            f"with --camera: {', '.join(settings.service.cameras)}"
+        )
     camera = arguments.camera or (settings.service.camera if arguments.config else None)
     mark = mark_of(settings.instance, settings.service)
     outputs = _outputs(

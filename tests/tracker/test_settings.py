@@ -2,11 +2,14 @@
 
 import os
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 from inhand_runtime.errors import SettingsError
+from inhand_runtime.rig_calibration import CameraCalibration, RigCalibration, write_rig_calibration
 from inhand_runtime.settings import load_settings
+from inhand_schemas.messages import Pose
 from inhand_tracker import load_model
 from inhand_tracker.loading import check
 from inhand_tracker.model.model_file import save_model
@@ -31,6 +34,39 @@ def checked(folder: Path, tracker: str, more: str = CAMERA) -> Watcher:
     config = folder / "rig.toml"
     config.write_text(f"[tracker.mug]\n{tracker}\n{more}")
     return check(load_settings(config, "tracker", TrackerSettings))
+
+
+RIG = CAMERA + '[capture.left]\nsource = "simulator"\n'
+
+
+@pytest.mark.parametrize(
+    ("tracker", "reason"),
+    [
+        (
+            'cameras = ["front", "lft"]',
+            r"there is no table \[capture\.lft\] \(did you mean left\?\)",
+        ),
+        ('cameras = ["front", "front"]', "one is named twice"),
+        ('camera = "front"\ncameras = ["front", "left"]', "and leave camera out"),
+        ('cameras = ["front", "left"]\nmethod = "gd-hand"', "gd-hand takes one camera"),
+        ('camera = "front"\ncalibration = "notes.txt"', "it is for several cameras"),
+        ('cameras = ["front", "left"]\ncalibration = "cameras.toml"', "does not say where left is"),
+        ('cameras = ["front", "left"]\ncalibration = "nowhere.toml"', r"nowhere\.toml"),
+    ],
+)
+def test_cameras_that_cannot_track_together_are_refused(
+    folder: Path, tracker: str, reason: str
+) -> None:
+    there = CameraCalibration(
+        Pose((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0)),
+        (0.01,) * 3,
+        (0.01,) * 3,
+        "board",
+        datetime.now(UTC),
+    )
+    write_rig_calibration(folder / "cameras.toml", RigCalibration({"front": there}))
+    with pytest.raises(SettingsError, match=reason):
+        checked(folder, tracker + '\nmodel = "wave.model"', RIG)
 
 
 @pytest.mark.parametrize("absent", [(), (0, 1, 12, 16)])

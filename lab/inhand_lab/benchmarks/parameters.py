@@ -405,8 +405,8 @@ class RigCheckParameters:
         "sweepFloor",
     )
     """What people do; all of it can be done while walking about."""
-    frames: int = 150
-    """Number of frames that are tracked."""
+    frames: int = 360
+    """Number of frames that are tracked: a whole performance."""
     people: int = 4
     """Number of people who are learned from."""
     learned_frames: int = 150

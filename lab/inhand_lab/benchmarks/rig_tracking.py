@@ -14,6 +14,7 @@ from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.methods.object_tracker import ObjectTracker
 from inhand_tracker.methods.registry import new_tracker
 from inhand_tracker.model.model import Model
+from inhand_tracker.prior.calibration import CHI_SQUARE_90
 from inhand_tracker.rig.parameters import DEFAULT_RIG, RigParameters
 from inhand_tracker.rig.rig_frames import Capture, RigFrames
 from inhand_tracker.wire.conversion import joints_of
@@ -26,16 +27,21 @@ from inhand_lab.world.rigs import RigSimulation
 JUMP_S = 1.0
 """Seconds after a camera has failed within which poses may leap by that."""
 
+CLOCK_READINGS = 50
+"""Number of readings of the processor's time by which it is known what one takes."""
+
 
 @dataclass(frozen=True)
 class Errors:
     """Errors of T frames by one tracker: ``vertex_m`` (T,), the mean distance of the marked
     vertices, and ``changes_m`` (T,), that of the ways by which they are off from where they were
-    off by a frame before; NaN where there is no pose. ``frame_ms`` is the median of the processor
-    time that a frame took."""
+    off by a frame before; NaN where there is no pose. ``region_share`` is that of the poses whose
+    90 % region holds the truth, and ``frame_ms`` the median of the processor time that a frame
+    took."""
 
     vertex_m: Array
     changes_m: Array
+    region_share: float
     frame_ms: float
 
     @property
@@ -72,6 +78,7 @@ class _Follower:
     frames: RigFrames
     off: Array
     until_s: dict[int, float]
+    within: list[bool] = field(default_factory=list)
     took_ms: list[float] = field(default_factory=list)
 
 
@@ -170,6 +177,7 @@ def _follow(
     vertices = model.shape.marked_vertices
     estimated = rotations.rotate(estimate.rotation, vertices) + estimate.translation
     one.off[tick] = estimated - true.apply(vertices)
+    one.within.append(_holds(estimate, true))
 
 
 def _step(one: _Follower, captures: Sequence[Capture], *, alone: bool) -> Estimate:
@@ -183,10 +191,29 @@ def _step(one: _Follower, captures: Sequence[Capture], *, alone: bool) -> Estima
     return one.tracker.step(joints, frame.time_ns, frame.image)
 
 
+def _holds(estimate: Estimate, true: Transform) -> bool:
+    """Whether the 90 % region that an estimate states holds the true pose."""
+    assert estimate.translation is not None
+    assert estimate.rotation is not None
+    assert estimate.covariance is not None
+    true_rotation = quaternions(true.rotation[None])[0]
+    turn = rotations.multiply(estimate.rotation, rotations.conjugate(true_rotation))
+    off = np.concatenate((estimate.translation - true.translation, rotations.to_vector(turn)))
+    return bool(off @ np.linalg.solve(estimate.covariance, off) <= CHI_SQUARE_90)
+
+
 def _errors(one: _Follower) -> Errors:
     changes = np.diff(one.off, axis=0, prepend=one.off[:1])
     vertex, change = (np.linalg.norm(off, axis=2).mean(axis=1) for off in (one.off, changes))
-    return Errors(vertex, change, float(np.median(one.took_ms)) if one.took_ms else np.nan)
+    took_ms = float(np.median(one.took_ms)) - _clock_ms() if one.took_ms else np.nan
+    share = float(np.mean(one.within)) if one.within else np.nan
+    return Errors(vertex, change, share, took_ms)
+
+
+def _clock_ms() -> float:
+    """Milliseconds of processor time that asking for it takes: on some machines, a lot."""
+    asked = [time.process_time_ns() for _ in range(CLOCK_READINGS)]
+    return float(np.median(np.diff(asked))) / 1e6
 
 
 def _largest(values: Array) -> float:

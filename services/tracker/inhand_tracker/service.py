@@ -23,6 +23,7 @@ from inhand_tracker.live.shortfalls import Shortfall
 from inhand_tracker.loading import check, load_watcher
 from inhand_tracker.people.following import PeopleWatched
 from inhand_tracker.people.watching import Watcher
+from inhand_tracker.rig.people_fusing import compile_fusing
 from inhand_tracker.rig_cameras import RigCameras
 from inhand_tracker.settings import TrackerSettings
 
@@ -202,6 +203,8 @@ def run(settings: Settings[TrackerSettings]) -> None:
 def _prepare(settings: Settings[TrackerSettings]) -> Watcher:
     """Make what no frame shall wait for, somebody's first one neither."""
     watcher = check(settings)
+    if settings.service.cameras:
+        compile_fusing()
     make_loops()
     return watcher
 

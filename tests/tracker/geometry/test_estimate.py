@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from inhand_tracker.geometry.estimate import weighted_estimate
+from inhand_tracker.geometry.estimate import LOST, Estimate, weighted_estimate
+from inhand_tracker.geometry.placement import Placement
 from people import quaternion_of, same_rotation, scipy_rotation
 from scipy.spatial.transform import Rotation
 
@@ -77,3 +78,16 @@ def test_confidence_counts_rotations_within_thirty_degrees() -> None:
     turns = np.array([about_z(a) for a in (0, 29, -29, 31, -31)])
     estimate = weighted_estimate(np.zeros((5, 3)), turns, np.array([0.4, 0.1, 0.1, 0.2, 0.2]))
     assert estimate.confidence == pytest.approx(0.6)
+
+
+def test_an_estimate_seen_from_another_camera_is_the_same_pose_with_its_covariance() -> None:
+    turn = Rotation.from_rotvec([0.2, -1.1, 0.4])
+    place = Placement(np.array([0.5, 0.1, -2.0]), turn.as_quat(scalar_first=True))
+    deviations = np.diag([0.01, 0.02, 0.03, 0.1, 0.2, 0.3]) ** 2
+    here = Estimate("tracked", 0.8, np.array([0.1, 0.2, 1.5]), np.array([1.0, 0, 0, 0]), deviations)
+    there = here.seen_from(place)
+    assert there.translation == pytest.approx(place.points(here.translation))
+    both = np.kron(np.eye(2), turn.as_matrix())
+    np.testing.assert_allclose(there.covariance, both @ deviations @ both.T, atol=1e-12)
+    assert (there.state, there.confidence) == ("tracked", 0.8)
+    assert LOST.seen_from(place) == LOST

@@ -14,8 +14,10 @@ from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.people.cheapest_pairs import cheapest_pairs
 from inhand_tracker.rig.agreement import Agreement
+from inhand_tracker.rig.joint_fusion import fuse_joints
+from inhand_tracker.rig.kernels.fuse import mean_distance
 from inhand_tracker.rig.parameters import DEFAULT_RIG, RigParameters
-from inhand_tracker.rig.person_track import FusedPerson, PersonTrack, mean_distance
+from inhand_tracker.rig.person_track import AS_THEY_ARE, FusedPerson, PersonTrack
 from inhand_tracker.rig.sightings import STATES, CameraPeople, Sighting, sightings_of
 
 _IMPOSSIBLE = 1e6
@@ -146,7 +148,7 @@ class PeopleFuser:
             cameras = [{seen.camera for seen in matched[track.identity]} for track in (one, other)]
             if not all(cameras) or cameras[0] & cameras[1]:
                 continue
-            if mean_distance(one.joints, other.joints) < self._parameters.same_m:
+            if mean_distance(one.joints, other.joints, AS_THEY_ARE) < self._parameters.same_m:
                 pair = one.identity, other.identity
                 together[pair] = self._together.get(pair, time_ns)
                 if time_ns - together[pair] >= self._parameters.same_for_ns:
@@ -157,6 +159,13 @@ class PeopleFuser:
     def _right_way_round(self, track: PersonTrack) -> PersonTrack:
         """Exchange the sides of a person whom most cameras have long read the other way."""
         return track.exchanged() if track.is_turned else track
+
+
+def compile_fusing() -> None:
+    """Compile what the first frame of a rig would wait for."""
+    nobody = np.zeros((2, 1, 3))
+    fuse_joints(nobody, np.ones((2, 1)), nobody)
+    mean_distance(np.zeros((20, 3)), np.zeros((20, 3)), AS_THEY_ARE)
 
 
 def person_message(fused: FusedPerson) -> Person:

@@ -6,8 +6,12 @@ import numpy as np
 
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.rig.joint_fusion import fuse_joints
+from inhand_tracker.rig.kernels.fuse import mean_distance
 from inhand_tracker.rig.parameters import RigParameters
 from inhand_tracker.rig.sightings import MIRRORED, Sighting
+
+AS_THEY_ARE = np.arange(20)
+"""The order (20,) of joints whose sides are not exchanged."""
 
 
 @dataclass(frozen=True)
@@ -50,9 +54,9 @@ class PersonTrack:
         """Return how far a sighting is from where this person should be, in metres: the mean
         distance of joints, whichever side is which; infinite where no joint is in both."""
         expected = self.expected(sighting.time_ns)
-        away = mean_distance(sighting.joints, expected)
+        away = mean_distance(sighting.joints, expected, AS_THEY_ARE)
         if away > self.parameters.swapped_m:
-            away = min(away, mean_distance(sighting.exchanged().joints, expected))
+            away = min(away, mean_distance(sighting.joints, expected, MIRRORED))
         if self.camera_ids.get(sighting.camera, sighting.camera_id) != sighting.camera_id:
             away += self.parameters.other_id_m
         return away
@@ -82,13 +86,14 @@ class PersonTrack:
     def _facing(self, sighting: Sighting) -> Sighting:
         """Exchange left and right where a camera takes the person's back for the front."""
         expected = self.expected(sighting.time_ns)
-        away = mean_distance(sighting.joints, expected)
+        away = mean_distance(sighting.joints, expected, AS_THEY_ARE)
         if not self.parameters.swapped_m < away < np.inf:
             return sighting
-        other = sighting.exchanged()
-        exchanged = mean_distance(other.joints, expected)
+        exchanged = mean_distance(sighting.joints, expected, MIRRORED)
         clearly = away - exchanged > self.parameters.swapped_m
-        return other if clearly and exchanged < self.parameters.swapped_ratio * away else sighting
+        if clearly and exchanged < self.parameters.swapped_ratio * away:
+            return sighting.exchanged()
+        return sighting
 
     def _note_turn(self, share: float, time_ns: int) -> None:
         """Note the share of cameras that have this person's sides the other way round."""
@@ -121,10 +126,3 @@ class PersonTrack:
             self.velocities = self.velocities + share * (went - self.velocities)
         self.joints = np.where(np.isfinite(joints), joints, self.joints)
         self.time_ns = time_ns
-
-
-def mean_distance(one: Array, other: Array) -> float:
-    """Return the mean distance, in metres, of joints (20, 3) that both have; infinite without."""
-    away = np.sqrt(np.square(one - other).sum(axis=1))
-    seen = np.asarray(np.isfinite(away))
-    return float(away[seen].mean()) if seen.any() else float("inf")

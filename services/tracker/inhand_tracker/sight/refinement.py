@@ -9,9 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inhand_tracker.geometry.arrays import Array, Flags
+from inhand_tracker.geometry.arrays import Array, Flags, Indices
 from inhand_tracker.geometry.image import MOST_VIEWS
-from inhand_tracker.geometry.kernels.pose_normals import inverses, squares_by_information
+from inhand_tracker.geometry.kernels.pose_normals import (
+    each_once,
+    inverses,
+    squares_by_information,
+)
 from inhand_tracker.geometry.placement import HERE
 from inhand_tracker.sight.depth_table import sensor_of
 from inhand_tracker.sight.kernels.gather import GatherSettings
@@ -131,13 +135,19 @@ class PoseRefiner:
         views: Sequence[PlacedView],
         prior: PosePrior | None,
         trust: float,
-    ) -> Moved:
+        near: tuple[float, float],
+    ) -> tuple[Moved, Indices]:
         """Move poses as ``refine`` does, by several views at once, each of which counts by
-        ``trust`` times its sharpness; raises ValueError for more than ``MOST_VIEWS``."""
+        ``trust`` times its sharpness; raises ValueError for more than ``MOST_VIEWS``.
+
+        Of poses that the first steps have brought within ``near``, in metres and radians, one goes
+        on. Also returns the indices (L,) of those that did.
+        """
         parameters, count = self._parameters, len(poses[0])
         moved = poses[0].astype(np.float64), poses[1].astype(np.float64)
         priors, reaches = self._priors(prior, count)
         information = np.zeros((count, 6, 6))
+        kept = np.arange(count)
         first, last = parameters.thin_steps, self._shares[-1]
         for outlines, shares, mixes in (
             (self._thin, self._shares[:first], False),
@@ -157,7 +167,12 @@ class PoseRefiner:
                 _views_of(views, settings),
                 information,
             )
-        return Moved(*moved, parameters.information_share * information)
+            if outlines is self._thin:
+                kept = np.flatnonzero(each_once(*moved, *near))
+                moved, reaches = (moved[0][kept], moved[1][kept]), reaches[kept]
+                priors = Priors(*(np.ascontiguousarray(one[kept]) for one in priors))
+                information = information[kept]
+        return Moved(*moved, parameters.information_share * information), kept
 
     def _thinness(self, outlines: Outlines) -> float:
         """How many points one of these outlines' stands for."""

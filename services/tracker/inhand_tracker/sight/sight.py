@@ -13,7 +13,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from inhand_tracker.geometry.arrays import Array, Singles
+from inhand_tracker.geometry.arrays import Array, Indices, Singles
 from inhand_tracker.geometry.camera import Intrinsics
 from inhand_tracker.geometry.image import Image
 from inhand_tracker.shape.contours import Contours, find_contours
@@ -184,15 +184,27 @@ class Sight:
         translations: Array,
         orientations: Array,
         views: Sequence[PlacedView],
-        prior: PosePrior | None = None,
-        trust: float = 1.0,
-    ) -> Refined:
-        """Move poses (K, 3) and (K, 4), as ``refine`` does, to where several views and the prior
-        agree best; each view counts by ``trust`` times its sharpness. The log-likelihoods are
-        those of the views' sum, by their sharpness."""
+        prior: PosePrior,
+        trust: float,
+        near: tuple[float, float],
+    ) -> tuple[Refined, Indices]:
+        """Move poses (K, 3) and (K, 4), as ``refine`` does, to where several views and each one's
+        prior agree best; each view counts by ``trust`` times its sharpness. The log-likelihoods
+        are those of the views' sum, by their sharpness.
+
+        Of poses that come within ``near`` of each other, in metres and radians, one is returned;
+        also the indices (L,) of those that are.
+        """
         poses = translations, orientations
-        moved = self._refiner.refine_together(poses, views, prior, trust)
-        return self._likelier(poses, moved, views, prior, trust)
+        moved, kept = self._refiner.refine_together(poses, views, prior, trust, near)
+        chosen = replace(
+            prior,
+            translation=prior.translation[kept],
+            rotation=prior.rotation[kept],
+            information=prior.information[kept],
+        )
+        starts = translations[kept], orientations[kept]
+        return self._likelier(starts, moved, views, chosen, trust), kept
 
     def _likelier(
         self,

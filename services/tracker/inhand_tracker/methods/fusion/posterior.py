@@ -27,7 +27,8 @@ class ImagePosterior:
     """One object's poses, judged by the views of one camera or several and by a belief.
 
     The images count by ``sharpness``, from 0 to 1, and each view by its own times that. Where the
-    search is ``thorough``, poses are near the truth before they are refined.
+    search is ``thorough``, poses are near the truth before they are refined. Several cameras show
+    the object as ``shown`` whole sharp images do.
     """
 
     sight: Sight
@@ -37,6 +38,13 @@ class ImagePosterior:
     sharpness: float
     parameters: FusionParameters
     thorough: bool = False
+    shown: float = 1.0
+
+    @property
+    def unconvincing(self) -> float:
+        """Log-likelihood below which the images do not support a pose: each that shows the object
+        should."""
+        return self.shown * self.parameters.unconvincing_log_likelihood
 
     def scores(
         self, centres: Array, orientations: Array, *, quickly: bool = False
@@ -96,7 +104,7 @@ class ImagePosterior:
         arms = self.sphere.arm(turns)
         information = inverses(np.array([part.covariance for part in parts]))
         of_origins = moved_information(information, arms)
-        refined = self._refine(
+        refined, kept = self._refine(
             self.sphere.origins(centres, orientations),
             orientations,
             PosePrior(
@@ -106,6 +114,7 @@ class ImagePosterior:
                 self._most_off(),
             ),
         )
+        nearest = nearest[kept]
         arms = self.sphere.arm(refined.rotations)
         seen = moved_information(refined.information, -arms)
         covariances = inverses(information[nearest] + seen)
@@ -114,12 +123,18 @@ class ImagePosterior:
         modes = list(map(PoseGaussian, means[0][chosen], means[1][chosen], covariances[chosen]))
         return modes, refined.log_likelihoods[chosen]
 
-    def _refine(self, origins: Array, orientations: Array, prior: PosePrior) -> Refined:
-        """Refine poses (S, 3) and (S, 4) of the object's origin."""
+    def _refine(
+        self, origins: Array, orientations: Array, prior: PosePrior
+    ) -> tuple[Refined, Indices]:
+        """Refine poses (S, 3) and (S, 4) of the object's origin; also the indices of those that
+        are left."""
         trust = self.parameters.refinement_temper * self.sharpness
-        if len(self.views) == 1 and self.views[0].view_from_reference is None:
-            return self.sight.refine(origins, orientations, self.views[0].view, prior, trust)
-        return self.sight.refine_together(origins, orientations, self.views, prior, trust)
+        poses, views = (origins, orientations), self.views
+        if len(views) == 1 and views[0].view_from_reference is None:
+            refined = self.sight.refine(*poses, views[0].view, prior, trust)
+            return refined, np.arange(len(origins))
+        near = self.parameters.same_mode_m, self.parameters.same_mode_rad
+        return self.sight.refine_together(*poses, views, prior, trust, near)
 
     def _each_once(self, centres: Array, orientations: Array) -> Indices:
         """Choose poses (S, 3), (S, 4) of which none is the same as one before."""

@@ -21,6 +21,7 @@ from inhand_tracker.methods.fusion.posterior import ImagePosterior
 from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.frame import Region, SightFrame, prepare
 from inhand_tracker.sight.kernels.spheres_region import spheres_region
+from inhand_tracker.sight.kernels.weigh import VISIBLE
 from inhand_tracker.sight.light import LightWatch
 from inhand_tracker.sight.sight import Sight
 from inhand_tracker.sight.support import Support
@@ -88,14 +89,7 @@ class ImageSearch:
             self.convinces = False
             return None
         sharpest = max(glance.sharpness for glance, _ in opened)
-        views = tuple(
-            PlacedView(
-                view,
-                glance.view_from_reference,
-                1.0 if glance.sharpness == sharpest else glance.sharpness / sharpest,
-            )
-            for glance, view in opened
-        )
+        views = tuple(glance.placed(view, sharpest) for glance, view in opened)
         posterior = ImagePosterior(self._sight, self._sphere, views, belief, sharpest, parameters)
         posterior, scores = self._compare_unseen(posterior, *hypotheses)
         self.tried = Hypotheses(*hypotheses, scores)
@@ -112,7 +106,7 @@ class ImageSearch:
         self._looks += 1
         colours = [self._eyes[name].colours for name in names]
         self._found = _Found(modes, posterior.views, colours, joints)
-        self.convinces = seen[best] >= parameters.unconvincing_log_likelihood
+        self.convinces = seen[best] >= posterior.unconvincing
         return weighed.moments()
 
     @property
@@ -200,7 +194,8 @@ class ImageSearch:
             trust = parameters.image_temper * sharpness
             views.append(replace(one, view=self._sight.compare_unseen(scores, one.view, trust)))
         posterior = replace(posterior, views=tuple(views))
-        return posterior, posterior.scores_by(weighed, centres, orientations)[0]
+        scores = posterior.scores_by(weighed, centres, orientations)[0]
+        return replace(posterior, shown=_shown(posterior, weighed, scores)), scores
 
     def _modes(
         self, posterior: ImagePosterior, tried: Hypotheses
@@ -311,6 +306,11 @@ class _Glance:
         place = self.view_from_reference
         return points if place is None else place.points(points)
 
+    def placed(self, view: SightView, sharpest: float) -> PlacedView:
+        """Place the view of this image, which counts as a share of the ``sharpest`` one."""
+        share = 1.0 if self.sharpness == sharpest else self.sharpness / sharpest
+        return PlacedView(view, self.view_from_reference, share)
+
 
 @dataclass
 class _Eye:
@@ -323,12 +323,22 @@ class _Eye:
     opened: bool = False
 
 
+def _shown(posterior: ImagePosterior, weighed: Sequence[Array], scores: Array) -> float:
+    """Number of whole sharp images that show the object as several cameras do, one at the least,
+    by the likeliest of poses that were ``weighed`` in each view, (P, 5)."""
+    if len(weighed) == 1:
+        return 1.0
+    best = int(np.argmax(scores))
+    each = zip(posterior.views, weighed, strict=True)
+    return max(1.0, float(sum(one.sharpness * seen[best, VISIBLE] for one, seen in each)))
+
+
 def _unconvincing(seen: Array, posterior: ImagePosterior) -> bool:
     """Whether sharp images support none of the poses that were found, by their log-likelihoods."""
     parameters = posterior.parameters
     return bool(
         posterior.sharpness >= parameters.least_narrowed_sharpness
-        and seen.max() < parameters.unconvincing_log_likelihood
+        and seen.max() < posterior.unconvincing
     )
 
 

@@ -1,0 +1,1 @@
+"""Compiled parts of joining what several cameras see: arrays in, arrays out."""

@@ -1,0 +1,131 @@
+"""One object in the images of several cameras: what each adds, and when."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from inhand_tracker.geometry.bounding_sphere import BoundingSphere
+from inhand_tracker.geometry.image import Image, OtherView
+from inhand_tracker.geometry.placement import HERE, Placement
+from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
+from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION
+from inhand_tracker.methods.fusion.search import ImageSearch, SideLook
+from inhand_tracker.methods.fusion.tracker import FusionTracker
+from people import FRAME_NS, held, quaternion_of, unseen_wave, wave_model
+from scipy.spatial.transform import Rotation
+from sights import CAMERA as BOX_CAMERA
+from sights import PLACE, TURN, appearance, draw, sight
+from wedges import FRAMES, images
+
+SPHERE = BoundingSphere(np.zeros(3), 0.15)
+OFF = np.array([0.02, 0.01, 0.06])
+"""Metres by which the box is believed elsewhere than it is."""
+FAR_AWAY = np.full((20, 3), 9.0)
+NOTHING = Image(None, BOX_CAMERA)
+
+
+def aside(degrees: float, middle: np.ndarray) -> Placement:
+    """view_from_reference of a camera that looks at a place from so far aside."""
+    turn = Rotation.from_euler("y", degrees, degrees=True)
+    return Placement(middle - turn.apply(middle), quaternion_of(turn))
+
+
+def shown(place: Placement, source: str) -> Image:
+    """The box, of which no depth is measured, as a camera elsewhere sees it."""
+    return replace(draw(*place.poses(PLACE, TURN), returns_depth=False), source=source)
+
+
+def off(first: Image, others: Sequence[SideLook], seeds: Sequence[int] = range(4)) -> np.ndarray:
+    """How far off, in metres, the box is by several searches, (S, 3)."""
+    part = PoseGaussian(PLACE + OFF, TURN, np.diag([0.05**2] * 3 + [0.1**2] * 3))
+    belief = PoseMixture((part,), np.ones(1))
+    eyes = sight(learned=appearance(returns_depth=False))
+    poses = [
+        ImageSearch(eyes, SPHERE, DEFAULT_FUSION, seed).look(
+            belief, first, FAR_AWAY, 1.0, 1.0, others
+        )
+        for seed in seeds
+    ]
+    return np.array([pose.centre - PLACE for pose in poses])
+
+
+FRONT = shown(HERE, "front")
+LEFT = SideLook(shown(aside(75.0, PLACE), "left"), aside(75.0, PLACE), 1.0)
+
+
+def test_two_cameras_without_depth_err_by_less_than_each_of_them() -> None:
+    front, left, both = off(FRONT, []), off(NOTHING, [LEFT]), off(FRONT, [LEFT])
+    errors = [np.linalg.norm(one, axis=1).mean() for one in (front, left, both)]
+    assert errors[2] < 0.6 * min(errors[:2])
+
+
+def test_another_cameras_image_is_enough_where_the_first_has_none() -> None:
+    across = off(NOTHING, [LEFT]) @ np.array([0.0, 1.0, 0.0])
+    assert np.abs(across).mean() < 0.3 * OFF[1]
+
+
+def test_each_camera_has_colours_of_its_own() -> None:
+    eyes = sight(learned=appearance(returns_depth=False))
+    search = ImageSearch(eyes, SPHERE, DEFAULT_FUSION, 1)
+    belief = PoseMixture((PoseGaussian(PLACE, TURN, np.eye(6) * 1e-4),), np.ones(1))
+    green = replace(LEFT.image, colour=LEFT.image.colour[..., [1, 0, 2]])
+    for _ in range(3 * DEFAULT_FUSION.looks_to_learn):
+        search.look(belief, FRONT, FAR_AWAY, 1.0, 1.0, [replace(LEFT, image=green, sharpness=0.1)])
+    front, left = (search._eyes[name].colours.of_object for name in ("front", "left"))
+    assert np.abs(front - eyes.start().of_object).sum() < np.abs(left - front).sum()
+
+
+def test_a_camera_that_sees_nothing_of_the_object_adds_nothing() -> None:
+    away = Placement(np.zeros(3), quaternion_of(Rotation.from_euler("y", np.pi)))
+    beside = OtherView(replace(images()[0], source="away"), away)
+    for others in ((), (beside,)):
+        one, given = FusionTracker(wave_model(), seed=1), []
+        for frame, joints in enumerate(unseen_wave(FRAMES)[:10]):
+            image = replace(images()[frame], others=others)
+            given.append(one.step(joints, (frame + 1) * FRAME_NS, image))
+        if not others:
+            alone = given
+    for first, second in zip(alone, given, strict=True):
+        np.testing.assert_array_equal(first.translation, second.translation)
+        np.testing.assert_array_equal(first.covariance, second.covariance)
+
+
+def looked_at(later_s: float, monkeypatch: pytest.MonkeyPatch) -> list[SideLook]:
+    """How another camera's images, captured at another time, are looked at while a wedge is
+    waved."""
+    seen: list[SideLook] = []
+    looked = ImageSearch.look
+
+    def look(search: ImageSearch, *given: object, thoroughly: bool) -> object:
+        seen.append(given[5][0])
+        return looked(search, *given, thoroughly=thoroughly)
+
+    one = FusionTracker(wave_model(), seed=1)
+    place = aside(70.0, np.array([0.0, 0.0, 2.5]))
+    with monkeypatch.context() as patched:
+        patched.setattr(ImageSearch, "look", look)
+        for frame, joints in enumerate(unseen_wave(FRAMES)):
+            blank = replace(images()[frame], source="aside", colour=None, depth=None)
+            others = (OtherView(blank, place, later_s),)
+            image = replace(images()[frame], others=others)
+            one.step(joints, (frame + 1) * FRAME_NS, image)
+    return seen
+
+
+@pytest.mark.parametrize("frames", [-1, 1])
+def test_what_was_captured_at_another_time_is_looked_at_where_the_object_was_then(
+    frames: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = aside(70.0, np.array([0.0, 0.0, 2.5]))
+    where, _ = held(unseen_wave(FRAMES), seed=7)
+    seen = looked_at(frames * FRAME_NS / 1e9, monkeypatch)
+    now = np.arange(2, FRAMES - 1)
+    then = place.points(where[now + frames])
+    aware = [seen[n].view_from_reference.points(where[n]) for n in now]
+    unaware = place.points(where[now])
+    off_aware, off_unaware = (np.linalg.norm(one - then, axis=1) for one in (aware, unaware))
+    assert off_aware.mean() < 0.5 * off_unaware.mean()
+    at_once = looked_at(0.0, monkeypatch)
+    sharper = [one.sharpness > other.sharpness for one, other in zip(at_once, seen, strict=True)]
+    assert np.mean(sharper[2:]) > 0.9
