@@ -105,7 +105,7 @@ def _summed(situation: str, seconds: float, told: Sequence[Mapping[str, int]]) -
     said: Counter[str] = Counter()
     for one in told:
         said.update(one)
-    return FalseOutcomes(situation, seconds / 3600.0, said)
+    return FalseOutcomes(situation, seconds / 3600.0, dict(said))
 
 
 def _idle(spell: _Spell) -> Counter[str]:
