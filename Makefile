@@ -8,13 +8,14 @@ unexport PYTHONDONTWRITEBYTECODE
 CONTRIB := .venv-contrib
 ON_ALL_CORES := --numprocesses auto --dist loadfile --no-loadscope-reorder
 
-.PHONY: help setup contrib demo demo-camera test test-fast lint format clean
+.PHONY: help setup contrib demo demo-camera test test-exhaustive test-fast lint format clean
 
 help:
 	@echo "make demo         from nothing to tracked, recorded object poses on this machine"
 	@echo "make demo-camera  the same as with a real camera: the person is found in the pictures"
-	@echo "make test         every test, as CI runs them"
+	@echo "make test         the tests, as CI runs them"
 	@echo "make test-fast    the tests without the long ones"
+	@echo "make test-exhaustive   checks of the lab's own measures, which CI leaves out"
 	@echo "make lint         ruff, mypy and the import rules"
 	@echo "make contrib      OpenCV's contrib build in $(CONTRIB), for inhand recognise --contrib"
 	@echo "make setup        all that development needs, in $(VENV)"
@@ -27,10 +28,13 @@ demo-camera: $(VENV)/pose.stamp
 	$(BIN)/inhand demo --camera-like
 
 test: setup
-	$(BIN)/pytest $(ON_ALL_CORES)
+	$(BIN)/pytest $(ON_ALL_CORES) -m "not exhaustive"
+
+test-exhaustive: setup
+	$(BIN)/pytest $(ON_ALL_CORES) -m exhaustive
 
 test-fast: setup
-	$(BIN)/pytest $(ON_ALL_CORES) -m "not long"
+	$(BIN)/pytest $(ON_ALL_CORES) -m "not long and not exhaustive"
 
 lint: setup
 	$(BIN)/ruff check .

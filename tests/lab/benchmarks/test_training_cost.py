@@ -8,7 +8,7 @@ from inhand_lab.benchmarks.training_cost import benchmark_training, training_ste
 from inhand.bench_tables import training_table
 
 
-@pytest.mark.long
+@pytest.mark.exhaustive
 def test_the_cost_of_training_is_measured_for_every_size() -> None:
     calls: Counter[str] = Counter()
     sizes = (720, 2160)

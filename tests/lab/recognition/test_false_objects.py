@@ -64,6 +64,7 @@ def test_without_images_skeletons_alone_are_looked_at(
     assert "with images" not in shown
 
 
+@pytest.mark.exhaustive
 def test_with_images_the_cascade_sees_idle_people_strangers_and_untaught_actions(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

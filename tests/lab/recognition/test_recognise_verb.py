@@ -1,12 +1,11 @@
 """``inhand recognise`` and what it stands on, on a small simulated world."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from inhand_lab.datasets.dataset import Dataset, DatasetError
+from inhand_lab.datasets.dataset import Dataset
 from inhand_lab.datasets.generation import GenerationSettings, generate
 from inhand_lab.datasets.recorded_frames import load_frames
 from inhand_lab.recognition.cascade_learning import learn_cascade
@@ -225,9 +224,3 @@ def test_a_recogniser_is_trained_by_a_command(people: Dataset, tmp_path: Path) -
     assert main([*command, "--without", "p04"]) == 0
     assert load_recogniser(path).actions == ACTIONS
     assert main([*command, "--without", "p04", "--object", "hammer"]) == 2
-
-
-def test_one_action_alone_cannot_be_recognised(people: Dataset, tmp_path: Path) -> None:
-    lifted = replace(people, entries=people.entries[:5])
-    with pytest.raises(DatasetError, match="1 action by 5 participants"):
-        learn_cascade(lifted, lifted.entries, images=False)

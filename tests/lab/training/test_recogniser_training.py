@@ -22,7 +22,7 @@ from msgspec import structs
 ACTIONS = ("drinkFromMug", "hammerNail")
 
 
-@pytest.mark.long
+@pytest.mark.exhaustive
 def test_recordings_without_an_object_teach_what_no_action_is(tmp_path: Path) -> None:
     """It alone trains a recogniser on labelled and unlabelled recordings."""
     settings = GenerationSettings((*ACTIONS, "sweepFloor"), 6, 5, 240, images=False)
