@@ -62,7 +62,7 @@ VERBS = {
 """Verbs whose module has ``add_arguments(parser)`` and ``run(arguments) -> int``."""
 
 
-WRITTEN_FILES = ("json", "output", "sheet", "picture")
+WRITTEN_FILES = ("json", "output", "sheet", "picture", "board")
 WRITTEN_FOLDERS = ("out", "report", "folder")
 """Names of the arguments that say where a verb writes."""
 

@@ -59,6 +59,7 @@ def test_no_argument_that_names_a_place_to_write_goes_unchecked(verb: str) -> No
             "keyframes",
             "objects",
         ),
+        *("check", "hosts", "real", "recordings"),
         *("start", "plain", "objects"),
         # --print writes nothing there, and what does has a line of its own (test_install).
         "root",

@@ -89,7 +89,7 @@ def test_requests_and_replies_are_plain_messagepack_maps() -> None:
 @pytest.mark.parametrize("procedure", PROCEDURES, ids=lambda one: one.verb)
 def test_nobody_replies_in_the_name_of_another(procedure: Procedure[Any, Any]) -> None:
     others = {"closed": True, "objects": (), "camera": "side", "sequence": 1, "time_ns": 1}
-    others["recording"] = {}
+    others |= {"recording": {}, "paused": True}
     reply = msgspec.convert({**others, procedure.named: "back"}, procedure.reply_type)
     assert procedure.reply(procedure.key(Site(), "back"), procedure.encode(reply)) == reply
     with pytest.raises(MessageError, match="in the name of 'back'"):

@@ -17,7 +17,8 @@ def head_pixels(simulation: Simulation, frame: int) -> NDArray[np.bool_]:
     scene = simulation._scene
     canvas = scene.room.copy()
     person, lens = scene.person(frame), scene.intrinsics
-    of_head = scene.person_surface.part[person.faces[:, 0]] == HEAD_PART
+    parts = np.concatenate([surface.part for surface, _ in scene.people])
+    of_head = parts[person.faces[:, 0]] == HEAD_PART
     placed = scene.object(frame)
     for faces, label in ((person.faces[~of_head], PERSON), (person.faces[of_head], HEAD)):
         draw_triangles(canvas, lens, person.corners, faces, person.shades, label)
