@@ -160,7 +160,7 @@ def _pass(source: socket.socket, sink: socket.socket, bytes_per_s: Callable[[], 
             time.sleep(len(data) / bytes_per_s())
             sink.sendall(data)
     for one in (source, sink):
-        with suppress(OSError):
+        with suppress(OSError), one:
             one.shutdown(socket.SHUT_RDWR)
 
 
