@@ -15,7 +15,7 @@ help:
 	@echo "make demo-camera  the same as with a real camera: the person is found in the pictures"
 	@echo "make test         the tests, as CI runs them"
 	@echo "make test-fast    the tests without the long ones"
-	@echo "make test-exhaustive   checks of the lab's own measures, which CI leaves out"
+	@echo "make test-exhaustive   long checks of measures and training, which CI leaves out"
 	@echo "make lint         ruff, mypy and the import rules"
 	@echo "make contrib      OpenCV's contrib build in $(CONTRIB), for inhand recognise --contrib"
 	@echo "make setup        all that development needs, in $(VENV)"

@@ -45,6 +45,7 @@ def copy(tmp_path: Path) -> Path:
 
 
 @pytest.mark.long
+@pytest.mark.exhaustive
 def test_frames_are_compared_with_a_checkouts_in_turns(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -115,6 +116,7 @@ def test_delays_are_measured_by_every_way_and_of_dora_or_it_is_said_to_be_absent
 
 
 @pytest.mark.long
+@pytest.mark.exhaustive
 def test_a_hub_is_measured_by_its_rigs_with_a_stuck_reader_and_beside_a_plain_router(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

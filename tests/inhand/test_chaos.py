@@ -57,6 +57,7 @@ def test_a_killed_recorder_loses_what_it_was_away_for_and_malformed_messages_are
 
 @pytest.mark.long
 @pytest.mark.usefixtures("_few_people")
+@pytest.mark.exhaustive
 def test_a_soak_says_of_each_process_how_it_grew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -69,6 +69,7 @@ def retracked_with_a_kill(rig: RunningRig, cluster: DaskCluster, here: Path) -> 
         assert path.read_bytes() == (rig.folder / "tracked_here" / path.name).read_bytes()
 
 
+@pytest.mark.exhaustive
 def test_a_dataset_is_simulated_retracked_and_evaluated_as_it_is_here_though_workers_are_killed(
     rig: RunningRig, tmp_path: Path
 ) -> None:

@@ -32,6 +32,7 @@ def test_other_values_of_parameters_stand_beside_the_whole(
     assert "image_temper=0.8 (instead 0.1)" in " ".join(capsys.readouterr().out.split())
 
 
+@pytest.mark.exhaustive
 def test_every_part_is_taken_out_once_and_the_table_shows_what_that_costs(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -17,6 +17,7 @@ YCB = DATA / "ycb-video"
 
 @needs_real_data
 @pytest.mark.long
+@pytest.mark.exhaustive
 def test_real_objects_are_found_to_millimetres_and_the_truth_ranks_high() -> None:
     checks = check_likelihood(YCB, replace(DEFAULT_LIKELIHOOD_CHECK, starts=6, scattered=3000))
     assert {check.shape for check in checks} == {"box", "cup"}

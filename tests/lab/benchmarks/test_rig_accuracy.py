@@ -9,6 +9,7 @@ FEW = RigCheckParameters(frames=16, people=2, learned_frames=60, looks=8)
 
 
 @pytest.mark.long
+@pytest.mark.exhaustive
 def test_a_rig_s_error_stands_beside_each_camera_s_and_one_camera_fails() -> None:
     """Only here are a simulated rig's frames tracked by its cameras, alone and together."""
     done: list[None] = []

@@ -231,6 +231,7 @@ def test_the_table_goes_to_machines_too(
 
 @pytest.mark.long
 @needs_real_data
+@pytest.mark.exhaustive
 def test_what_is_known_of_real_sensors_is_within_a_factor() -> None:
     fewer = replace(DEFAULT_REALISM, resamples=12)
     compared = compare_sensors(DATA / "utd-mhad", seed=0, parameters=fewer)

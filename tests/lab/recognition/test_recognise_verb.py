@@ -122,6 +122,7 @@ def test_a_recogniser_of_a_release_without_arms_loads_and_does_without_them(
     np.testing.assert_array_equal(again.movements.limits, recogniser.movements.limits)
 
 
+@pytest.mark.exhaustive
 def test_recognition_is_measured_on_the_people_of_another_dataset(
     people: Dataset, tmp_path: Path
 ) -> None:
@@ -174,6 +175,7 @@ def test_the_tracker_s_settings_name_a_recogniser_and_all_its_models(
         load_watcher("x", settings.model_copy(update={"models": tuple(files[:1])}))
 
 
+@pytest.mark.exhaustive
 def test_the_command_measures_both_cascades(people: Dataset, tmp_path: Path) -> None:
     file = tmp_path / "result.json"
     arguments = ["recognise", str(people.folder), "--unseen", "p04", "--json", str(file)]
@@ -191,6 +193,7 @@ def test_the_command_measures_both_cascades(people: Dataset, tmp_path: Path) -> 
     assert "cascade-2012, 0.85,1,1.15" in report
 
 
+@pytest.mark.exhaustive
 def test_recognition_alone_leaves_every_person_out(people: Dataset, tmp_path: Path) -> None:
     file, report = tmp_path / "result.json", tmp_path / "report"
     arguments = ["recognise", str(people.folder), "--alone", "--json", str(file)]

@@ -30,6 +30,7 @@ def own_supports(presence: Presence) -> np.ndarray:
 
 @pytest.mark.long
 @pytest.mark.timeout(900)
+@pytest.mark.exhaustive
 def test_objects_are_seen_better_where_they_are(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
