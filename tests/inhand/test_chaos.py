@@ -36,6 +36,7 @@ def test_a_flood_of_no_messages_is_refused(rig: RunningRig, messages: str) -> No
 
 @pytest.mark.long
 @pytest.mark.usefixtures("_few_people")
+@pytest.mark.exhaustive
 def test_a_killed_recorder_loses_what_it_was_away_for_and_malformed_messages_are_counted(
     tmp_path: Path,
 ) -> None:
