@@ -13,15 +13,8 @@ from inhand_runtime.wording import printable
 from inhand_schemas.keys import Site
 from inhand_schemas.procedures import SHUTTER, ShutterReply, ShutterRequest
 
-from inhand.looking import (
-    UNREACHED,
-    add_looking_arguments,
-    expected_instances,
-    nothing_heard,
-    open_look,
-)
-
-SECONDS = 3.0
+from inhand.asking import SECONDS, ask_instances
+from inhand.looking import UNREACHED, add_looking_arguments, expected_instances
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -37,20 +30,11 @@ def run(arguments: argparse.Namespace) -> int:
     closed: bool = arguments.move == "close"
     expected = expected_instances("capture", rig_file.capture, arguments.camera)
     request = ShutterRequest(closed=closed, camera=arguments.camera)
-
-    def complete(replies: list[ShutterReply]) -> bool:
-        answered = {reply.camera for reply in replies}
-        return bool(expected) and answered.issuperset(expected)
-
-    with open_look(arguments.config) as look:
-        answers = look.ask(SHUTTER, request, complete, arguments.seconds)
-        replies = {reply.camera: reply for reply in answers}
-        if not replies and not expected:
-            raise nothing_heard(look.site, arguments.seconds)
+    site, replies = ask_instances(SHUTTER, request, expected, arguments.config, arguments.seconds)
     problems = _report(replies)
     for camera in expected:
         if camera not in replies:
-            problems.append(_unreached(look.site, camera, closed=closed))
+            problems.append(_unreached(site, camera, closed=closed))
     for line in problems:
         print(f"WRONG: {line}")
     return FAILED if problems else DONE
