@@ -13,6 +13,7 @@ from inhand_outcomes.false_starts import without_false_starts
 from inhand_outcomes.hands import HANDS, hand_distances
 from inhand_outcomes.left_behind import left_behind
 from inhand_outcomes.normal import normal_share
+from inhand_outcomes.stillness import frames_apart, runs_of
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -98,7 +99,7 @@ def handling(
     At the end of a track that ``ended`` in somebody's hands, it was left in use: they went out of
     view with it.
     """
-    steps = _steps(track.times, parameters.step_s)
+    steps = frames_apart(track.times, parameters.step_s)
     looked = track[steps]
     if not looked.seen.any():
         return []
@@ -116,12 +117,6 @@ def handling(
     if ended and stretches and stretches[-1].state == HELD:
         achievements.append(_left(looked, stretches[-1], parameters))
     return achievements
-
-
-def _steps(times: Array, step_s: float) -> Flags:
-    """Frames (T,) that are a step apart."""
-    numbers = np.floor(times / step_s)
-    return np.concatenate([[True], np.diff(numbers) > 0])
 
 
 def _states(track: Track, thing: Thing, parameters: HandlingParameters) -> Array:
@@ -171,8 +166,7 @@ def _stays(track: Track, parameters: HandlingParameters) -> list[slice]:
         wander = np.linalg.norm(places - np.median(places, axis=0), axis=1)
         if wander.max() < parameters.still_m:
             still[there] = True
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
-    return [slice(int(first), int(end)) for first, end in edges.reshape(-1, 2)]
+    return runs_of(still)
 
 
 def _used(track: Track, stretches: list[Stretch], parameters: HandlingParameters) -> list[Stretch]:

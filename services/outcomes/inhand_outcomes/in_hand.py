@@ -9,6 +9,7 @@ from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.arrays import Array
 from inhand_outcomes.hands import hand_distances
 from inhand_outcomes.normal import normal_share
+from inhand_outcomes.stillness import frames_apart
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -54,8 +55,7 @@ def _judged(
     first, end = np.searchsorted(track.times, [achievement.start_s, achievement.end_s + 1e-6])
     frames = np.arange(first, end)
     if len(frames) > 1:
-        steps = np.floor(track.times[frames] / parameters.step_s)
-        frames = frames[np.concatenate([[True], np.diff(steps) > 0])]
+        frames = frames[frames_apart(track.times[frames], parameters.step_s)]
     frames = frames[track.seen[frames]]
     looked = np.zeros(len(track), bool)
     looked[frames] = True

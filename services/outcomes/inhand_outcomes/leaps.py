@@ -10,7 +10,7 @@ import numpy as np
 
 from inhand_outcomes.arrays import Array, Flags
 from inhand_outcomes.hands import hand_distances
-from inhand_outcomes.stillness import still_frames
+from inhand_outcomes.stillness import frames_apart, still_frames
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -50,14 +50,11 @@ def without_leaps(track: Track, thing: Thing, parameters: LeapParameters = DEFAU
     That ends when the thing is there again, when a hand comes to where it lies, and when it lies
     elsewhere: then it was never where it seemed to lie. Where no hand is known nothing is a leap.
     """
-    steps = np.floor(track.times / parameters.step_s)
-    numbers = np.flatnonzero(np.concatenate([[True], np.diff(steps) > 0]))
-    looked = track[np.isin(np.arange(len(track)), numbers)]
-    false = _leaps(looked, thing, parameters)
+    looked = frames_apart(track.times, parameters.step_s)
+    false = _leaps(track[looked], thing, parameters)
     if not false.any():
         return track
-    of_frame = np.searchsorted(numbers, np.arange(len(track)), side="right") - 1
-    return replace(track, seen=track.seen & ~false[of_frame])
+    return replace(track, seen=track.seen & ~false[np.cumsum(looked) - 1])
 
 
 def _leaps(track: Track, thing: Thing, parameters: LeapParameters) -> Flags:

@@ -12,7 +12,7 @@ import numpy as np
 
 from inhand_outcomes.arrays import Array, Flags
 from inhand_outcomes.hands import HANDS, hand_distances
-from inhand_outcomes.stillness import still_frames
+from inhand_outcomes.stillness import runs_of, still_frames
 from inhand_outcomes.thing import Thing
 from inhand_outcomes.track import Track
 
@@ -64,19 +64,13 @@ def left_behind(
     hands = hand_distances(track, thing)
     with np.errstate(invalid="ignore"):
         held = track.seen & (hands < parameters.near_m).any(axis=1)
-    rests = (
-        held
-        & trusted
-        & ~worn
-        & still_frames(track, parameters.rest_s, parameters.wander_m, parameters.least_seen)
-    )
+    rests = held & trusted & ~worn & _still(track, parameters.rest_s, parameters)
     poses, covariances = track.poses.copy(), track.covariances.copy()
     lies = np.zeros(len(track), bool)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], rests.astype(int), [0]])))
-    runs: list[list[int]] = edges.reshape(-1, 2).tolist()
-    for number, (first, beyond) in enumerate(runs):
-        until = runs[number + 1][0] if number + 1 < len(runs) else len(track)
-        last = beyond - 1
+    runs = runs_of(rests)
+    for number, run in enumerate(runs):
+        until = runs[number + 1].start if number + 1 < len(runs) else len(track)
+        first, beyond, last = run.start, run.stop, run.stop - 1
         there, covariance = _rested(track, first, last, parameters)
         near = np.linalg.norm(track.positions - there[:3], axis=1) < parameters.leap_m
         # A pose may follow the hand that leaves for a moment; what was taken along goes on.

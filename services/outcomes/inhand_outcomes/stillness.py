@@ -1,9 +1,20 @@
-"""Whether a thing stays where it is."""
+"""Frames that are looked at, and whether a thing stays where it is in them."""
 
 import numpy as np
 
-from inhand_outcomes.arrays import Flags
+from inhand_outcomes.arrays import Array, Flags
 from inhand_outcomes.track import Track
+
+
+def frames_apart(times: Array, step_s: float) -> Flags:
+    """Frames (T,) that are a step apart, of rising times (T,)."""
+    return np.concatenate([[True], np.diff(np.floor(times / step_s)) > 0])
+
+
+def runs_of(flags: Flags) -> list[slice]:
+    """The stretches of frames (T,) in which a flag is set."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
+    return [slice(int(first), int(end)) for first, end in edges.reshape(-1, 2)]
 
 
 def still_frames(track: Track, seconds: float, wander_m: float, least_seen: float) -> Flags:
