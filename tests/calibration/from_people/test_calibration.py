@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from inhand_calibration.errors import CalibrationError
 from inhand_calibration.from_people.calibration import PosePrior, calibrate_from_people
-from inhand_calibration.from_people.estimate import pose_of
 from inhand_calibration.from_people.parameters import DEFAULT_PEOPLE_CALIBRATION
+from inhand_calibration.rigid import rigid, to_pose
 from inhand_runtime.rig_calibration import read_rig_calibration, write_rig_calibration
 from inhand_schemas.joints import MIRRORED_JOINTS, Joint
 from wanderers import (
@@ -145,7 +145,7 @@ def test_cameras_of_trackers_that_see_the_skin_are_not_brought_together() -> Non
 def test_a_prior_holds_what_people_show_less_well() -> None:
     walk = true_movement(14)
     truth = FRONT.world_from_camera.inverse() @ LEFT.world_from_camera
-    board = PosePrior(pose_of(truth.rotation, truth.translation), 1e-8 * np.eye(6))
+    board = PosePrior(to_pose(rigid(truth.rotation, truth.translation)), 1e-8 * np.eye(6))
     cameras = [watch(FRONT, walk), watch(LEFT, walk)]
     found = calibrate_from_people(cameras, "front", priors={"left": board})
     errors = errors_of(found, FRONT, LEFT)

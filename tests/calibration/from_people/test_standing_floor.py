@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from inhand_calibration.floor import Floor
 from inhand_calibration.from_people.calibration import calibrate_from_people
 from inhand_calibration.from_people.rig_frame import floor_frame
-from inhand_calibration.from_people.standing_floor import StandingFloor
 from inhand_schemas.joints import Joint
 from wanderers import FRONT, LEFT, transform_of, true_movement, watch, with_joints
 
@@ -49,7 +49,7 @@ def test_without_feet_the_frame_is_the_reference_cameras() -> None:
 
 
 def test_x_follows_the_image_of_a_camera_that_looks_down() -> None:
-    floor = StandingFloor(np.array([0.0, 0.0, -1.0]), -2.4, 0.01, 0.01)
+    floor = Floor(np.array([0.0, 0.0, -1.0]), -2.4, 0.01, 0.01)
     rig = floor_frame(floor)
     np.testing.assert_allclose(rig.rotation @ [0.0, -1.0, 0.0], [1.0, 0.0, 0.0], atol=1e-12)
     np.testing.assert_allclose(rig.apply(np.zeros(3)), [0.0, 0.0, 2.4], atol=1e-12)

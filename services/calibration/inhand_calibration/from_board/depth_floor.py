@@ -8,6 +8,7 @@ from inhand_schemas.messages import CameraInfo
 from numpy.typing import NDArray
 
 from inhand_calibration.arrays import Array
+from inhand_calibration.floor import Floor
 from inhand_calibration.rigid import moved
 
 
@@ -44,16 +45,6 @@ class DepthFloorParameters:
 DEFAULT_DEPTH_FLOOR = DepthFloorParameters()
 
 
-@dataclass(frozen=True)
-class DepthFloor:
-    """The plane ``up @ p == height`` in the reference's frame, with deviations."""
-
-    up: Array
-    height: float
-    tilt_deviation: float
-    height_deviation: float
-
-
 def depth_points(
     depth: NDArray[np.uint16],
     info: CameraInfo,
@@ -77,7 +68,7 @@ def find_depth_floor(
     points: Sequence[Array],
     reference_from_camera: Array,
     parameters: DepthFloorParameters = DEFAULT_DEPTH_FLOOR,
-) -> DepthFloor | None:
+) -> Floor | None:
     """Find the floor in points (N, 3) of each camera at its pose (C, 4, 4); None where none is."""
     joined = [moved(pose, own) for own, pose in zip(points, reference_from_camera, strict=True)]
     places = np.concatenate(joined)
@@ -107,7 +98,7 @@ def find_depth_floor(
     on, beneath = np.abs(heights) < 3.0 * noise, heights < -4.0 * noise - 0.05
     if on.mean() < parameters.least or beneath.mean() > parameters.beneath:
         return None
-    return DepthFloor(up, height, parameters.tilt_rad, parameters.height_m)
+    return Floor(up, height, parameters.tilt_rad, parameters.height_m)
 
 
 def _tried(

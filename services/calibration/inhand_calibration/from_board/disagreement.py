@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 from inhand_runtime.rig_calibration import RigCalibration
 
+from inhand_calibration.culprits import culprits
 from inhand_calibration.errors import CalibrationError
 from inhand_calibration.from_board.rig import solve_rig
 from inhand_calibration.from_board.sights import CameraSights
@@ -63,9 +64,7 @@ def find_board_disagreement(
 
 def bumped(pairs: Sequence[BoardDisagreement]) -> tuple[str, ...]:
     """Return the cameras that disagree with every other, where others agree."""
-    agreeing = {name for pair in pairs if not pair.moved for name in (pair.first, pair.second)}
-    moved = {name for pair in pairs if pair.moved for name in (pair.first, pair.second)}
-    return tuple(sorted(moved - agreeing)) if agreeing else ()
+    return tuple(sorted(culprits((pair.first, pair.second, pair.moved) for pair in pairs)))
 
 
 def _compared(

@@ -7,7 +7,8 @@ import numpy as np
 
 from inhand_calibration.arrays import Array
 from inhand_calibration.errors import CalibrationError
-from inhand_calibration.from_board.depth_floor import DepthFloor, find_depth_floor
+from inhand_calibration.floor import frame_on
+from inhand_calibration.from_board.depth_floor import find_depth_floor
 from inhand_calibration.from_board.moments import DEFAULT_MOMENTS
 from inhand_calibration.from_board.rig import RigSolution
 from inhand_calibration.rigid import inverse, moved, rigid
@@ -16,8 +17,6 @@ BOARD = "board"
 """Origin that is the board, where it stood still at last."""
 BELOW_FLOOR_M = 0.05
 """How far below the floor the board may seem to have been."""
-LEAST_LEVEL = 0.2
-"""Share of the way that a camera looks that must be level for x to follow it."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ def choose_frame(
         words = f"axes as {name}'s (x right, y down, z forward), origin in it: no floor was seen"
         return RigFrame(np.eye(4), words, False)
     words = f"z up, x the way {name} looks, origin on the floor below {name}"
-    return RigFrame(_of_floor(floor), words, True)
+    return RigFrame(frame_on(floor, np.zeros(3)), words, True)
 
 
 def _of_board(solution: RigSolution) -> Array:
@@ -95,13 +94,3 @@ def _require_lowest(solution: RigSolution, rig_from_reference: Array) -> None:
             "it stand still at last, so that it did not lie on the floor there: lay it face up "
             "where two cameras see it, at last"
         )
-
-
-def _of_floor(floor: DepthFloor) -> Array:
-    forward, image_up = np.array([0.0, 0.0, 1.0]), np.array([0.0, -1.0, 0.0])
-    level = forward - (forward @ floor.up) * floor.up
-    if np.linalg.norm(level) < LEAST_LEVEL:
-        level = image_up - (image_up @ floor.up) * floor.up
-    x = level / np.linalg.norm(level)
-    rotation = np.stack([x, np.cross(floor.up, x), floor.up])
-    return rigid(rotation, -rotation @ (floor.height * floor.up))

@@ -16,8 +16,9 @@ from inhand_schemas.messages import Pose
 
 from inhand_calibration.arrays import Array, Flags
 from inhand_calibration.errors import CalibrationError
+from inhand_calibration.floor import Floor
 from inhand_calibration.from_people.chain import chain_of_pairs
-from inhand_calibration.from_people.estimate import CameraEstimate, estimate_of, pose_of
+from inhand_calibration.from_people.estimate import CameraEstimate, estimate_of
 from inhand_calibration.from_people.parameters import (
     DEFAULT_PEOPLE_CALIBRATION,
     AcceptanceParameters,
@@ -27,8 +28,9 @@ from inhand_calibration.from_people.parameters import (
 from inhand_calibration.from_people.refinement import EstimatePrior, Refined, refine
 from inhand_calibration.from_people.rig_frame import floor_frame, frame_in_words
 from inhand_calibration.from_people.skeletons import CameraSkeletons
-from inhand_calibration.from_people.standing_floor import StandingFloor, find_standing_floor
+from inhand_calibration.from_people.standing_floor import find_standing_floor
 from inhand_calibration.from_people.tracks import Track, find_tracks
+from inhand_calibration.rigid import rigid, to_pose
 
 _OFFSET, _DRIFT = 6, 7
 
@@ -82,7 +84,7 @@ class PeopleCalibration:
 
     reference: str
     cameras: Mapping[str, PeopleCalibratedCamera]
-    floor: StandingFloor | None
+    floor: Floor | None
     warnings: tuple[str, ...]
     frame: str
     made_at_ns: int
@@ -228,7 +230,7 @@ def _calibrated(
     begin = int(cameras[0].times_ns[0]) - int(cameras[camera].times_ns[0])
     distances, counts, scales = _shared(camera, refined)
     return PeopleCalibratedCamera(
-        pose_of(rig.rotation @ estimate.rotation, rig.apply(estimate.translation)),
+        to_pose(rigid(rig.rotation @ estimate.rotation, rig.apply(estimate.translation))),
         turn @ covariance[:6, :6] @ turn.T,
         begin + round(1e9 * estimate.offset),
         round(1e9 * clock_deviation),
@@ -273,7 +275,7 @@ def _sizes(joints: Array, known: Flags) -> Array:
 
 def _warnings(
     cameras: Mapping[str, PeopleCalibratedCamera],
-    floor: StandingFloor | None,
+    floor: Floor | None,
     acceptance: AcceptanceParameters,
 ) -> tuple[str, ...]:
     """Sentences on sizes that differ, and on a floor that was not seen."""

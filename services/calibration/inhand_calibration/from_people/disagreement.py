@@ -13,6 +13,7 @@ import numpy as np
 from inhand_runtime.rig_calibration import CameraCalibration, RigCalibration
 
 from inhand_calibration.arrays import Array
+from inhand_calibration.culprits import culprits
 from inhand_calibration.from_people.agreement import Agreement
 from inhand_calibration.from_people.estimate import CameraEstimate, estimate_of, still
 from inhand_calibration.from_people.pair import find_pair
@@ -24,6 +25,7 @@ from inhand_calibration.from_people.parameters import (
 from inhand_calibration.from_people.refinement import Refined, refine
 from inhand_calibration.from_people.skeletons import CameraSkeletons
 from inhand_calibration.from_people.tracks import Track, find_tracks
+from inhand_calibration.rigid import cross_matrices
 
 _OFFSET = 6
 
@@ -101,28 +103,20 @@ def find_disagreement(
         compared = _compared(both, calibrated, (tracks[first], tracks[second]), parameters)
         if compared is not None:
             pairs.append(compared)
-    names = [one.name for one in known]
+    moved = culprits((pair.first, pair.second, pair.moved) for pair in pairs)
+    changed = culprits(
+        (pair.first, pair.second, pair.clock_changed) for pair in pairs if pair.clock_s is not None
+    )
     return Disagreement(
         tuple(pairs),
-        _culprits(names, [(p.first, p.second, p.moved) for p in pairs]),
-        _culprits(
-            names, [(p.first, p.second, p.clock_changed) for p in pairs if p.clock_s is not None]
-        ),
+        tuple(one.name for one in known if one.name in moved),
+        tuple(one.name for one in known if one.name in changed),
     )
 
 
 def _blamed(pair: PairDisagreement, culprits: Sequence[str], both: str, what: str) -> str:
     one = [name for name in (pair.first, pair.second) if name in culprits]
     return f"{one[0]} {what}" if one else f"one of {both} {what}"
-
-
-def _culprits(names: Sequence[str], pairs: Sequence[tuple[str, str, bool]]) -> tuple[str, ...]:
-    """The cameras that disagree with every other, where two others agree."""
-    agreeing = {name for *both, off in pairs if not off for name in both}
-    if not agreeing:
-        return ()
-    disagreeing = {name for *both, off in pairs if off for name in both}
-    return tuple(name for name in names if name in disagreeing - agreeing)
 
 
 def _compared(
@@ -189,8 +183,7 @@ def _judged(
     now, covariance = refined.estimates[1], refined.covariance_of(1)
     place = _place_of_people(refined.agreements[0, 1])
     arm = now.rotation @ place
-    lever = np.array([[0.0, arm[2], -arm[1]], [-arm[2], 0.0, arm[0]], [arm[1], -arm[0], 0.0]])
-    by_pose = np.hstack([np.eye(3), lever])
+    by_pose = np.hstack([np.eye(3), -cross_matrices(arm)])
     before_place = _norm_of([value for one in calibrated for value in one.translation_deviation])
     before_turn = _norm_of([value for one in calibrated for value in one.rotation_deviation])
     spread = float(np.linalg.eigvalsh(by_pose @ covariance[:6, :6] @ by_pose.T)[-1])

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from inhand_schemas.messages import Pose
-from scipy.spatial.transform import Rotation
 
 from inhand_calibration.arrays import Array
+from inhand_calibration.rigid import angle, of_pose
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class CameraEstimate:
 
     def angle_to(self, other: "CameraEstimate") -> float:
         """Return the angle between two rotations, radians."""
-        return float(Rotation.from_matrix(self.rotation.T @ other.rotation).magnitude())
+        return angle(self.rotation.T @ other.rotation)
 
 
 def still() -> CameraEstimate:
@@ -66,14 +66,5 @@ def still() -> CameraEstimate:
 
 def estimate_of(pose: Pose) -> CameraEstimate:
     """Return the estimate of a camera at a pose in the reference's frame."""
-    rotation = Rotation.from_quat(pose.rotation, scalar_first=True).as_matrix()
-    return CameraEstimate(rotation, np.array(pose.translation))
-
-
-def pose_of(rotation: Array, translation: Array) -> Pose:
-    """Return the pose of a rotation (3, 3) and a translation (3,)."""
-    w, x, y, z = Rotation.from_matrix(rotation).as_quat(canonical=True, scalar_first=True)
-    along_x, along_y, along_z = translation
-    return Pose(
-        (float(along_x), float(along_y), float(along_z)), (float(w), float(x), float(y), float(z))
-    )
+    transform = of_pose(pose)
+    return CameraEstimate(transform[:3, :3], transform[:3, 3])

@@ -11,6 +11,7 @@ import numpy as np
 from inhand_schemas.joints import Joint
 
 from inhand_calibration.arrays import Array, Indices
+from inhand_calibration.floor import Floor
 from inhand_calibration.from_people.estimate import CameraEstimate
 from inhand_calibration.from_people.parameters import FloorParameters
 from inhand_calibration.from_people.tracks import Track
@@ -18,20 +19,6 @@ from inhand_calibration.from_people.tracks import Track
 _ANKLES = (Joint.ANKLE_LEFT, Joint.ANKLE_RIGHT)
 _BODY = (*_ANKLES, Joint.SHOULDER_CENTER, Joint.HEAD)
 _ITERATIONS = 10
-
-
-@dataclass(frozen=True)
-class StandingFloor:
-    """The plane {x: up · x = height} in the reference camera's frame, with deviations.
-
-    ``tilt_deviation`` is that of up, radians, and ``height_deviation`` that of the floor's height
-    below the people, metres.
-    """
-
-    up: Array
-    height: float
-    tilt_deviation: float
-    height_deviation: float
 
 
 @dataclass(frozen=True)
@@ -48,7 +35,7 @@ def find_standing_floor(
     tracks: Sequence[Sequence[Track]],
     estimates: Sequence[CameraEstimate],
     parameters: FloorParameters,
-) -> StandingFloor | None:
+) -> Floor | None:
     """Find the floor from all cameras' movements; None where too few feet rested in view."""
     seen = [_of_camera(own, estimate) for own, estimate in zip(tracks, estimates, strict=True)]
     walkers = _Walkers(
@@ -66,7 +53,7 @@ def find_standing_floor(
     tall = np.median((walkers.heads - walkers.ankles.min(axis=1)) @ up)
     height = float(_robust_height(places @ up, parameters) - parameters.ankle_share * tall)
     tilt = float(np.sqrt(np.linalg.inv(information).trace() / 2.0))
-    return StandingFloor(
+    return Floor(
         up,
         height,
         float(np.hypot(tilt, parameters.surest_rad)),
