@@ -1,8 +1,9 @@
 """What a live tracker sees of several cameras: their messages, joined moment by moment."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 from inhand_runtime.camera_infos import InfoWatch
 from inhand_runtime.daemon import Daemon
@@ -156,17 +157,16 @@ class RigCameras(Cameras):
 
     def _arrange(self) -> None:
         """Let frames be joined of all cameras whose places are known, in the order of the rig."""
-        if self._frames is None:
-            self._frames = RigFrames(self._known())
-        for camera, place in self._known().items():
-            self._frames.place(camera, place)
-
-    def _known(self) -> Mapping[str, Placement]:
-        return {
+        known = {
             camera: Placement(np.array(place.translation), np.array(place.rotation))
             for camera in self._cameras
             if (place := self._places.get(camera)) is not None
         }
+        if self._frames is None:
+            self._frames = RigFrames(known)
+            return
+        for camera, placement in known.items():
+            self._frames.place(camera, placement)
 
     def _join(self, captured: Captures, *, images: bool) -> RigFrame | None:
         """Join what cameras captured; None where no place of theirs is known."""
@@ -213,13 +213,7 @@ class RigCameras(Cameras):
 
 def _by_rig_clock(captured: Captured[Skeletons, RgbdFrame]) -> Skeletons:
     """Return a capture's skeletons with their time by the rig's clock."""
-    skeletons = captured.skeleton
-    return Skeletons(
-        sequence=skeletons.sequence,
-        time_ns=max(captured.time_ns, 0),
-        people=skeletons.people,
-        convention=skeletons.convention,
-    )
+    return msgspec.structs.replace(captured.skeleton, time_ns=max(captured.time_ns, 0))
 
 
 def _people(frame: RigFrame) -> list[Person]:
