@@ -31,7 +31,7 @@ from inhand_schemas.topics import (
     AnyTopic,
 )
 from running_rig import eventually
-from wire import Wire
+from wire import Wire, lingering_s
 
 pytestmark = pytest.mark.long
 
@@ -77,6 +77,13 @@ def test_a_stream_reaches_the_roles_that_read_it_and_no_wildcard_of_another(
     eventually(f"{topic.stream} at {readers}", came)
     assert {one for one in others if heard[one]} == readers
     assert not any(eavesdropped[one][0] for one in set(others) - readers)
+
+
+def test_a_member_s_link_is_closed_without_waiting_for_what_the_hub_has_not_taken(
+    wires: dict[str, Wire],
+) -> None:
+    assert len(lingering_s()) >= len(wires)
+    eventually("all close at once", lambda: not any(lingering_s()))
 
 
 @pytest.mark.parametrize("attacker", list(PERMITTED))

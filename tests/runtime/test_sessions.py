@@ -24,7 +24,7 @@ from inhand_schemas.messages import (
 from inhand_schemas.topics import EVENT, INFO, POSE, RGBD, SKELETONS, AnyTopic
 from msgspec.structs import replace
 from running_rig import Process, RunningRig, eventually
-from wire import Wire
+from wire import Wire, lingering_s
 
 PEER = Path(__file__).with_name("peer.py")
 OPENS_WITHIN_S = 5.0
@@ -150,6 +150,15 @@ def test_a_key_that_somebody_deletes_is_no_message(wire: Wire, rig: RunningRig) 
         publisher.put(Skeletons(sequence=7, time_ns=1))
         eventually("the message", lambda: heard)
         assert [SKELETONS.decode(one.payload).sequence for one in heard] == [7]
+
+
+def test_links_are_closed_without_waiting_for_what_their_other_end_has_not_taken(
+    wire: Wire, rig: RunningRig
+) -> None:
+    with Wire.at(rig.meeting) as other:
+        eventually("the other session", lambda: other.knows(1))
+        assert len(lingering_s()) >= 2
+        eventually("all close at once", lambda: not any(lingering_s()))
 
 
 READER = """

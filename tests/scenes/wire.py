@@ -1,10 +1,14 @@
 """The test's own ear and mouth on a rig's keys."""
 
 import contextlib
+import os
+import socket
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Self, TypeVar
 
+import psutil
 import zenoh
 from inhand_runtime.inbox import Received
 from inhand_runtime.session import Publisher, Subscription, open_session, subscribe
@@ -52,3 +56,15 @@ class Wire:
         replies = self.session.liveliness().get(self.site.live_pattern())
         keys = [str(reply.ok.key_expr) for reply in replies if reply.ok is not None]
         return sorted("/".join(key.split("/")[-2:]) for key in keys)
+
+
+def lingering_s() -> list[int]:
+    """Seconds that each connected socket of this process lingers when it is closed."""
+    found = []
+    for one in psutil.Process().net_connections("tcp"):
+        if one.raddr:
+            with socket.socket(fileno=os.dup(one.fd)) as own:
+                value = own.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
+                on, seconds = struct.unpack("ii", value)
+                found.append(seconds if on else 0)
+    return found

@@ -17,6 +17,7 @@ from inhand_runtime.session import (
     PRIORITIES,
     RETRY,
     Session,
+    closing_at_once,
     log_what_is_asked_for,
     zenoh_config,
 )
@@ -93,7 +94,7 @@ def open_router(settings: RouterSettings) -> Iterator[Session]:
             f"cannot listen on {', '.join(settings.listen)}: the port is in use, or the address is "
             f"not of this machine; or {settings.certificate} and {settings.key} cannot be used"
         ) from None
-    with session:
+    with session, closing_at_once(session):
         yield session
 
 

@@ -25,6 +25,7 @@ from inhand_schemas.topics import Delivery, Topic
 from inhand_runtime.errors import InhandError, SettingsError
 from inhand_runtime.hub_access import read_password, require_client, why_closed
 from inhand_runtime.inbox import Received
+from inhand_runtime.lingering import close_at_once
 from inhand_runtime.reconnection import Links, Reconnection
 from inhand_runtime.settings import ZenohSettings
 
@@ -48,8 +49,11 @@ RETRY = {"period_init_ms": 100, "period_max_ms": 1000}
 """How soon a connection is tried again."""
 LIVELINESS_TIMEOUT_S = 0.5
 LEASE_MS = 10_000
-"""Milliseconds without a sign of life after which a link is closed, whatever waits for it: a
-process that stands still for less loses none."""
+"""Milliseconds without a sign of life after which a link is closed, whatever waits for it."""
+LONGEST_WAIT_US = 7_000_000
+"""Microseconds that a frame waits for a link that takes nothing before the link is closed: who
+stands still for less keeps it. Were it to wait at the end of the lease, closing the link would hold
+a thread that sends."""
 SIGNS_IN_A_LEASE = 10
 """Number of signs of life that are sent in that time."""
 GO_BETWEEN = "60be60be60be"
@@ -60,8 +64,8 @@ batches, so that a busy moment drops none."""
 
 SENDING_THREADS = 8
 """Number of Zenoh's threads that send: where a link to somebody who stands still is closed, one of
-them stands still for seconds, and with the single one that Zenoh has by itself so does all else
-(seen with Zenoh 1.10.2)."""
+them waits for seconds for what a publisher still holds for that link, and with the single one that
+Zenoh has by itself so does all else (seen with Zenoh 1.10.2)."""
 _RUNTIME_VARIABLE = "ZENOH_RUNTIME"
 _LOG_VARIABLE, _NO_SETTINGS = "RUST_LOG", ",zenoh::api::session=info"
 
@@ -81,10 +85,14 @@ def open_session(settings: ZenohSettings) -> Iterator[Session]:
     """A session that is closed at the end; raises SettingsError or InhandError within seconds."""
     log_what_is_asked_for()
     if settings.mode == "client":
-        with _open_client(settings) as session:
+        with _open_client(settings) as session, closing_at_once(session):
             yield session
         return
-    with _open_peer(settings) as session, _reconnected(session, settings):
+    with (
+        _open_peer(settings) as session,
+        closing_at_once(session),
+        _reconnected(session, settings),
+    ):
         yield session
 
 
@@ -120,6 +128,18 @@ def _open_peer(settings: ZenohSettings) -> Session:
             f"cannot listen on {', '.join(listen)}: the port is in use, or the address is not "
             f"of this machine; change zenoh.{setting}"
         ) from None
+
+
+@contextlib.contextmanager
+def closing_at_once(session: Session) -> Iterator[None]:
+    """Let links to those who stand still hold nobody up when they are closed (``lingering``)."""
+
+    def opened(event: zenoh.LinkEvent) -> None:
+        if event.kind == zenoh.SampleKind.PUT:
+            close_at_once((str(event.link.src), str(event.link.dst)))
+
+    with session.info.declare_link_events_listener(opened, history=True):
+        yield
 
 
 @contextlib.contextmanager
@@ -198,7 +218,7 @@ def zenoh_config(values: Mapping[str, Any]) -> zenoh.Config:
         "scouting/multicast/enabled": False,
         "transport/link/tx/lease": LEASE_MS,
         "transport/link/tx/keep_alive": SIGNS_IN_A_LEASE,
-        "transport/link/tx/queue/congestion_control/block/wait_before_close": 1000 * LEASE_MS,
+        "transport/link/tx/queue/congestion_control/block/wait_before_close": LONGEST_WAIT_US,
         "transport/link/tx/queue/size/data": LONGEST_QUEUE,
         "transport/link/tx/queue/size/data_low": LONGEST_QUEUE,
         "transport/link/tx/queue/size/real_time": LONGEST_QUEUE,
