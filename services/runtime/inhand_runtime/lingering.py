@@ -21,7 +21,8 @@ def close_at_once(ends: tuple[str, str]) -> None:
     """Let this process's TCP socket between two addresses (``tcp/HOST:PORT``) linger no longer."""
     ports = tuple(int(port) for end in ends for port in _PORT.findall(end))
     for one in psutil.Process().net_connections("tcp"):
-        if one.raddr and (one.laddr.port, one.raddr.port) == ports:
+        listens = one.status == psutil.CONN_LISTEN
+        if not listens and (one.laddr.port, one.raddr.port) == ports:
             with contextlib.suppress(OSError):  # the link is gone by now
                 _let_not_linger(one.fd)
 
