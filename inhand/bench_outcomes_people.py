@@ -78,6 +78,7 @@ def _estimated(path: Path, folder: Path) -> Path:
     """The recording with skeletons that are estimated from its images."""
     output = folder / path.name
     if not output.exists():
+        folder.mkdir(exist_ok=True)
         _inhand("recording", "skeletons", "--replace", "-o", output, path)
     return output
 
@@ -119,4 +120,4 @@ def _inhand(*arguments: str | Path) -> None:
     command = [sys.executable, "-m", "inhand", *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise InhandError(f"inhand {arguments[0]}: {done.stderr.strip()}")
+        raise InhandError(done.stderr.strip())
