@@ -7,6 +7,7 @@ from typing import Any, Protocol, TypeVar
 
 import msgspec
 from inhand_runtime.exit_codes import DONE, FAILED
+from inhand_runtime.wording import printable
 from inhand_schemas.keys import Site
 from inhand_schemas.procedure import Procedure
 
@@ -77,7 +78,7 @@ def conclude(
         *(f"{name} does not answer: {UNREACHED}" for name in expected if name not in replies),
     ]
     for line in problems:
-        print(f"WRONG: {line}")
+        print(f"WRONG: {printable(line)}")
     if path is not None:
         rows: list[Any] = [msgspec.to_builtins(reply) for reply in replies.values()]
         write_json(path, {key: rows, "problems": problems})
