@@ -97,11 +97,11 @@ def check_outcomes(
 ) -> OutcomesCheck:
     """Make what is missing in the folder, and compare each recording; raises InhandError.
 
-    Skeletons are a Kinect's, or ``estimated`` from the images; the rig was taught by a Kinect's,
-    and knows all objects.
+    Skeletons are a Kinect's, or ``estimated`` from the images, of those who teach and of those who
+    are watched; the rig knows all objects.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    taught = teach(folder)
+    taught = teach(folder, estimated=estimated)
     compared: list[Compared] = []
     handled: list[Handled] = []
     swept: list[Swept] = []

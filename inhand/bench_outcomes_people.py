@@ -3,6 +3,7 @@
 Whatever of them stands in the folder already is used again.
 """
 
+import shutil
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -19,6 +20,9 @@ TEACHERS = 3
 TAUGHT_FRAMES = 300
 FRAMES = 360
 SUFFIX = "_retrack"
+ESTIMATED = "estimated"
+"""Subfolder of the people with skeletons that are estimated from their images, and of what is
+learned from these and tracked with them."""
 
 
 @dataclass(frozen=True)
@@ -35,18 +39,21 @@ class Taught:
         return list(self.models.values())
 
 
-def teach(folder: Path) -> Taught:
+def teach(folder: Path, *, estimated: bool = False) -> Taught:
     """The models of all objects and their recogniser, learned where they are missing; raises
-    InhandError."""
-    taught = folder / f"people_{TAUGHT_BY}"
-    _simulate(taught, TAUGHT_BY, TEACHERS, TAUGHT_FRAMES)
+    InhandError.
+
+    A rig is taught with the skeletons that it will see: a Kinect's, or ``estimated`` ones.
+    """
+    taught = _people(folder, TAUGHT_BY, TEACHERS, TAUGHT_FRAMES, estimated=estimated)
+    at = taught.parent
     models = {}
     for interaction, done in INTERACTIONS.items():
         name = done.object_model().name
-        models[interaction] = folder / f"{name}.model"
+        models[interaction] = at / f"{name}.model"
         if not models[interaction].exists():
             _inhand("train", taught, "--object", name, "-o", models[interaction])
-    recogniser = folder / "all.recogniser"
+    recogniser = at / "all.recogniser"
     if not recogniser.exists():
         _inhand("train", taught, "-o", recogniser, "--recogniser", "--models", *models.values())
     return Taught(models, recogniser)
@@ -57,29 +64,41 @@ def tracked_people(
 ) -> Path:
     """The folder of the tracked recordings of a seed's people, with a Kinect's skeletons or with
     ones that were estimated from their images; raises InhandError."""
-    recordings = recorded_people(folder, seed, participants)
-    tracked = folder / (f"tracked_estimated_{seed}" if estimated else f"tracked_{seed}")
-    if estimated:
-        recordings = [_estimated(path, folder / f"estimated_{seed}") for path in recordings]
+    recordings = recorded_people(folder, seed, participants, estimated=estimated)
+    tracked = recordings[0].parents[2] / f"tracked_{seed}"
     for number in range(participants):
         paths = [path for path in recordings if path.stem.endswith(f"_p{number:02}")]
         track(taught, paths, tracked, left_handed=is_left_handed(seed, number))
     return tracked
 
 
-def recorded_people(folder: Path, seed: int, participants: int) -> list[Path]:
+def recorded_people(
+    folder: Path, seed: int, participants: int, *, estimated: bool = False
+) -> list[Path]:
     """The recordings of a seed's people with all objects; raises InhandError."""
-    people = folder / f"people_{seed}"
-    _simulate(people, seed, participants, FRAMES)
+    people = _people(folder, seed, participants, FRAMES, estimated=estimated)
     return sorted((people / "recordings").glob("*.mcap"))
 
 
-def _estimated(path: Path, folder: Path) -> Path:
-    """The recording with skeletons that are estimated from its images."""
-    output = folder / path.name
-    if not output.exists():
-        folder.mkdir(exist_ok=True)
-        _inhand("recording", "skeletons", "--replace", "-o", output, path)
+def _people(folder: Path, seed: int, participants: int, frames: int, *, estimated: bool) -> Path:
+    """The dataset of a seed's people, which is made where it is missing."""
+    people = folder / f"people_{seed}"
+    if not (people / "dataset.toml").exists():
+        numbers = {"participants": participants, "seed": seed, "frames": frames}
+        wanted = (part for name, one in numbers.items() for part in (f"--{name}", str(one)))
+        _inhand("simulate", people, *wanted)
+    return _estimated(people, folder / ESTIMATED / people.name) if estimated else people
+
+
+def _estimated(people: Path, output: Path) -> Path:
+    """The same people with skeletons that are estimated from their images."""
+    recordings = output / "recordings"
+    recordings.mkdir(parents=True, exist_ok=True)
+    for path in sorted((people / "recordings").glob("*.mcap")):
+        if not (recordings / path.name).exists():
+            _inhand("recording", "skeletons", "--replace", "-o", recordings / path.name, path)
+    shutil.copytree(people / "objects", output / "objects", dirs_exist_ok=True)
+    shutil.copy(people / "dataset.toml", output)
     return output
 
 
@@ -107,13 +126,6 @@ def _settings_of(taught: Taught, *, left_handed: bool) -> Path:
     )
     config.write_text("\n".join(lines) + "\n")
     return config
-
-
-def _simulate(out: Path, seed: int, participants: int, frames: int) -> None:
-    if not (out / "dataset.toml").exists():
-        numbers = {"participants": participants, "seed": seed, "frames": frames}
-        wanted = (part for name, one in numbers.items() for part in (f"--{name}", str(one)))
-        _inhand("simulate", out, *wanted)
 
 
 def _inhand(*arguments: str | Path) -> None:
