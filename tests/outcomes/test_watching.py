@@ -119,6 +119,23 @@ def test_who_goes_out_of_view_with_a_thing_leaves_it_in_use() -> None:
     assert kinds(outcomes) == ["taken_up", "left_in_use"]
 
 
+def test_what_was_near_a_hand_and_never_used_is_not_left_in_use() -> None:
+    watcher = a_watcher()
+    outcomes = watch(watcher, list(Carrying().messages(until_s=5.9))[75:])
+    outcomes += watcher.end_quiet(START_NS + 10 * 10**9)
+    assert [one.kind for one in outcomes if one.probability > 0.01] == []
+
+
+def test_another_process_knows_that_a_thing_is_in_use() -> None:
+    before, after = a_watcher(), a_watcher()
+    watch(before, Carrying().messages(until_s=5.0))
+    entries = Memory(before).entries()
+    Memory(after).recall({name: data for name, data in entries.items() if data is not None})
+    (left,) = after.end_quiet(START_NS + 9 * 10**9)
+    assert left.kind == "left_in_use"
+    assert left.probability > 0.9
+
+
 @pytest.mark.parametrize("killed_s", [1.0, 2.6, 5.9, 6.9, 8.0])
 def test_who_ends_at_any_moment_goes_on_as_if_it_had_not(killed_s: float) -> None:
     journal: dict[str, bytes] = {}
