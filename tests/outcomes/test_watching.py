@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 import pytest
 from carried_cup import CUP, START_NS, Carrying
+from inhand_outcomes.gathering import Holding
 from inhand_outcomes.memory import Memory
 from inhand_outcomes.outcome import Outcome
 from inhand_outcomes.room import Room
@@ -110,6 +111,7 @@ def test_what_goes_from_one_person_to_another_is_handed_over() -> None:
     outcomes += watcher.end_quiet(time_ns)
     assert kinds(outcomes) == ["taken_up", "handed_over"]
     assert (outcomes[1].person, outcomes[1].evidence["receiver"]) == (1, 2.0)
+    assert watcher.followed[Holding("cup", 2)].used > 0.9
 
 
 def test_who_goes_out_of_view_with_a_thing_leaves_it_in_use() -> None:
