@@ -14,7 +14,12 @@ from inhand_lab.datasets.dataset import load_dataset
 from inhand_lab.training.presence_training import NEEDS, look_around, presence_of
 from inhand_lab.training.recogniser_training import train_recogniser
 from inhand_lab.workers import in_processes, usable_cores
-from inhand_lab.world.idle_people import IDLENESS, simulate_idle, simulate_idle_beside
+from inhand_lab.world.idle_people import (
+    IDLENESS,
+    Idleness,
+    simulate_idle,
+    simulate_idle_beside,
+)
 from inhand_lab.world.interactions import INTERACTIONS
 from inhand_lab.world.messages import camera_info, person_message, pixels_message
 from inhand_lab.world.simulation import Simulation
@@ -114,11 +119,17 @@ def _idle(spell: _Spell) -> Counter[str]:
         kind = IDLENESS[spell.number % len(IDLENESS)]
         person = simulate_idle(kind, spell.number, spell.seed, frames, IDLE_HZ)
     else:
-        # Each kind comes beside each object in turn.
-        kind = STANDING[(spell.number + spell.number // len(INTERACTIONS)) % len(STANDING)]
+        kind = kind_beside(spell.number)
         person = simulate_idle_beside(spell.beside, kind, spell.number, spell.seed, frames, IDLE_HZ)
     said, _ = said_by(_seen(person, spell.taught), spell.taught.files)
     return Counter(f"{one.object} {one.kind}" for one in said)
+
+
+def kind_beside(number: int) -> Idleness:
+    """How somebody is idle beside the object of interaction ``number``, counted round and round:
+    beside each object in each way in turn."""
+    turn, interaction = divmod(number, len(INTERACTIONS))
+    return STANDING[(interaction + turn) % len(STANDING)]
 
 
 def _seen(person: Simulation, taught: Taught) -> Iterator[Told]:

@@ -151,3 +151,50 @@ def test_what_lies_near_a_hand_that_goes_out_of_view_is_not_left_in_use() -> Non
     lying = track(times, np.tile(TABLE, (len(times), 1)), np.tile(TABLE, (len(times), 1)))
     (left,) = handling(lying, THING, ended=True)
     assert left.probability < 0.01
+
+
+def test_what_is_drawn_to_a_hand_along_the_sight_was_neither_taken_up_nor_put_down() -> None:
+    times = np.arange(0.0, 9.0, 1.0 / RATE_HZ)
+    farther = np.add(TABLE, [0.02, 0.2, 0.0])
+    way = [(2.3, TABLE), (3.0, farther), (5.0, farther), (5.7, TABLE)]
+    hand = through(times, (1.5, SIDE), *way, (6.5, SIDE))
+    flute = track(times, through(times, *way), hand)
+    along_y = np.diag(np.square([0.012, 0.04, 0.012, 0.1, 0.1, 0.1]))
+    drawn = replace(flute, covariances=np.tile(along_y, (len(times), 1, 1)))
+    across = replace(drawn, poses=flute.poses[:, [1, 0, *range(2, 7)]])
+    across = replace(across, joints=flute.joints[:, :, [1, 0, 2]])
+    assert all(one.probability < 0.1 for one in handling(drawn, THING))
+    taken, put = handling(across, THING)
+    assert min(taken.probability, put.probability) > 0.9
+
+
+def test_what_is_told_elsewhere_for_a_moment_was_not_taken_up() -> None:
+    times = np.arange(0.0, 9.0, 1.0 / RATE_HZ)
+    beside = np.add(TABLE, [0.14, 0.0, 0.0])
+    hand = through(times, (1.5, SIDE), (2.5, beside), (4.0, beside), (5.0, SIDE))
+    for_a_moment = (times > 3.0) & (times < 3.25)
+    places = np.where(for_a_moment[:, None], beside, TABLE)
+    assert all(one.probability < 0.1 for one in handling(track(times, places, hand), THING))
+
+
+@pytest.mark.parametrize(("hidden_s", "likely"), [(2.0, True), (8.0, False)])
+def test_what_lies_long_after_a_hand_held_something_was_put_there_less_probably(
+    hidden_s: float, likely: bool
+) -> None:
+    times = np.arange(0.0, 16.0, 1.0 / RATE_HZ)
+    way, shown_s = [(2.0, TABLE), (3.0, CHEST), (4.0, CHEST), (5.5, ELSEWHERE)], 4.0 + hidden_s
+    hand = through(times, (1.0, SIDE), *way, (shown_s - 0.5, ELSEWHERE), (shown_s, SIDE))
+    hidden = (times > 4.0) & (times < shown_s)
+    seen = replace(track(times, through(times, *way), hand), seen=~hidden)
+    (put,) = (one for one in handling(seen, THING) if one.kind == PUT_DOWN)
+    assert (put.probability > 0.5) is likely
+
+
+def test_who_takes_a_thing_up_slowly_surely_takes_it_up() -> None:
+    times = np.arange(0.0, 9.0, 1.0 / RATE_HZ)
+    ways = [(2.0, TABLE), (4.0, np.add(TABLE, [0.0, 0.0, 0.1])), (5.0, CHEST)]
+    whole = track(times, through(times, *ways), through(times, (1.0, SIDE), *ways), 0.015)
+    until = [np.searchsorted(times, end) for end in np.arange(2.5, 9.0, 0.5)]
+    said = [one for end in until for one in handling(whole[:end], THING)]
+    assert said
+    assert min(one.probability for one in said) > 0.9

@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 import pytest
 from carried_cup import CUP, START_NS, Carrying
+from inhand_outcomes.gathering import Holding
 from inhand_outcomes.memory import Memory
 from inhand_outcomes.outcome import Outcome
 from inhand_outcomes.room import Room
@@ -110,6 +111,7 @@ def test_what_goes_from_one_person_to_another_is_handed_over() -> None:
     outcomes += watcher.end_quiet(time_ns)
     assert kinds(outcomes) == ["taken_up", "handed_over"]
     assert (outcomes[1].person, outcomes[1].evidence["receiver"]) == (1, 2.0)
+    assert watcher.followed[Holding("cup", 2)].used > 0.9
 
 
 def test_who_goes_out_of_view_with_a_thing_leaves_it_in_use() -> None:
@@ -117,6 +119,23 @@ def test_who_goes_out_of_view_with_a_thing_leaves_it_in_use() -> None:
     outcomes = watch(watcher, Carrying().messages(until_s=4.5))
     outcomes += watcher.end_quiet(START_NS + 9 * 10**9)
     assert kinds(outcomes) == ["taken_up", "left_in_use"]
+
+
+def test_what_was_near_a_hand_and_never_used_is_not_left_in_use() -> None:
+    watcher = a_watcher()
+    outcomes = watch(watcher, list(Carrying().messages(until_s=5.9))[75:])
+    outcomes += watcher.end_quiet(START_NS + 10 * 10**9)
+    assert [one.kind for one in outcomes if one.probability > 0.01] == []
+
+
+def test_another_process_knows_that_a_thing_is_in_use() -> None:
+    before, after = a_watcher(), a_watcher()
+    watch(before, Carrying().messages(until_s=5.0))
+    entries = Memory(before).entries()
+    Memory(after).recall({name: data for name, data in entries.items() if data is not None})
+    (left,) = after.end_quiet(START_NS + 9 * 10**9)
+    assert left.kind == "left_in_use"
+    assert left.probability > 0.9
 
 
 @pytest.mark.parametrize("killed_s", [1.0, 2.6, 5.9, 6.9, 8.0])

@@ -51,8 +51,8 @@ class HandlingParameters:
     """Seconds before it lies, or from when it was last seen to lie, within which the hand must have
     come: a tracker may tell late."""
     noise: float = 3.0
-    """Deviations of a pose that are taken from a way, squared: the farthest of many poses is so far
-    off by error alone."""
+    """Deviations of a pose that are taken from a way, squared, along each axis: the farthest of
+    many poses is so far off by error alone."""
     on_head_m: float = 0.22
     """Distance from the head's joint up to which a thing is worn, not put down, metres."""
     on_foot_m: float = 0.13
@@ -65,6 +65,21 @@ class HandlingParameters:
     """Share of the frames of that time in which it, and both hands, must be seen."""
     moved_m: float = 0.06
     """Distance from where it lay by which a thing was moved, metres."""
+    moved_s: float = 0.4
+    """Seconds for which it must be held as far away: nobody uses a thing for less, and poses err
+    for moments."""
+    sure: float = 0.95
+    """Probability that it was moved from which on nobody waits for more of it."""
+    waits_s: float = 3.0
+    """Seconds from when a hand is at it, after which as much is known of that as there will be:
+    who takes a thing up slowly has moved it by then."""
+    doubt: float = 2.0
+    """Factor of the deviation along the one axis that is known worst: along the sight of a camera
+    what returns no depth is known by the hand that holds it, and what lies is drawn towards hands:
+    a flute on a table by 21 cm, where its deviation was said to be 3.5 to 5."""
+    hidden_s: float = 5.0
+    """Seconds without sight of it between a hand and a place after which what is seen there is as
+    likely as not another thing, or taken for one."""
     fallen_m: float = 0.35
     """Distance between a hand and the place where a thing came to lie, and height by which it fell,
     beyond which nobody put it there, metres."""
@@ -111,7 +126,8 @@ def handling(
     achievements = []
     for before, after in pairwise(stretches):
         if (before.state, after.state) == (LYING, HELD):
-            achievements += _taken_up(looked, thing, before, after, parameters)
+            goes_on = not ended and after is stretches[-1]
+            achievements += _taken_up(looked, thing, before, after, parameters, goes_on=goes_on)
         elif (before.state, after.state) == (HELD, LYING):
             achievements += _put_down(looked, thing, before, after, parameters)
     if ended and stretches and stretches[-1].state == HELD:
@@ -195,27 +211,50 @@ def _stretches(states: Array) -> list[Stretch]:
 
 
 def _place(track: Track, stretch: Stretch) -> tuple[Array, Array]:
-    """Where a thing lies (3,): the median, and its deviation."""
+    """Where a thing lies (3,): the median, and its covariance (3, 3)."""
     frames = _shown(track, stretch)
-    deviations = np.sqrt(np.diagonal(track.covariances[frames, :3, :3], axis1=1, axis2=2))
     # Errors of neighbouring frames are alike: many frames are no better than a typical one.
-    return np.median(track.positions[frames], axis=0), np.median(deviations, axis=0)
+    return (
+        np.median(track.positions[frames], axis=0),
+        np.median(track.covariances[frames, :3, :3], axis=0),
+    )
 
 
 def _moved(
     track: Track, lying: Stretch, held: Stretch, parameters: HandlingParameters
 ) -> tuple[float, float]:
-    """How far from where it lay a thing got while it was held, metres, and the probability that it
-    was moved."""
-    place, deviation = _place(track, lying)
+    """How far from where it lay a thing was held for ``moved_s`` at the least, metres, beyond what
+    may be error, and the probability that it was moved."""
+    place, covariance = _place(track, lying)
     frames = _shown(track, held)
-    distances = np.linalg.norm(track.positions[frames] - place, axis=1)
-    farthest = frames[distances.argmax()]
-    own = float(np.sqrt(np.trace(track.covariances[farthest, :3, :3]) / 3.0))
-    spread = float(np.hypot(np.linalg.norm(deviation) / 3**0.5, own))
-    by_error = parameters.noise * spread
-    moved = float(np.sqrt(max(distances.max() ** 2 - by_error**2, 0.0)))
+    ways = track.positions[frames] - place
+    covariances = _doubted(covariance + track.covariances[frames, :3, :3], parameters)
+    variances, axes = np.linalg.eigh(covariances)
+    along = np.einsum("tji,tj->ti", axes, ways)
+    beyond = np.maximum(np.square(along) - parameters.noise**2 * variances, 0.0)
+    distances = np.sqrt(beyond.sum(axis=1))
+    times = track.times[frames]
+    firsts = np.searchsorted(times, times - parameters.moved_s + parameters.step_s / 2.0)
+    whole = times - times[0] >= parameters.moved_s - parameters.step_s / 2.0
+    lasting = np.array(
+        [distances[first : end + 1].min() for end, first in enumerate(firsts)] * whole
+    )
+    farthest = int(lasting.argmax())
+    moved = float(lasting[farthest])
+    if moved == 0.0:
+        return 0.0, 0.0
+    way = ways[farthest] / np.linalg.norm(ways[farthest])
+    spread = float(np.sqrt(way @ covariances[farthest] @ way))
     return moved, float(normal_share((moved - parameters.moved_m) / spread))
+
+
+def _doubted(covariances: Array, parameters: HandlingParameters) -> Array:
+    """Covariances (T, 3, 3) that are ``doubt`` times as wide along the axis that is known worst, as
+    far as it is known worse than the others."""
+    variances, axes = np.linalg.eigh(covariances)
+    worst = axes[:, :, 2]
+    more = (parameters.doubt**2 - 1.0) * (variances[:, 2] - variances[:, 1])
+    return np.asarray(covariances + more[:, None, None] * worst[:, :, None] * worst[:, None, :])
 
 
 def _shown(track: Track, stretch: Stretch) -> Indices:
@@ -225,11 +264,23 @@ def _shown(track: Track, stretch: Stretch) -> Indices:
 
 
 def _taken_up(
-    track: Track, thing: Thing, lying: Stretch, held: Stretch, parameters: HandlingParameters
+    track: Track,
+    thing: Thing,
+    lying: Stretch,
+    held: Stretch,
+    parameters: HandlingParameters,
+    *,
+    goes_on: bool,
 ) -> list[Achievement]:
+    """What is held on, ``goes_on``, and not surely moved yet, may be so in a moment."""
     moved, probability = _moved(track, lying, held, parameters)
+    if moved < parameters.moved_m:
+        return []
     start = float(track.times[lying.last])
     until = float(track.times[held.first])
+    if goes_on and probability < parameters.sure and track.times[-1] - until < parameters.waits_s:
+        return []
+    probability *= _in_sight(track, lying, held, parameters)
     reach = _reach(track, thing, lying, (start - parameters.reached_s, until))
     if np.isfinite(reach):
         probability *= _reached(reach, parameters)
@@ -241,7 +292,8 @@ def _put_down(
     track: Track, thing: Thing, held: Stretch, lying: Stretch, parameters: HandlingParameters
 ) -> list[Achievement]:
     moved, probability = _moved(track, lying, held, parameters)
-    place, spread = _place(track, lying)
+    place, covariance = _place(track, lying)
+    spread = np.sqrt(np.diagonal(covariance))
     times = track.times
     around = np.abs(times - times[lying.first]) <= parameters.longest_fall_s
     hands = track.joints[around][:, HANDS]
@@ -263,7 +315,18 @@ def _put_down(
     reach = _reach(track, thing, lying, (end - parameters.reached_s, end))
     if np.isfinite(reach) and not dropped:
         probability *= _reached(reach, parameters)
+    probability *= _in_sight(track, held, lying, parameters)
     return [_achievement(kind, start, end, probability, evidence, amounts)]
+
+
+def _in_sight(
+    track: Track, before: Stretch, after: Stretch, parameters: HandlingParameters
+) -> float:
+    """How probably two stretches are of one thing, by how long none was seen between them."""
+    between = slice(before.last, after.first + 1)
+    seen = track.seen[between]
+    hidden_s = np.diff(track.times[between])[~(seen[:-1] & seen[1:])].sum()
+    return float(0.5 ** (hidden_s / parameters.hidden_s))
 
 
 def _reach(track: Track, thing: Thing, lying: Stretch, between: tuple[float, float]) -> float:

@@ -28,6 +28,7 @@ class _Remembered(msgspec.Struct, frozen=True):
     counted_ns: int
     said_until_ns: dict[str, int]
     going_on: list[Outcome]
+    used: float = 0.0
 
 
 class _State(msgspec.Struct, frozen=True):
@@ -103,6 +104,7 @@ class Memory:
             holding = Holding(one.object, one.person)
             followed[holding] = self._watcher.follow(holding, one.measured_ns)
             followed[holding].said_until_ns = dict(one.said_until_ns)
+            followed[holding].used = one.used
             followed[holding].lasting.counted_ns = one.counted_ns
             followed[holding].lasting.carried = {outcome.kind: outcome for outcome in one.going_on}
         for name in sorted(name for name in entries if name.startswith(PIECES)):
@@ -137,6 +139,7 @@ def _remembered(holding: Holding, followed: Followed) -> _Remembered:
         followed.lasting.counted_ns,
         followed.said_until_ns,
         list(followed.lasting.carried.values()),
+        followed.used,
     )
 
 

@@ -11,7 +11,7 @@ from inhand_outcomes.achievement import Achievement
 from inhand_outcomes.days import NS_PER_S
 from inhand_outcomes.false_starts import without_false_starts
 from inhand_outcomes.gathering import Gathering, Holding, Sighting, Sightings
-from inhand_outcomes.handling import LEFT_IN_USE, PLACE, handling
+from inhand_outcomes.handling import DROPPED, LEFT_IN_USE, PLACE, PUT_DOWN, handling
 from inhand_outcomes.in_hand import in_hand
 from inhand_outcomes.lasting import LastingOutcomes
 from inhand_outcomes.leaps import without_leaps
@@ -38,6 +38,8 @@ class Followed:
     measured_ns: int
     said_until_ns: dict[str, int] = field(default_factory=dict)
     """Until when achievements of each kind are settled."""
+    used: float = 0.0
+    """How probably it was taken up, used or taken over since this began, and not put down since."""
 
 
 class Watcher:
@@ -176,8 +178,8 @@ class Watcher:
                 followed.said_until_ns[outcome.kind] = outcome.end_ns
                 outcomes.append(outcome)
         lasting = [outcome for lasts, outcome in found if lasts]
-        outcomes = [self._handed(holding, followed, outcome) for outcome in outcomes]
         outcomes += followed.lasting.follow(lasting, last_ns, ended=ended)
+        outcomes = [self._gone(holding, followed, outcome) for outcome in _by_end(outcomes)]
         self.told.setdefault(holding.object, {}).update({one.kind: one for one in outcomes})
         return outcomes
 
@@ -185,13 +187,25 @@ class Watcher:
         track, thing = followed.gathering.track(self.room), self.things.get(holding.object)
         return track if thing is None else without_leaps(track, thing)
 
-    def _handed(self, holding: Holding, followed: Followed, outcome: Outcome) -> Outcome:
-        """What was left in use is handed over, where somebody else has it then."""
+    def _gone(self, holding: Holding, followed: Followed, outcome: Outcome) -> Outcome:
+        """What was left in use is handed over, where somebody else has it then; else it is as
+        probable as that it was in use: what only lay near a hand was not.
+
+        Outcomes come in the order in which they ended.
+        """
         if outcome.kind != LEFT_IN_USE:
+            if outcome.kind in (PUT_DOWN, DROPPED):
+                followed.used *= 1.0 - outcome.probability
+            else:
+                followed.used = max(followed.used, outcome.probability)
             return outcome
         receiver = self._taken_over(holding, followed.gathering.sightings[-1])
         if receiver is None:
-            return outcome
+            evidence = {**outcome.evidence, "used": followed.used}
+            probability = outcome.probability * followed.used
+            return replace(outcome, probability=probability, evidence=evidence)
+        received = self.followed[Holding(holding.object, receiver)]
+        received.used = max(received.used, outcome.probability)
         evidence = {**outcome.evidence, "receiver": float(receiver)}
         return replace(outcome, kind=HANDED_OVER, evidence=evidence)
 
@@ -265,6 +279,11 @@ class Watcher:
         place = (place - self.room.translation) @ self.room.matrix
         nearest = min(sightings, key=lambda one: float(np.linalg.norm(one.pose[:3] - place)))
         return _pose_message(replace(nearest, pose=np.concatenate([place, nearest.pose[3:]])))
+
+
+def _by_end(outcomes: Iterable[Outcome]) -> list[Outcome]:
+    """Outcomes in the order in which they ended; what was left is judged by all others."""
+    return sorted(outcomes, key=lambda one: (one.kind == LEFT_IN_USE, one.end_ns))
 
 
 def _time_of(sighting: Sighting) -> int:
