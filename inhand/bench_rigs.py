@@ -1,6 +1,7 @@
 """``inhand bench rigs``: what several cameras are worth together."""
 
 import argparse
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
@@ -11,6 +12,7 @@ from inhand_lab.benchmarks.rig_accuracy import RigCheck, RigRun, check_rigs
 from inhand_lab.workers import usable_cores
 from inhand_lab.world.parameters import RIG_CAMERAS
 from inhand_runtime.errors import SettingsError
+from inhand_tracker.rig.placing import PlaceDeviation
 from rich.table import Table
 
 from inhand.progress import progress_bar
@@ -36,6 +38,15 @@ def add_rig_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--standing", action="store_true", help="for rigs: people who stay where they are"
     )
+    for unit, what in (("mm", "millimetres"), ("deg", "degrees")):
+        parser.add_argument(
+            f"--placed-off-{unit}",
+            type=float,
+            default=0.0,
+            metavar="X",
+            help=f"for rigs: {what} by which each camera is elsewhere than its calibration says, "
+            "root mean square, which that states (default: 0)",
+        )
 
 
 def measure_rigs(arguments: argparse.Namespace) -> tuple[Table, dict[str, Any]]:
@@ -43,8 +54,12 @@ def measure_rigs(arguments: argparse.Namespace) -> tuple[Table, dict[str, Any]]:
     cameras = DEFAULT_CAMERAS if arguments.cameras is None else arguments.cameras
     if not 2 <= cameras <= len(RIG_CAMERAS):
         raise SettingsError(f"--cameras is from 2 to {len(RIG_CAMERAS)}, not {cameras}")
+    off_mm, off_deg = arguments.placed_off_mm, arguments.placed_off_deg
+    if min(off_mm, off_deg) < 0.0:
+        raise SettingsError("--placed-off-mm and --placed-off-deg are 0 or more")
+    off = PlaceDeviation(1e-3 * off_mm / math.sqrt(3.0), math.radians(off_deg) / math.sqrt(3.0))
     runs = [
-        RigRun(interaction, seed, cameras, roaming=not arguments.standing)
+        RigRun(interaction, seed, cameras, roaming=not arguments.standing, placed_off=off)
         for seed in arguments.seeds or DEFAULT_SEEDS
         for interaction in arguments.interactions or DEFAULT_RIGS.interactions
     ]

@@ -32,6 +32,7 @@ def test_errors_stand_beside_the_best_and_the_mean_camera_s() -> None:
     [
         (["--cameras", "5"], "--cameras is from 2 to 4, not 5"),
         (["--interactions", "hammerNail"], "hammerNail"),
+        (["--placed-off-mm", "-1"], "--placed-off-mm and --placed-off-deg are 0 or more"),
     ],
 )
 def test_what_cannot_be_simulated_is_refused(

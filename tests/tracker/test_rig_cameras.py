@@ -1,5 +1,6 @@
 """One tracker follows what several cameras see, from messages to messages."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -12,6 +13,9 @@ from inhand_runtime.pixels import encode_colour
 from inhand_runtime.rig_calibration import CameraCalibration, RigCalibration, write_rig_calibration
 from inhand_schemas.messages import CameraInfo, ObjectPose, Pose, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, RGBD, SKELETONS
+from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.estimate import Estimate
+from inhand_tracker.geometry.image import Image, ViewPull
 from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.methods.fusion.tracker import FusionTracker
 from inhand_tracker.people.watching import GivenObjects
@@ -73,11 +77,29 @@ class RigFilm:
         return sent
 
 
-def tracked(film: RigFilm, **settings: object) -> SimulatedDaemon:
+class ShownAside(FusionTracker):
+    """Says of each picture that something 2.5 m ahead is 5 cm lower in the left one than in the
+    front one."""
+
+    def step(self, joints: Array | None, time_ns: int, image: Image | None = None) -> Estimate:
+        if image is not None and image.on_pulls is not None:
+            at, information = np.array([0.0, 0.0, 2.5]), np.diag([1e4] * 3 + [1e2] * 3)
+            image.on_pulls(
+                [
+                    ViewPull(camera, at, np.array([0.0, low, 0.0, 0.0, 0.0, 0.0]), information)
+                    for camera, low in (("front", 0.0), ("left", 0.05))
+                ]
+            )
+        return super().step(joints, time_ns, image)
+
+
+def tracked(
+    film: RigFilm, kind: type[FusionTracker] = FusionTracker, **settings: object
+) -> SimulatedDaemon:
     daemon = SimulatedDaemon(*film.messages())
     chosen = TrackerSettings(cameras=film.cameras, **(BLIND | settings))
     terms = ["region"] if film.pictures else []
-    tracker = FusionTracker(wave_model(), terms=terms, several_cameras=film.pictures)
+    tracker = kind(wave_model(), terms=terms, several_cameras=film.pictures)
     TrackerService(daemon, chosen, lambda: GivenObjects({"mug": tracker}), daemon.clock).run()
     return daemon
 
@@ -114,7 +136,8 @@ def test_when_the_first_camera_dies_another_goes_on_and_nothing_leaps() -> None:
     assert np.linalg.norm(np.diff(in_rig(poses[5:]), axis=0), axis=1).max() < usual + 0.02
     left = poses[-1]
     from_left = PLACES["left"].points(np.array(left.camera_from_object.translation))
-    assert left.rig_from_object.translation == pytest.approx(from_left)
+    # People who move, seen a moment later, have moved the camera a little.
+    assert left.rig_from_object.translation == pytest.approx(from_left, abs=0.002)
 
 
 def test_poses_are_young_whatever_the_cameras_do() -> None:
@@ -132,6 +155,18 @@ def test_a_camera_that_somebody_bumped_is_said_and_adds_nothing() -> None:
     assert np.linalg.norm(off, axis=1).max() < 0.01
 
 
+def test_a_camera_is_said_that_stands_farther_off_than_its_calibration_allows(
+    tmp_path: Path,
+) -> None:
+    film = RigFilm(frames=45, pictures=True)
+    sure = calibrated(tmp_path, deviation=0.001)
+    daemon = tracked(film, ShownAside, likelihood=("region",), calibration=sure)
+    assert re.search(r"what left sees is \d\.\d cm off, which is more than its", troubles(daemon))
+    unsure = calibrated(tmp_path, deviation=0.03)
+    daemon = tracked(film, ShownAside, likelihood=("region",), calibration=unsure)
+    assert "calibration" not in troubles(daemon)
+
+
 @pytest.mark.parametrize("camera", ["front", "right"])
 def test_a_clock_that_is_two_seconds_off_is_said(camera: str) -> None:
     daemon = tracked(RigFilm(clocks_s={camera: 2.0}))
@@ -140,13 +175,13 @@ def test_a_clock_that_is_two_seconds_off_is_said(camera: str) -> None:
     assert len(daemon.poses["mug"]) >= 55
 
 
-def calibrated(path: Path, **offsets_s: float) -> Path:
+def calibrated(path: Path, deviation: float = 0.01, **offsets_s: float) -> Path:
     made = datetime.now(UTC)
     cameras = {
         camera: CameraCalibration(
             pose_of(PLACES[camera]),
-            (0.01,) * 3,
-            (0.01,) * 3,
+            (deviation,) * 3,
+            (deviation,) * 3,
             "people",
             made,
             round(1e9 * offsets_s.get(camera, 0.0)),
@@ -164,7 +199,7 @@ def test_a_calibration_says_where_cameras_are_and_how_their_clocks_differ(tmp_pa
     assert "clock" not in troubles(daemon)
     assert "place" not in troubles(daemon)
     usual = tracked(RigFilm()).poses["mug"]
-    assert in_rig(daemon.poses["mug"][-20:]) == pytest.approx(in_rig(usual[-20:]), abs=1e-6)
+    assert in_rig(daemon.poses["mug"][-20:]) == pytest.approx(in_rig(usual[-20:]), abs=1e-4)
 
 
 def test_cameras_of_which_nobody_said_where_they_are_are_said() -> None:

@@ -9,10 +9,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from inhand_tracker.rig.placing import PlaceDeviation
 
 from inhand_lab.benchmarks.parameters import DEFAULT_RIGS, RigCheckParameters
 from inhand_lab.benchmarks.rig_models import learn_model
-from inhand_lab.benchmarks.rig_tracking import RigErrors, track_rig
+from inhand_lab.benchmarks.rig_tracking import NOT_OFF, RigErrors, track_rig
 from inhand_lab.workers import in_processes
 from inhand_lab.world.rigs import simulate_rig
 from inhand_lab.world.simulation import simulate
@@ -21,12 +22,14 @@ from inhand_lab.world.simulation import simulate
 @dataclass(frozen=True)
 class RigRun:
     """What is tracked: an interaction of a seed's first person, before so many cameras; who is
-    ``roaming`` walks about and turns."""
+    ``roaming`` walks about and turns. Cameras are ``placed_off`` from where they are by about as
+    much as their calibration says."""
 
     interaction: str
     seed: int
     cameras: int
     roaming: bool
+    placed_off: PlaceDeviation = NOT_OFF
     parameters: RigCheckParameters = DEFAULT_RIGS
 
 
@@ -81,7 +84,8 @@ def check_rig(run: RigRun) -> RigCheck:
         for person in range(1, parameters.people + 1)
     ]
     killed = run.seed % run.cameras
-    errors = track_rig(rig, learn_model(learned, parameters.looks), killed=killed)
+    model = learn_model(learned, parameters.looks)
+    errors = track_rig(rig, model, killed=killed, placed_off=run.placed_off)
     return _check(run, rig.names[killed], errors)
 
 

@@ -16,6 +16,7 @@ from inhand_tracker.methods.registry import new_tracker
 from inhand_tracker.model.model import Model
 from inhand_tracker.prior.calibration import CHI_SQUARE_90
 from inhand_tracker.rig.parameters import DEFAULT_RIG, RigParameters
+from inhand_tracker.rig.placing import PlaceDeviation
 from inhand_tracker.rig.rig_frames import Capture, RigFrames
 from inhand_tracker.wire.conversion import joints_of
 
@@ -26,6 +27,11 @@ from inhand_lab.world.rigs import RigSimulation
 
 JUMP_S = 1.0
 """Seconds after a camera has failed within which poses may leap by that."""
+
+NOT_OFF = PlaceDeviation(0.0, 0.0)
+"""Cameras that are where they are said to be."""
+PLACED_SEED = 7
+"""Seed of the errors of cameras' places."""
 
 CLOCK_READINGS = 50
 """Number of readings of the processor's time by which it is known what one takes."""
@@ -92,18 +98,20 @@ def track_rig(
     on_frame: Callable[[], None] = lambda: None,
     images: Callable[[int, int], Image] | None = None,
     singles: bool = True,
+    placed_off: PlaceDeviation = NOT_OFF,
 ) -> RigErrors:
     """Track through a rig; the camera ``killed``, a number, fails in the middle of it.
 
     Each camera's clock is known, but not its drift. ``images`` gives a camera's frame, where it is
-    not rendered anew.
+    not rendered anew. Cameras are ``placed_off`` from where they are, by chance, by about that
+    along and about each axis, as the calibration says.
     """
     show = images or (lambda camera, frame: rendered_image(rig.cameras[camera], frame))
     # The others take their last frame before the first one does.
     count, every = rig.cameras[0].frames - 1, tuple(range(len(rig.cameras)))
     middle_s = rig.times_s(0)[count // 2]
     left_handed = rig.cameras[0].person.handedness == "left"
-    places = {name: _placement(rig.rig_from_camera[n]) for n, name in enumerate(rig.names)}
+    places = places_of(rig, placed_off)
 
     def follower(cameras: tuple[int, ...], until_s: dict[int, float]) -> _Follower:
         tracker = new_tracker(
@@ -111,7 +119,10 @@ def track_rig(
         )
         chosen = {rig.names[camera]: places[rig.names[camera]] for camera in cameras}
         off = np.full((count, len(model.shape.marked_vertices), 3), np.nan)
-        return _Follower(tracker, cameras, RigFrames(chosen, parameters), off, until_s)
+        frames = RigFrames(chosen, parameters)
+        for camera, place in chosen.items():
+            frames.place(camera, place, placed_off)
+        return _Follower(tracker, cameras, frames, off, until_s)
 
     alone = [follower((camera,), {}) for camera in every] if singles else []
     fused = follower(every, {})
@@ -218,6 +229,19 @@ def _clock_ms() -> float:
 
 def _largest(values: Array) -> float:
     return float(np.nanmax(values)) if np.isfinite(values).any() else np.nan
+
+
+def places_of(rig: RigSimulation, off: PlaceDeviation) -> dict[str, Placement]:
+    """Say where cameras are, ``rig_from_camera``, each ``off`` by chance along and about each
+    axis."""
+    random = np.random.default_rng(PLACED_SEED)
+    wrong = {}
+    for number, name in enumerate(rig.names):
+        place = _placement(rig.rig_from_camera[number])
+        shift = random.normal(0.0, off.translation_m, 3)
+        turn = rotations.from_vector(random.normal(0.0, off.rotation_rad, 3))
+        wrong[name] = Placement(place.translation + shift, rotations.multiply(turn, place.rotation))
+    return wrong
 
 
 def _placement(rig_from_camera: Transform) -> Placement:

@@ -25,6 +25,7 @@ from inhand_tracker.frames import camera_frame, source_of
 from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.live.joining import Captured, JoinedMoment, JoinedMoments
 from inhand_tracker.rig.people_fusing import person_message
+from inhand_tracker.rig.placing import PlaceDeviation
 from inhand_tracker.rig.rig_frames import Capture, RigFrame, RigFrames
 from inhand_tracker.wire.conversion import Need
 
@@ -127,7 +128,7 @@ class RigCameras(Cameras):
         return LiveFrame(
             _people(joined),
             replace(frame, view_from_reference=view),
-            source_of(first.skeleton, first.camera, info, self._places.get(first.camera)),
+            source_of(first.skeleton, first.camera, info, self._pose_in_rig(first.camera)),
         )
 
     def note_unused(self, skipped: int = 0) -> None:
@@ -164,9 +165,17 @@ class RigCameras(Cameras):
         }
         if self._frames is None:
             self._frames = RigFrames(known)
-            return
         for camera, placement in known.items():
-            self._frames.place(camera, placement)
+            self._frames.place(camera, placement, _deviation_of(self._calibration, camera))
+
+    def _pose_in_rig(self, camera: str) -> Pose | None:
+        """Where a camera is in the rig, as far as it is known by now."""
+        if self._frames is None or camera not in self._places:
+            return None
+        place = self._frames.rig_from(camera)
+        x, y, z = place.translation.tolist()
+        qw, qx, qy, qz = place.rotation.tolist()
+        return Pose((x, y, z), (qw, qx, qy, qz))
 
     def _join(self, captured: Captures, *, images: bool) -> RigFrame | None:
         """Join what cameras captured; None where no place of theirs is known."""
@@ -199,7 +208,17 @@ class RigCameras(Cameras):
     def _note_agreement(self) -> None:
         """Say which camera is not where it is said to be."""
         left_out = {} if self._frames is None else self._frames.left_out
+        misplaced = {} if self._frames is None else self._frames.misplaced
         for camera in self._cameras:
+            name = f"calibration of {camera}"
+            if (off_m := misplaced.get(camera)) is None or camera in left_out:
+                self._daemon.health.well(name)
+            else:
+                self._daemon.health.trouble(
+                    name,
+                    f"what {camera} sees is {100 * off_m:.1f} cm off, which is more than its "
+                    "calibration allows, and poses are worse: `inhand calibrate` finds where it is",
+                )
             name = f"place of {camera}"
             if (off_m := left_out.get(camera)) is None:
                 self._daemon.health.well(name)
@@ -214,6 +233,17 @@ class RigCameras(Cameras):
 def _by_rig_clock(captured: Captured[Skeletons, RgbdFrame]) -> Skeletons:
     """Return a capture's skeletons with their time by the rig's clock."""
     return msgspec.structs.replace(captured.skeleton, time_ns=max(captured.time_ns, 0))
+
+
+def _deviation_of(calibration: RigCalibration, camera: str) -> PlaceDeviation | None:
+    """How sure a calibration is of where a camera is; None where it does not say where it is."""
+    calibrated = calibration.cameras.get(camera)
+    if calibrated is None:
+        return None
+    shift, turn = calibrated.translation_deviation, calibrated.rotation_deviation
+    return PlaceDeviation(
+        float(np.sqrt(np.mean(np.square(shift)))), float(np.sqrt(np.mean(np.square(turn))))
+    )
 
 
 def _people(frame: RigFrame) -> list[Person]:

@@ -4,8 +4,23 @@ import numpy as np
 import pytest
 from inhand_lab.benchmarks.parameters import RigCheckParameters
 from inhand_lab.benchmarks.rig_accuracy import RigRun, check_rigs
+from inhand_lab.benchmarks.rig_tracking import NOT_OFF, places_of
+from inhand_lab.world.rigs import simulate_rig
+from inhand_tracker.geometry import rotations
+from inhand_tracker.rig.placing import PlaceDeviation
 
+OFF = PlaceDeviation(0.01, 0.02)
 FEW = RigCheckParameters(frames=16, people=2, learned_frames=60, looks=8)
+
+
+def test_cameras_are_elsewhere_than_they_are_said_to_be_by_as_much_as_was_asked_for() -> None:
+    rig = simulate_rig("drinkFromMug", 0, 6001, 2, 4)
+    true, said = places_of(rig, NOT_OFF), places_of(rig, OFF)
+    off = np.array([said[name].translation - true[name].translation for name in rig.names])
+    turns = [rotations.angle_between(said[name].rotation, true[name].rotation) for name in said]
+    assert list(said) == list(rig.names)
+    assert 0.005 < np.sqrt(np.mean(off**2)) < 0.015
+    assert 0.01 < np.sqrt(np.mean(np.square(turns)) / 3.0) < 0.03
 
 
 @pytest.mark.long

@@ -60,6 +60,34 @@ class RigParameters:
     """Seconds, about, for which most cameras must read a person with sides exchanged before it is
     the person who had them exchanged so far."""
 
+    # How places of cameras are learned (placing).
+    place_m: float = 0.003
+    """Standard deviation, in metres along each axis, of where a camera is of which no calibration
+    says how sure it is: with the next one, 5 mm and 0.2° in all."""
+    place_rad: float = 0.002
+    """The same of its rotation, in radians about each axis."""
+    least_place_m: float = 0.0015
+    """The least such deviation, whatever a calibration says: cameras and floors move."""
+    least_place_rad: float = 0.001
+    """The same of the rotation."""
+    place_share: float = 0.2
+    """Share of what images say of cameras' places that counts: one frame errs as the next does."""
+    place_freedom: float = 6.0
+    """Degrees of freedom of Student's t, by which moments err: few are far off."""
+    body_place_m: float = 0.01
+    """Standard deviation, in metres along each axis, by which a camera has people elsewhere than
+    they are, however long it sees them."""
+    pull_error_m: float = 0.01
+    """Metres along each axis, a standard deviation, by which an image alone has an object
+    elsewhere than others for other reasons."""
+    pull_error_rad: float = 0.1
+    """The same of how it is turned, in radians."""
+    place_memory_s: float = 300.0
+    """Seconds, about, of seeing objects after which what was seen is forgotten."""
+    place_most: float = 5.0
+    """Number of its calibration's deviations by which a camera may be off by what is learned: the
+    root of a sum of six squares."""
+
     # How a camera that is not where it is said to be is found (agreement).
     compared_every_ns: int = 100_000_000
     """Nanoseconds from one comparison of the cameras to the next."""

@@ -11,9 +11,10 @@ import numpy as np
 from inhand_schemas.messages import Person
 
 from inhand_tracker.geometry.arrays import Array
+from inhand_tracker.geometry.image import ViewPull
 from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.people.cheapest_pairs import cheapest_pairs
-from inhand_tracker.rig.agreement import Agreement
+from inhand_tracker.rig.agreement import FEWEST_JOINTS, Agreement
 from inhand_tracker.rig.joint_fusion import fuse_joints
 from inhand_tracker.rig.kernels.fuse import mean_distance
 from inhand_tracker.rig.parameters import DEFAULT_RIG, RigParameters
@@ -38,6 +39,8 @@ class PeopleFuser:
         self._next = 0
         self._agreement = Agreement(parameters)
         self._compared_ns = 0
+        self.pulls: list[list[ViewPull]] = []
+        """By how much each camera has each person elsewhere, where that was just compared."""
         self._together: dict[tuple[int, int], int] = {}
 
     @property
@@ -121,6 +124,7 @@ class PeopleFuser:
         time_ns: int,
     ) -> None:
         """Watch whether the cameras agree; now and then is enough."""
+        self.pulls = []
         if 0 <= time_ns - self._compared_ns < self._parameters.compared_every_ns:
             return
         self._compared_ns = time_ns
@@ -134,10 +138,36 @@ class PeopleFuser:
             }
             for camera, joints in seen.items():
                 joints.append(by_camera.get(camera, nowhere))
+            pulls = self._pulls(by_camera)
+            if pulls:
+                self.pulls.append(pulls)
         if tracks:
             self._agreement.compare(
                 {camera: seen[camera] for camera in self._places if camera in seen}, time_ns
             )
+
+    def _pulls(self, by_camera: Mapping[str, Array]) -> list[ViewPull]:
+        """By how much cameras, those that agree by and large, have a person elsewhere than all of
+        them have, by joints (20, 3) of each; none where they see few of the same."""
+        trusted = {name: joints for name, joints in by_camera.items() if not self._off(name)}
+        if len(trusted) < 2:
+            return []
+        each = np.stack(list(trusted.values()))
+        common = np.isfinite(each).all(axis=(0, 2))
+        if common.sum() < FEWEST_JOINTS:
+            return []
+        middle = each[:, common].mean(axis=0)
+        at = middle.mean(axis=0)
+        information = np.diag([self._parameters.body_place_m**-2.0] * 3 + [0.0] * 3)
+        return [
+            ViewPull(
+                camera,
+                at,
+                np.concatenate((np.median(joints[common] - middle, axis=0), np.zeros(3))),
+                information,
+            )
+            for camera, joints in trusted.items()
+        ]
 
     def _merge(self, matched: Mapping[int, Sequence[Sighting]], time_ns: int) -> None:
         """Take two for one person, the one of before, whom no camera sees apart, and who have long

@@ -5,7 +5,8 @@ frame = frames.join([Capture("front", time_ns, people, image), Capture("left", â
 estimate = tracker.step(frame.people[0].joints, frame.time_ns, frame.image)
 
 People and poses are in the frame of the first camera, whether it sees anything or not: so nothing
-leaps where a camera fails. The frame's time is that of the first capture.
+leaps where a camera fails. The frame's time is that of the first capture. Where the other cameras
+stand from the first one is learned meanwhile (``placing``), also from what trackers tell of images.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,11 +16,12 @@ import numpy as np
 from inhand_schemas.messages import Person
 
 from inhand_tracker.geometry.camera import Intrinsics
-from inhand_tracker.geometry.image import Image, OtherView
+from inhand_tracker.geometry.image import Image, OtherView, ViewPull
 from inhand_tracker.geometry.placement import HERE, Placement
 from inhand_tracker.rig.parameters import DEFAULT_RIG, RigParameters
 from inhand_tracker.rig.people_fusing import PeopleFuser
 from inhand_tracker.rig.person_track import FusedPerson
+from inhand_tracker.rig.placing import PlaceDeviation, Placing
 from inhand_tracker.rig.sightings import CameraPeople
 
 
@@ -54,13 +56,43 @@ class RigFrames:
         self._home = next(iter(places))
         self._home_from_rig = places[self._home].inverse()
         self._home_from: dict[str, Placement] = {}
+        self._parameters = parameters
+        self._placing = Placing(self._home, parameters)
+        self._time_ns = 0
         self._fuser = PeopleFuser(self._home_from, parameters)
         for camera, place in places.items():
             self.place(camera, place)
 
-    def place(self, camera: str, rig_from_camera: Placement) -> None:
-        """Take a camera to be at a place of the rig; the frame of reference stays."""
-        self._home_from[camera] = self._home_from_rig @ rig_from_camera
+    def place(
+        self, camera: str, rig_from_camera: Placement, deviation: PlaceDeviation | None = None
+    ) -> None:
+        """Take a camera to be at a place of the rig, as surely as its calibration has it there; the
+        frame of reference stays."""
+        parameters = self._parameters
+        if deviation is None:
+            deviation = PlaceDeviation(parameters.place_m, parameters.place_rad)
+        sure = deviation.at_least(parameters.least_place_m, parameters.least_place_rad)
+        self._placing.place(camera, self._home_from_rig @ rig_from_camera, sure)
+        self._move()
+
+    @property
+    def misplaced(self) -> Mapping[str, float]:
+        """Cameras that are farther from where they are said to be than their calibration allows,
+        and by how many metres what they see would be off."""
+        return self._placing.misplaced
+
+    def rig_from(self, camera: str) -> Placement:
+        """Return ``rig_from_camera`` as far as it is known by now."""
+        return self._home_from_rig.inverse() @ self._home_from[camera]
+
+    def _move(self) -> None:
+        """Let cameras be where they were found to be."""
+        self._placing.settle()
+        for camera in self._placing.cameras:
+            self._home_from[camera] = self._placing.found(camera)
+
+    def _learn(self, pulls: Sequence[ViewPull]) -> None:
+        self._placing.note(pulls, self._time_ns)
 
     def view_of(self, camera: str) -> Placement | None:
         """Return ``view_from_reference`` of a camera; None of the one whose frame it is."""
@@ -76,9 +108,18 @@ class RigFrames:
     def join(self, captures: Sequence[Capture]) -> RigFrame:
         """Join what cameras captured about the time of the first of them; a camera that is left out
         adds nothing."""
-        time_ns = captures[0].time_ns
+        time_ns = self._time_ns = captures[0].time_ns
+        self._move()
         seen = [CameraPeople(one.camera, one.time_ns, one.people) for one in captures]
+        left_out = set(self.left_out)
         people = self._fuser.fuse(seen, time_ns)
+        if left_out == set(self.left_out):
+            for pulls in self._fuser.pulls:
+                self._placing.note_person(pulls, time_ns)
+        else:
+            # Somebody moved a camera, of which the others' places were learned.
+            self._placing.restart()
+            self._move()
         shown = [
             (one, one.image)
             for one in captures
@@ -98,8 +139,9 @@ class RigFrames:
                 own = seen
             else:
                 later_s = (one.time_ns - time_ns) / 1e9
-                others.append(OtherView(seen, view or HERE, later_s))
-        return replace(own, others=tuple(others))
+                covariance = None if view is None else self._placing.covariance(one.camera)
+                others.append(OtherView(seen, view or HERE, later_s, covariance))
+        return replace(own, others=tuple(others), on_pulls=self._learn)
 
 
 def _nothing(camera: Intrinsics) -> Image:

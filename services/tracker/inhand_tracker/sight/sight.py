@@ -179,6 +179,14 @@ class Sight:
         moved = self._refiner.refine((translations, orientations), view, prior, trust)
         return self._likelier((translations, orientations), moved, [PlacedView(view)], prior, trust)
 
+    def refine_alone(
+        self, pose: tuple[Array, Array], view: SightView, prior: PosePrior, trust: float
+    ) -> Refined:
+        """Move one pose, (3,) and (4,), as ``refine`` does, wherever that leads."""
+        moved = self._refiner.refine((pose[0][None], pose[1][None]), view, prior, trust)
+        seen = self.log_likelihood(moved.translations, moved.rotations, view)
+        return Refined(moved.translations, moved.rotations, moved.information, seen)
+
     def refine_together(
         self,
         translations: Array,

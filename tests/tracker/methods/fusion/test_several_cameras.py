@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
-from inhand_tracker.geometry.image import Image, OtherView
+from inhand_tracker.geometry.image import Image, OtherView, ViewPull
 from inhand_tracker.geometry.placement import HERE, Placement
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION
@@ -22,6 +22,7 @@ SPHERE = BoundingSphere(np.zeros(3), 0.15)
 OFF = np.array([0.02, 0.01, 0.06])
 """Metres by which the box is believed elsewhere than it is."""
 FAR_AWAY = np.full((20, 3), 9.0)
+UNSURE = np.diag([0.02**2] * 3 + [0.01**2] * 3)
 NOTHING = Image(None, BOX_CAMERA)
 
 
@@ -129,3 +130,34 @@ def test_what_was_captured_at_another_time_is_looked_at_where_the_object_was_the
     at_once = looked_at(0.0, monkeypatch)
     sharper = [one.sharpness > other.sharpness for one, other in zip(at_once, seen, strict=True)]
     assert np.mean(sharper[2:]) > 0.9
+
+
+def pulls_by(*others: SideLook) -> list[ViewPull]:
+    """What the first camera's image and others say of the box where they were looked at long
+    enough."""
+    told: list[ViewPull] = []
+    first = replace(FRONT, on_pulls=told.extend)
+    belief = PoseMixture((PoseGaussian(PLACE, TURN, np.eye(6) * 1e-4),), np.ones(1))
+    search = ImageSearch(sight(learned=appearance(returns_depth=False)), SPHERE, DEFAULT_FUSION, 1)
+    for _ in range(DEFAULT_FUSION.looks_to_place):
+        search.look(belief, first, FAR_AWAY, 1.0, 1.0, others)
+    return told
+
+
+def test_each_image_says_where_it_alone_has_the_object() -> None:
+    """The cameras look from aside of each other, and the left one is 2 cm lower than it is said to
+    be: it has the box 2 cm lower beside the first one."""
+    place = LEFT.view_from_reference
+    higher = Placement(place.translation + np.array([0.0, -0.02, 0.0]), place.rotation)
+    front, left = pulls_by(replace(LEFT, view_from_reference=higher, place_covariance=UNSURE))
+    assert (front.camera, left.camera) == ("front", "left")
+    assert left.deviation[1] - front.deviation[1] == pytest.approx(0.02, abs=0.003)
+    for one in (front, left):
+        assert one.information[1, 1] > 1.0 / 0.02**2
+        np.testing.assert_allclose(one.information, one.information.T, rtol=1e-3, atol=1.0)
+
+
+def test_an_image_that_does_not_show_the_object_says_nothing_of_where_it_is() -> None:
+    nothing = np.full_like(LEFT.image.colour, 90)
+    pulls = pulls_by(replace(LEFT, image=replace(LEFT.image, colour=nothing)))
+    assert [one.camera for one in pulls] == ["front"]

@@ -85,6 +85,18 @@ class FusionParameters:
     elsewhere than it is expected to go."""
     late_pixels: float = 3.0
     """Pixels of such doubt by which an image counts half."""
+    place_pixels: float = 8.0
+    """Pixels by which an object is off in an image, as its camera's place is not sure, where it
+    counts half."""
+    pull_reach_m: float = 0.015
+    """Standard deviation, in metres, of where an image alone has an object from where all have, but
+    for its camera's place."""
+    pull_reach_rad: float = 0.1
+    """The same of how it is turned, in radians."""
+    pull_log_likelihood: float = 8.0
+    """Log-likelihood ratio by which an image must support what it alone has."""
+    looks_to_place: int = 3
+    """Number of moments of which one teaches where cameras are."""
     region_margin: float = 1.3
     """Radius, in the object's radii, of what is prepared of an image around each hypothesis."""
     most_pixels: int = 30_000

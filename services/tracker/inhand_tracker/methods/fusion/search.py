@@ -4,7 +4,7 @@ The image of one camera, or those of several of the same moment, weigh hypothese
 and the likeliest of them are refined, beside what was believed.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,12 +12,13 @@ import numpy as np
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.camera import NEAREST_M, Intrinsics
-from inhand_tracker.geometry.image import Image
+from inhand_tracker.geometry.image import Image, ViewPull
 from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture, means_of
 from inhand_tracker.methods.fusion.narrowing import Hypotheses, narrow
 from inhand_tracker.methods.fusion.parameters import FusionParameters
 from inhand_tracker.methods.fusion.posterior import ImagePosterior
+from inhand_tracker.methods.fusion.pulls import pulls_of
 from inhand_tracker.sight.colours import Colours
 from inhand_tracker.sight.frame import Region, SightFrame, prepare
 from inhand_tracker.sight.kernels.spheres_region import spheres_region
@@ -32,11 +33,14 @@ from inhand_tracker.sight.view import PlacedView, SightView
 class SideLook:
     """An image of another camera, which stands at ``view_from_reference`` from the frame of
     reference that poses are in at the moment that is looked at; it counts by ``sharpness``, from 0
-    to 1."""
+    to 1, and beside others by ``share``, as far as it is sure where the camera is; by that,
+    objects near the one that is looked for may be off by ``place_covariance`` (6, 6)."""
 
     image: Image
     view_from_reference: Placement
     sharpness: float
+    share: float = 1.0
+    place_covariance: Array | None = None
 
 
 class ImageSearch:
@@ -82,14 +86,20 @@ class ImageSearch:
         parameters = self._parameters.with_effort(effort)
         hypotheses = belief.sample(parameters.hypotheses, self._random)
         glances = [_Glance(image, None, sharpness)] if image.has_pixels or not others else []
-        glances += [_Glance(one.image, one.view_from_reference, one.sharpness) for one in others]
+        glances += [
+            _Glance(
+                one.image, one.view_from_reference, one.sharpness, one.share, one.place_covariance
+            )
+            for one in others
+        ]
         opened = self._open_all(glances, belief.parts[0], hypotheses, joints)
         if not opened:
             self._found = self.tried = None
             self.convinces = False
             return None
         sharpest = max(glance.sharpness for glance, _ in opened)
-        views = tuple(glance.placed(view, sharpest) for glance, view in opened)
+        surest = max(glance.share for glance, _ in opened)
+        views = tuple(glance.placed(view, sharpest, surest) for glance, view in opened)
         posterior = ImagePosterior(self._sight, self._sphere, views, belief, sharpest, parameters)
         posterior, scores = self._compare_unseen(posterior, *hypotheses)
         self.tried = Hypotheses(*hypotheses, scores)
@@ -104,6 +114,8 @@ class ImageSearch:
         names = [glance.image.source for glance, _ in opened]
         self._learn(names, posterior, modes[best], float(seen[best]))
         self._looks += 1
+        if image.on_pulls is not None:
+            self._tell(image.on_pulls, opened, posterior, modes[best])
         colours = [self._eyes[name].colours for name in names]
         self._found = _Found(modes, posterior.views, colours, joints)
         self.convinces = seen[best] >= posterior.unconvincing
@@ -228,6 +240,25 @@ class ImageSearch:
             placed = _placed(pose, one.view_from_reference)
             self._learn_colours(eye, placed, one.view.frame, of_object=rate)
 
+    def _tell(
+        self,
+        on_pulls: Callable[[Sequence[ViewPull]], None],
+        opened: Sequence[tuple["_Glance", SightView]],
+        posterior: ImagePosterior,
+        pose: PoseGaussian,
+    ) -> None:
+        """Tell, now and then, what each sharp image alone says of a pose that was found."""
+        parameters = posterior.parameters
+        if len(opened) < 2 or self._looks % parameters.looks_to_place:
+            return
+        views = [
+            (glance.image.source, replace(one, sharpness=glance.sharpness), glance.place_covariance)
+            for (glance, _), one in zip(opened, posterior.views, strict=True)
+            if glance.sharpness >= parameters.least_narrowed_sharpness
+        ]
+        origin = pose.centre - self._sphere.arm(pose.rotation)
+        on_pulls(pulls_of(self._sight, views, (origin, pose.rotation), parameters))
+
     def _seen_in(self, one: PlacedView, pose: PoseGaussian) -> float:
         """The log-likelihood of a pose by one view alone."""
         origin = self._sphere.origins(pose.centre[None], pose.rotation[None])
@@ -300,16 +331,19 @@ class _Glance:
     image: Image
     view_from_reference: Placement | None
     sharpness: float
+    share: float = 1.0
+    place_covariance: Array | None = None
 
     def points(self, points: Array) -> Array:
         """Take points (..., 3) to the camera's frame."""
         place = self.view_from_reference
         return points if place is None else place.points(points)
 
-    def placed(self, view: SightView, sharpest: float) -> PlacedView:
-        """Place the view of this image, which counts as a share of the ``sharpest`` one."""
+    def placed(self, view: SightView, sharpest: float, surest: float) -> PlacedView:
+        """Place the view of this image, which counts as a share of the ``sharpest`` one, and of the
+        one whose camera's place is ``surest``."""
         share = 1.0 if self.sharpness == sharpest else self.sharpness / sharpest
-        return PlacedView(view, self.view_from_reference, share)
+        return PlacedView(view, self.view_from_reference, share * (self.share / surest))
 
 
 @dataclass

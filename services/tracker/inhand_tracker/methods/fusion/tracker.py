@@ -243,7 +243,17 @@ class FusionFollower(Follower):
         off = np.nan_to_num(camera.project(late) - camera.project(early))
         doubt = self._parameters.late_doubt * float(np.linalg.norm(off))
         sharpness /= 1.0 + (doubt / self._parameters.late_pixels) ** 2
-        return SideLook(one.image, place, sharpness)
+        covariance = _place_covariance(one, motion.start)
+        share = 1.0 if covariance is None else self._place_share(one, motion.start, covariance)
+        return SideLook(one.image, place, sharpness, share, covariance)
+
+    def _place_share(self, one: OtherView, centre: Array, covariance: Array) -> float:
+        """How much an image counts of an object that may be off by a covariance, as it is not sure
+        where its camera is."""
+        away = float(np.linalg.norm(one.view_from_reference.points(centre)))
+        off_m = float(np.sqrt(np.trace(covariance[:3, :3])))
+        off_pixels = one.image.camera.fx * off_m / away
+        return 1.0 / (1.0 + (off_pixels / self._parameters.place_pixels) ** 2)
 
     def _motion(self, believed: PoseGaussian, time_ns: int) -> Motion:
         """How the object moves about a time at which it is believed somewhere."""
@@ -291,6 +301,15 @@ class FusionFollower(Follower):
             stated.rotation,
             moved_covariance(stated.covariance, -arm),
         )
+
+
+def _place_covariance(one: OtherView, centre: Array) -> Array | None:
+    """By how much an object at a point (3,) may be off in a camera's image, as it is not sure where
+    the camera is: a covariance (6, 6) in the frame of reference."""
+    if one.place_covariance is None:
+        return None
+    arm = centre - one.view_from_reference.inverse().translation
+    return moved_covariance(one.place_covariance, arm)
 
 
 def confidence_of(pose: PoseGaussian, samples: int) -> float:
