@@ -47,6 +47,8 @@ from inhand_lab.world.interactions import INTERACTIONS
 from inhand_runtime.errors import SettingsError
 from rich.console import Console, Group, RenderableType
 
+from inhand.bench_handovers import DEFAULT_SEEDS as HANDOVER_SEEDS
+from inhand.bench_handovers import add_handover_arguments, measure_handovers
 from inhand.bench_hub import rigs_table, running_routers, security_table
 from inhand.bench_label_tables import labels_table
 from inhand.bench_recorder import (
@@ -132,9 +134,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=int,
         nargs="+",
         metavar="S",
-        help="for outcomes and rigs: seeds of the people who are watched "
+        help="for outcomes, rigs and handovers: seeds of the people who are watched "
         f"(default: {' '.join(map(str, OUTCOME_SEEDS))}; for rigs: "
-        f"{' '.join(map(str, DEFAULT_SEEDS))})",
+        f"{' '.join(map(str, DEFAULT_SEEDS))}; for handovers: "
+        f"{' '.join(map(str, HANDOVER_SEEDS))})",
     )
     parser.add_argument(
         "--participants",
@@ -165,6 +168,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "or with UTD-MHAD's skeletons, in which swings and strokes are counted",
     )
     add_rig_arguments(parser)
+    add_handover_arguments(parser)
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
 
 
@@ -367,6 +371,7 @@ SUBJECTS_HELP = {
     "ablation": "the error of fusion without each of its parts",
     "calibration": "how far cameras of a rig are from the truth, by a board and by people",
     "constants": "its error with each number halved and doubled",
+    "handovers": "whether two people who hand something over and pass keep their numbers",
     "hub": "what a hub costs by the number of rigs, and its encryption and rules in delay",
     "labels": "how far labels between keyframes are from the truth",
     "likelihood": "where its optimum is beside the truth, on rendered objects; or how true poses "
@@ -391,6 +396,7 @@ OPTIONS_OF = {
     "estimated": "outcomes",
     "idle_minutes": "outcomes",
     "real": "outcomes",
+    "trials": "handovers",
 }
 """The subject of each option that is for one alone."""
 
@@ -401,6 +407,7 @@ SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "ablation": _ablation,
     "calibration": _calibration,
     "constants": _constants,
+    "handovers": measure_handovers,
     "hub": _hub,
     "labels": _labels,
     "likelihood": _likelihood,

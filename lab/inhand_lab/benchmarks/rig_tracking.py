@@ -103,7 +103,7 @@ def track_rig(
     count, every = rig.cameras[0].frames - 1, tuple(range(len(rig.cameras)))
     middle_s = rig.times_s(0)[count // 2]
     left_handed = rig.cameras[0].person.handedness == "left"
-    places = {name: _placement(rig.rig_from_camera[n]) for n, name in enumerate(rig.names)}
+    places = {name: placement_of(rig.rig_from_camera[n]) for n, name in enumerate(rig.names)}
 
     def follower(cameras: tuple[int, ...], until_s: dict[int, float]) -> _Follower:
         tracker = new_tracker(
@@ -130,23 +130,28 @@ def track_rig(
     return RigErrors(single, result[-2], result[-1], jumps[1], jumps[0])
 
 
-def _captures(
-    rig: RigSimulation, tick: int, show: Callable[[int, int], Image]
-) -> Iterator[tuple[int, tuple[int, Capture]]]:
-    """Give what each camera, by its number, captured nearest to a frame of the first one, within
-    half a period, with the number of its frame; not what was lost."""
+def nearest_frames(rig: RigSimulation, tick: int) -> Iterator[tuple[int, int, int]]:
+    """Give what each camera captured nearest to a frame of the first one, within half a period and
+    but for what was lost: the camera's number, its frame's, and its time by the rig's clock, drift
+    excepted, in nanoseconds."""
     now_s = rig.times_s(0)[tick]
     period_s = 1.0 / rig.cameras[0].frame_rate
-    for number, seen in enumerate(rig.cameras):
+    for number in range(len(rig.cameras)):
         times_s = rig.times_s(number)
         frame = int(np.argmin(np.abs(times_s - now_s)))
         if abs(times_s[frame] - now_s) > period_s / 2.0 or rig.dropped[number][frame]:
             continue
         said_ns = int(rig.stamps_ns(number)[frame])
-        time_ns = said_ns + round(1e9 * (1.0 + rig.clocks[number].offset_s))
-        people = [person_message(seen, frame)]
-        capture = Capture(rig.names[number], time_ns, people, show(number, frame))
-        yield number, (frame, capture)
+        yield number, frame, said_ns + round(1e9 * (1.0 + rig.clocks[number].offset_s))
+
+
+def _captures(
+    rig: RigSimulation, tick: int, show: Callable[[int, int], Image]
+) -> Iterator[tuple[int, tuple[int, Capture]]]:
+    """Give what each camera, by its number, captured, with the number of its frame."""
+    for number, frame, time_ns in nearest_frames(rig, tick):
+        people = [person_message(rig.cameras[number], frame)]
+        yield number, (frame, Capture(rig.names[number], time_ns, people, show(number, frame)))
 
 
 def _follow(
@@ -220,5 +225,6 @@ def _largest(values: Array) -> float:
     return float(np.nanmax(values)) if np.isfinite(values).any() else np.nan
 
 
-def _placement(rig_from_camera: Transform) -> Placement:
+def placement_of(rig_from_camera: Transform) -> Placement:
+    """Return where a camera is as the tracker takes it."""
     return Placement(rig_from_camera.translation, quaternions(rig_from_camera.rotation[None])[0])
