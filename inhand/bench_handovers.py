@@ -1,4 +1,5 @@
-"""``inhand bench handovers``: whether people who hand something over keep their numbers."""
+"""``inhand bench handovers``: whether people who hand something over keep their numbers, and where
+a prior has a real thing that passes on."""
 
 import argparse
 from collections.abc import Mapping, Sequence
@@ -7,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from inhand_lab.benchmarks.handover_ids import HandoverIds, check_handovers
+from inhand_lab.benchmarks.real_handover import RealHandover, check_real_handover
 from inhand_lab.workers import usable_cores
 from inhand_lab.world.parameters import RIG_CAMERAS
 from inhand_runtime.errors import SettingsError
@@ -33,7 +35,10 @@ def add_handover_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def measure_handovers(arguments: argparse.Namespace) -> tuple[Table, dict[str, Any]]:
-    """Check all handovers; raises SettingsError for what cannot be simulated."""
+    """Check all handovers, or the real one; raises SettingsError for what cannot be simulated, and
+    DatasetError for a recording of another kind."""
+    if arguments.real:
+        return _measure_real(arguments)
     cameras = DEFAULT_CAMERAS if arguments.cameras is None else arguments.cameras
     if not 1 <= cameras <= len(RIG_CAMERAS):
         raise SettingsError(f"--cameras is from 1 to {len(RIG_CAMERAS)}, not {cameras}")
@@ -42,6 +47,36 @@ def measure_handovers(arguments: argparse.Namespace) -> tuple[Table, dict[str, A
     with progress_bar("handing over", len(seeds)) as advance:
         checks = check_handovers(seeds, cameras, usable_cores(), advance)
     return handovers_table(checks), {"handovers": [{**asdict(c), "right": c.right} for c in checks]}
+
+
+def _measure_real(arguments: argparse.Namespace) -> tuple[Table, dict[str, Any]]:
+    if len(arguments.real) > 1 or arguments.trials or arguments.seeds:
+        raise SettingsError("--real takes one recording in place of --trials and --seeds")
+    check = check_real_handover(arguments.real[0])
+    return real_handover_table(check), asdict(check)
+
+
+def real_handover_table(check: RealHandover) -> Table:
+    """Where the prior has the thing while one person alone holds it, and who has it."""
+    table = listing(
+        ("held by",),
+        ("frames", "off\ncm", "at most\ncm", "following\ncm", "said: ±\ncm", "in the 90 %\nregion"),
+        "a baton by the prior of a mug in simulated handovers",
+    )
+    for one in check.people:
+        metres = (one.mean_m, one.largest_m, one.following_m, one.deviation_m)
+        table.add_row(
+            one.person,
+            str(one.frames),
+            *(f"{100 * value:.1f}" for value in metres),
+            f"{100 * one.region_share:.0f} %",
+        )
+    table.caption = (
+        f"whose prior is nearer has it in {check.right_holder} of {check.held_frames} frames; it "
+        f"passes at {check.passes_s:.2f} s by the forces, at {check.passes_by_prior_s:.2f} s by "
+        "the prior"
+    )
+    return table
 
 
 def handovers_table(checks: Sequence[HandoverIds]) -> Table:
