@@ -105,6 +105,7 @@ def run(arguments: argparse.Namespace) -> int:
     write_rig_calibration(arguments.output, calibration)
     print(f"written: {arguments.output}; name it in the settings of each camera,")
     print(f'  [capture.{next(iter(calibration.cameras))}] calibration = "{arguments.output.name}"')
+    print("then `inhand reload`, also where it is named already: what runs has the former one")
     if arguments.json is not None:
         write_json(arguments.json, result)
     return DONE

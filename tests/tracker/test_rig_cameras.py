@@ -180,6 +180,17 @@ def test_a_calibration_says_where_cameras_are_and_how_their_clocks_differ(tmp_pa
     assert in_rig(daemon.poses["mug"][-20:]) == pytest.approx(in_rig(usual[-20:]), abs=1e-6)
 
 
+def test_a_calibration_that_is_written_anew_meanwhile_is_said(tmp_path: Path) -> None:
+    film, path = RigFilm(frames=90), calibrated(tmp_path)
+    daemon = SimulatedDaemon(*film.messages())
+    chosen = TrackerSettings(cameras=film.cameras, calibration=path, **BLIND)
+    tracker = FusionTracker(wave_model(), terms=[])
+    service = TrackerService(daemon, chosen, lambda: GivenObjects({"mug": tracker}), daemon.clock)
+    calibrated(tmp_path, left=-2.0)
+    service.run()
+    assert "rig.toml was written anew" in troubles(daemon)
+
+
 def test_cameras_of_which_nobody_said_where_they_are_are_said() -> None:
     daemon = tracked(RigFilm(says_place=False))
     assert "left and front are said to be at the same place" in troubles(daemon)
