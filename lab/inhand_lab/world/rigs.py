@@ -149,10 +149,10 @@ def simulate_rig(
     The first camera's simulation is what ``simulate`` makes, but for the room's walls behind it,
     which it does not see. The rig is the same in every performance of a participant's interaction.
     Whoever is ``roaming`` walks about and turns while using the thing; the cameras stand farther
-    away. Cameras ``upside_down``, by name, hang that way where they would stand, and follow nobody:
-    skeleton trackers know people who are upright. Raises ValueError for an interaction that is
-    unknown or not done on the way, another number of cameras, a name of none of them, or under two
-    frames.
+    away. Cameras ``upside_down``, by name, hang that way where they would stand, and follow nobody,
+    as skeleton trackers do that know upright people only. Raises ValueError for an interaction that
+    is unknown or not done on the way, another number of cameras, a name of none of them, or under
+    two frames.
     """
     views = ROAMING_VIEWS if roaming else USUAL_VIEWS
     cast = Casting(interaction, participant, seed, performance, views, roaming=roaming)
