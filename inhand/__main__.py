@@ -43,7 +43,7 @@ VERBS = {
     "evaluate": "measure methods on people that were not trained on",
     "recognise": "measure tracking where the object is not given, and recognition alone",
     "bench": "measure tracker, training, transport, hub, recorder, outcomes, skeletons, objects, "
-    "labels, likelihood, constants, ablation, calibration, rigs",
+    "labels, likelihood, constants, ablation, calibration, rigs, handovers",
     "models": "get the networks that find people in images: fetch",
     "recording": "info, verify, recover, repair, complete, convert, export, import and redact "
     "recordings",

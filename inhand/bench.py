@@ -47,6 +47,8 @@ from inhand_lab.world.interactions import INTERACTIONS
 from inhand_runtime.errors import SettingsError
 from rich.console import Console, Group, RenderableType
 
+from inhand.bench_handovers import DEFAULT_SEEDS as HANDOVER_SEEDS
+from inhand.bench_handovers import add_handover_arguments, measure_handovers
 from inhand.bench_hub import rigs_table, running_routers, security_table
 from inhand.bench_label_tables import labels_table
 from inhand.bench_recorder import (
@@ -132,9 +134,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=int,
         nargs="+",
         metavar="S",
-        help="for outcomes and rigs: seeds of the people who are watched "
+        help="for outcomes, rigs and handovers: seeds of the people who are watched "
         f"(default: {' '.join(map(str, OUTCOME_SEEDS))}; for rigs: "
-        f"{' '.join(map(str, DEFAULT_SEEDS))})",
+        f"{' '.join(map(str, DEFAULT_SEEDS))}; for handovers: "
+        f"{' '.join(map(str, HANDOVER_SEEDS))})",
     )
     parser.add_argument(
         "--participants",
@@ -162,9 +165,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         metavar="FOLDER",
         help="for outcomes, with or without a SOURCE: folders with motion archives of golf swings, "
-        "or with UTD-MHAD's skeletons, in which swings and strokes are counted",
+        "or with UTD-MHAD's skeletons, in which swings and strokes are counted; for handovers, in "
+        "place of simulated ones: a folder with a handover that was measured",
     )
     add_rig_arguments(parser)
+    add_handover_arguments(parser)
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the result")
 
 
@@ -178,10 +183,11 @@ def run(arguments: argparse.Namespace) -> int:
             f"{arguments.subject} is measured on no SOURCE: leave it out; only "
             f"{', '.join(MEASURED_ON + ALSO_MEASURED_ON)} are"
         )
-    for option, subject in OPTIONS_OF.items():
-        if getattr(arguments, option) and arguments.subject != subject:
+    for option, subjects in OPTIONS_OF.items():
+        if getattr(arguments, option) and arguments.subject not in subjects:
             name = option.replace("_", "-")
-            raise SettingsError(f"--{name} is for {subject}, and for nothing else: leave it out")
+            whose = " and ".join(subjects)
+            raise SettingsError(f"--{name} is for {whose}, and for nothing else: leave it out")
     if arguments.estimated and not named:
         raise SettingsError("--estimated is measured on a SOURCE: name it")
     if arguments.plain and not arguments.test_on:
@@ -367,6 +373,8 @@ SUBJECTS_HELP = {
     "ablation": "the error of fusion without each of its parts",
     "calibration": "how far cameras of a rig are from the truth, by a board and by people",
     "constants": "its error with each number halved and doubled",
+    "handovers": "whether two people who hand something over and pass keep their numbers; or where "
+    "a prior has a real thing that passes on",
     "hub": "what a hub costs by the number of rigs, and its encryption and rules in delay",
     "labels": "how far labels between keyframes are from the truth",
     "likelihood": "where its optimum is beside the truth, on rendered objects; or how true poses "
@@ -383,16 +391,17 @@ SUBJECTS_HELP = {
 }
 
 OPTIONS_OF = {
-    "vary": "ablation",
-    "test_on": "ablation",
-    "plain": "ablation",
-    "no_images": "ablation",
-    "against": "tracker",
-    "estimated": "outcomes",
-    "idle_minutes": "outcomes",
-    "real": "outcomes",
+    "vary": ("ablation",),
+    "test_on": ("ablation",),
+    "plain": ("ablation",),
+    "no_images": ("ablation",),
+    "against": ("tracker",),
+    "estimated": ("outcomes",),
+    "idle_minutes": ("outcomes",),
+    "real": ("outcomes", "handovers"),
+    "trials": ("handovers",),
 }
-"""The subject of each option that is for one alone."""
+"""The subjects of each option that is not for all."""
 
 MEASURED_ON = ("ablation", "constants", "labels", "outcomes")
 ALSO_MEASURED_ON = ("likelihood", "skeletons")
@@ -401,6 +410,7 @@ SUBJECTS: dict[str, Callable[[Any], tuple[RenderableType, dict[str, Any]]]] = {
     "ablation": _ablation,
     "calibration": _calibration,
     "constants": _constants,
+    "handovers": measure_handovers,
     "hub": _hub,
     "labels": _labels,
     "likelihood": _likelihood,

@@ -9,6 +9,7 @@ from inhand_lab.benchmarks.board_calibration import (
     CameraTrial,
     measure_board_calibration,
 )
+from inhand_lab.benchmarks.board_range import BoardRange, cases, measure_board_ranges
 from inhand_lab.benchmarks.parameters import DEFAULT_PEOPLE_CALIBRATION_CHECK
 from inhand_lab.benchmarks.people_calibration import (
     CameraErrors,
@@ -22,24 +23,30 @@ from inhand.progress import progress_bars
 from inhand.results import listing
 
 ERRORS = ("place\nmm", "turn\n°", "clock\nms", "said: ±\nmm")
-BOARD, PEOPLE = "by a board", "by people"
+BOARD, RANGE, PEOPLE = "by a board", "from how far", "by people"
 
 
 def check_calibration() -> tuple[RenderableType, dict[str, Any]]:
     """Calibrate rigs of the benchmarks' seeds both ways: the tables, and values for machines."""
     totals = {
         BOARD: len(DEFAULT_BOARD_BENCHMARK.seeds),
+        RANGE: len(cases()),
         PEOPLE: len(DEFAULT_PEOPLE_CALIBRATION_CHECK.seeds),
     }
     with progress_bars(totals) as advance:
         trials = measure_board_calibration(lambda: advance(BOARD))
+        ranges = measure_board_ranges(lambda: advance(RANGE))
         rigs = []
         for rig in measure_people_calibration():
             rigs.append(rig)
             advance(PEOPLE)
     people = [camera for rig in rigs for camera in rig.cameras]
-    tables = Group(_board_table(trials), _people_table(people))
-    return tables, {"board": [vars(one) for one in trials], "people": _values(rigs)}
+    tables = Group(_board_table(trials), range_table(ranges), _people_table(people))
+    return tables, {
+        "board": [vars(one) for one in trials],
+        "ranges": [vars(one) for one in ranges],
+        "people": _values(rigs),
+    }
 
 
 def _board_table(trials: Sequence[CameraTrial]) -> Table:
@@ -60,6 +67,21 @@ def _board_table(trials: Sequence[CameraTrial]) -> Table:
         f"median {np.median(places):.2f} mm and {np.median(turns):.3f}°, "
         f"worst {max(places):.2f} mm and {max(turns):.3f}°"
     )
+    return table
+
+
+def range_table(ranges: Sequence[BoardRange]) -> Table:
+    """From how far boards are found in nine of ten pictures."""
+    title = "from how far a board that is held still is found, drawn views"
+    table = listing(("lens", "paper", "light"), ("range\nm", "then wide\npx"), title)
+    for one in ranges:
+        table.add_row(
+            one.lens,
+            one.paper,
+            one.light,
+            "-" if one.range_m is None else f"{one.range_m:.1f}",
+            "-" if one.width_px is None else f"{one.width_px:.0f}",
+        )
     return table
 
 

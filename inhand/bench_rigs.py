@@ -27,7 +27,8 @@ def add_rig_arguments(parser: argparse.ArgumentParser) -> None:
         "--cameras",
         type=int,
         metavar="N",
-        help=f"for rigs: number of cameras, 2 to {len(RIG_CAMERAS)} (default: {DEFAULT_CAMERAS})",
+        help=f"for rigs and handovers: number of cameras, up to {len(RIG_CAMERAS)} "
+        f"(default: {DEFAULT_CAMERAS})",
     )
     parser.add_argument(
         "--interactions",

@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.exit_codes import DONE, FAILED
 from inhand_runtime.rig_calibration import (
@@ -45,6 +46,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--people",
         action="store_true",
         help="without a board: by a person who walks about where the cameras see them",
+    )
+    parser.add_argument(
+        "--clocks-within",
+        type=positive_number,
+        metavar="S",
+        help="for --people: clocks are known to be within so many seconds of each other; walking "
+        "to and fro is enough then (default: any offset is looked for)",
     )
     parser.add_argument("--board", type=Path, metavar="FILE", help="make a board to print (PDF)")
     parser.add_argument(
@@ -85,7 +93,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print a board, calibrate or check; exit code 1 where cameras disagree. Raises InhandError."""
+    """Print a board, calibrate or check; exit code 1 where cameras disagree, or one could not be
+    compared. Raises InhandError."""
     _require_sense(arguments)
     if arguments.board is not None:
         return _print_board(arguments)
@@ -96,6 +105,7 @@ def run(arguments: argparse.Namespace) -> int:
     write_rig_calibration(arguments.output, calibration)
     print(f"written: {arguments.output}; name it in the settings of each camera,")
     print(f'  [capture.{next(iter(calibration.cameras))}] calibration = "{arguments.output.name}"')
+    print("then `inhand reload`, also where it is named already: what runs has the former one")
     if arguments.json is not None:
         write_json(arguments.json, result)
     return DONE
@@ -116,6 +126,10 @@ def _require_sense(arguments: argparse.Namespace) -> None:
                 raise SettingsError(f"--{name} is for boards, not for --people: leave it out")
         if arguments.origin == "board":
             raise SettingsError("--people sees no board: name a camera as --origin")
+    elif arguments.clocks_within:
+        raise SettingsError("--clocks-within is for --people: leave it out")
+    if arguments.clocks_within and arguments.check is not None:
+        raise SettingsError("--clocks-within is for calibrating, not for --check: leave it out")
     if arguments.pattern and arguments.line_mm:
         raise SettingsError("--line-mm is for boards that we print: say your board's true sides")
     if arguments.floor and arguments.origin not in (None, "board"):
@@ -164,13 +178,18 @@ def _by_people(arguments: argparse.Namespace) -> tuple[RigCalibration, dict[str,
     reference = arguments.origin or max(cameras, key=lambda camera: len(camera.times_ns)).name
     if reference not in names:
         raise SettingsError(f"there is no camera {reference}; there are: {', '.join(names)}")
-    calibration = calibrate_from_people(cameras, reference)
+    within_s = np.inf if arguments.clocks_within is None else arguments.clocks_within
+    calibration = calibrate_from_people(cameras, reference, clocks_within_s=within_s)
     print_people_calibration(calibration)
     return calibration.rig_calibration(datetime.now(UTC)), people_values(calibration)
 
 
 def _check(arguments: argparse.Namespace) -> int:
-    from inhand.calibrate_words import print_board_disagreement, print_people_disagreement
+    from inhand.calibrate_words import (
+        print_board_disagreement,
+        print_not_compared,
+        print_people_disagreement,
+    )
 
     path = _calibration_in_use(arguments)
     calibration = read_rig_calibration(path)
@@ -181,6 +200,7 @@ def _check(arguments: argparse.Namespace) -> int:
 
         found = find_disagreement(people_seen(arguments), calibration)
         result, agree = print_people_disagreement(found, path), not found.sentences
+        compared = {name for pair in found.pairs for name in (pair.first, pair.second)}
     else:
         from inhand_calibration.from_board.disagreement import find_board_disagreement
 
@@ -190,9 +210,13 @@ def _check(arguments: argparse.Namespace) -> int:
         pairs = find_board_disagreement(sized_sights(sights, arguments.line_mm), calibration)
         result = print_board_disagreement(pairs, path)
         agree = not any(pair.moved or pair.clock_changed for pair in pairs)
+        compared = {name for pair in pairs for name in (pair.first, pair.second)}
+    left_out = [name for name in calibration.cameras if name not in compared]
+    print_not_compared(left_out, path)
+    result["not_compared"] = left_out
     if arguments.json is not None:
         write_json(arguments.json, result)
-    return DONE if agree else FAILED
+    return DONE if agree and not left_out else FAILED
 
 
 def _calibration_in_use(arguments: argparse.Namespace) -> Path:

@@ -78,17 +78,29 @@ def sized_sights(sights: BoardSights, line_mm: float | None) -> list[CameraSight
 
 
 def people_seen(arguments: argparse.Namespace) -> list[CameraSkeletons]:
-    """Gather the people whom cameras see, a row each; raises InhandError."""
+    """Gather the people whom cameras see, a row each, and say which cameras send no skeletons;
+    raises InhandError."""
     rows: dict[str, list[tuple[int, Person]]] = defaultdict(list)
+    introduced: set[str] = set()
     said_at = time.monotonic()
-    for heard in _messages(arguments, (SKELETONS,)):
+    for heard in _messages(arguments, (INFO, SKELETONS)):
         if not arguments.recordings and time.monotonic() - said_at > SAY_EVERY_S:
             said_at = time.monotonic()
             print("people seen: " + _listed({name: len(own) for name, own in rows.items()}))
         if heard is not None and isinstance(heard.message, Skeletons):
             rows[heard.camera] += [(heard.message.time_ns, one) for one in heard.message.people]
+        elif heard is not None and isinstance(heard.message, CameraInfo):
+            introduced.add(heard.camera)
     if not rows:
-        raise CalibrationError("no camera sent skeletons: start the rig, or choose its recordings")
+        raise CalibrationError(
+            "no camera sent skeletons: start the rig, or choose its recordings; a source that has "
+            'none of its own takes skeletons = "estimated"'
+        )
+    for name in sorted(introduced - rows.keys()):
+        print(
+            f"{name} sent no skeletons, and is left out: a source that has none of its own takes "
+            'skeletons = "estimated"'
+        )
     return [_skeletons(name, own) for name, own in sorted(rows.items())]
 
 
@@ -155,7 +167,7 @@ def _skeletons(camera: str, rows: list[tuple[int, Person]]) -> CameraSkeletons:
     """People as arrays, in the order of their times."""
     rows = sorted(rows, key=lambda row: row[0])
     joints = np.array([person.joints for _, person in rows], float).reshape(-1, 20, 3)
-    missing = np.array([[state == "missing" for state in one.states] for _, one in rows])
+    missing = np.array([[state == "missing" for state in one.states] for _, one in rows], bool)
     joints[missing.reshape(joints.shape[:2])] = np.nan
     return CameraSkeletons(
         camera,

@@ -144,14 +144,21 @@ def print_people_disagreement(found: Disagreement, path: Path) -> dict[str, Any]
     for sentence in found.sentences:
         print(f"WRONG: {sentence}")
     if not found.sentences and found.pairs:
-        print(f"the cameras agree with {path} on people")
-    if not found.pairs:
-        print("no two cameras saw the same person for long enough to say anything")
+        print(f"the cameras that were compared agree with {path} on people")
     return {
         "pairs": [asdict(pair) for pair in found.pairs],
         "bumped": list(found.bumped),
         "reset": list(found.reset),
     }
+
+
+def print_not_compared(names: Sequence[str], path: Path) -> None:
+    """Show which cameras of a calibration could not be compared with any other."""
+    for name in names:
+        print(
+            f"NOT CHECKED: {name} did not see the same as another camera of {path} for long "
+            "enough: is it running, the right way up, and do you walk where two look?"
+        )
 
 
 def _deviations(covariance: Array) -> tuple[str, str]:

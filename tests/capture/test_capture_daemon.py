@@ -1,5 +1,6 @@
 """The capture daemon as a process over real Zenoh."""
 
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -115,20 +116,24 @@ def test_info_reaches_those_who_come_late(wire: Wire, rig: RunningRig, capture: 
     eventually("the info", lambda: infos)
 
 
-def test_the_camera_is_published_where_its_calibration_has_it(
+def test_the_camera_is_published_where_its_calibration_had_it_and_another_one_is_said(
     wire: Wire, rig: RunningRig, capture: Start
 ) -> None:
     place = Pose((1.0, 2.0, 3.0), (0.0, 1.0, 0.0, 0.0))
     made = datetime(2026, 11, 30, tzinfo=UTC)
     front = CameraCalibration(place, (0.001,) * 3, (0.0001,) * 3, "board", made)
     write_rig_calibration(rig.folder / "cameras.toml", RigCalibration({"front": front}))
-    _configure(rig, 1, "hang", more='wait_for_reader_s = 0\ncalibration = "cameras.toml"')
-    infos = wire.hear(INFO)
+    _configure(rig, 100_000, more='wait_for_reader_s = 0\ncalibration = "cameras.toml"')
+    infos, health = wire.hear(INFO), wire.hear(HEALTH)
     capture().said("is up")
     eventually("the info", lambda: infos)
     (info,) = _decoded(INFO, infos[:1])
     assert isinstance(info, CameraInfo)
     assert info.rig_from_camera == place
+    elsewhere = replace(front, rig_from_camera=Pose((1.0, 2.0, 3.5), place.rotation))
+    write_rig_calibration(rig.folder / "cameras.toml", RigCalibration({"front": elsewhere}))
+    said = eventually("a trouble", lambda: (h := _health(health)) and h.troubles)
+    assert "cameras.toml was written anew" in said[0]
 
 
 def test_a_source_starts_when_nobody_comes(rig: RunningRig, capture: Start) -> None:

@@ -203,6 +203,23 @@ def test_the_demonstration_tracks_a_stranger_and_loses_nothing(tmp_path: Path) -
     stands_alone(Path(told["recording"]), tmp_path / "bop")
 
 
+@pytest.mark.long
+def test_the_demonstration_of_three_cameras_tracks_by_all_and_loses_nothing(
+    tmp_path: Path,
+) -> None:
+    result = tmp_path / "demo.json"
+    arguments = ["--cameras", "3", "--seconds", "3", "--folder", str(tmp_path / "demo")]
+    assert main(["demo", *arguments, "--json", str(result)]) == 0
+    told = json.loads(result.read_text())
+    assert all(topic["lost"] == 0 for topic in told["topics"].values())
+    assert told["topics"]["info"]["recorded"] == 3
+    assert told["topics"]["skeletons"]["recorded"] == told["topics"]["skeletons"]["published"]
+    assert told["topics"]["pose"]["recorded"] > 10
+    assert told["vertex_error_cm"] < 6.0
+    seen = {one.name for one in read_recording(Path(told["recording"]), streams=("rgbd",))}
+    assert seen == {"front", "left", "right"}
+
+
 def stands_alone(path: Path, bop: Path) -> None:
     """A live rig's recording has the object's mesh, and needs nothing else to be exported."""
     with inhand_recorder.open(path) as recording:

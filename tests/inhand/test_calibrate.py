@@ -119,6 +119,8 @@ def test_a_board_is_made_and_the_way_to_use_it_said(
         (["--board", "b.pdf", "--people"], "--board makes a board to print, and nothing else"),
         (["--people", "-o", "c.toml", "--floor"], "--floor is for boards"),
         (["--people", "-o", "c.toml", "--origin", "board"], "--people sees no board"),
+        (["-o", "c.toml", "--clocks-within", "1"], "--clocks-within is for --people"),
+        (["--people", "--check", "c.toml", "--clocks-within", "1"], "for calibrating, not for"),
         (["-o", "c.toml", "--floor", "--origin", "front"], "--floor puts the origin on the floor"),
         (["--check"], "no calibration is named in the settings"),
         (["x.mcap", "-o", "c.toml", "--pattern", "8x6"], "is no board"),

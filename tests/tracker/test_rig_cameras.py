@@ -42,13 +42,14 @@ def pose_of(place: Placement) -> Pose:
 @dataclass(frozen=True)
 class RigFilm:
     """Somebody waves before cameras that say where they are; some die, some are elsewhere by
-    metres (3,), and some clocks are wrong."""
+    metres (3,), some clocks are wrong, and some have only one frame of so many."""
 
     frames: int = 60
     cameras: tuple[str, ...] = ("front", "left", "right")
     dies_s: Mapping[str, float] = field(default_factory=dict)
     off_m: Mapping[str, float] = field(default_factory=dict)
     clocks_s: Mapping[str, float] = field(default_factory=dict)
+    one_of: Mapping[str, int] = field(default_factory=dict)
     pictures: bool = False
     says_place: bool = True
 
@@ -66,6 +67,8 @@ class RigFilm:
                 at = PHASES_S[camera] + number * PERIOD_S
                 if at > self.dies_s.get(camera, np.inf):
                     break
+                if number % self.one_of.get(camera, 1):
+                    continue
                 time_ns = round(1e9 * (EPOCH_S + at + self.clocks_s.get(camera, 0.0)))
                 elsewhere = joints + np.array([self.off_m.get(camera, 0.0), 0.0, 0.0])
                 people = (person_seen(elsewhere, place),)
@@ -147,6 +150,16 @@ def test_poses_are_young_whatever_the_cameras_do() -> None:
     assert len(times_s) >= 59
 
 
+def test_cameras_of_another_rate_cost_no_pose_and_no_trouble() -> None:
+    daemon = tracked(RigFilm(one_of={"left": 3, "right": 2}))
+    poses = daemon.poses["mug"]
+    assert [pose.sequence for pose in poses[1:]] == list(range(1, 60))
+    assert {pose.camera for pose in poses[1:]} == {"front"}
+    assert troubles(daemon) == ""
+    whole = in_rig(tracked(RigFilm()).poses["mug"])
+    assert np.linalg.norm(in_rig(poses) - whole, axis=1)[10:].max() < 0.02
+
+
 def test_a_camera_that_somebody_bumped_is_said_and_adds_nothing() -> None:
     daemon = tracked(RigFilm(frames=150, off_m={"left": 0.14}))
     assert "left disagrees by 14 cm with the others" in troubles(daemon)
@@ -200,6 +213,17 @@ def test_a_calibration_says_where_cameras_are_and_how_their_clocks_differ(tmp_pa
     assert "place" not in troubles(daemon)
     usual = tracked(RigFilm()).poses["mug"]
     assert in_rig(daemon.poses["mug"][-20:]) == pytest.approx(in_rig(usual[-20:]), abs=1e-4)
+
+
+def test_a_calibration_that_is_written_anew_meanwhile_is_said(tmp_path: Path) -> None:
+    film, path = RigFilm(frames=90), calibrated(tmp_path)
+    daemon = SimulatedDaemon(*film.messages())
+    chosen = TrackerSettings(cameras=film.cameras, calibration=path, **BLIND)
+    tracker = FusionTracker(wave_model(), terms=[])
+    service = TrackerService(daemon, chosen, lambda: GivenObjects({"mug": tracker}), daemon.clock)
+    calibrated(tmp_path, left=-2.0)
+    service.run()
+    assert "rig.toml was written anew" in troubles(daemon)
 
 
 def test_cameras_of_which_nobody_said_where_they_are_are_said() -> None:

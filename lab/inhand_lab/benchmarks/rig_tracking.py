@@ -141,23 +141,28 @@ def track_rig(
     return RigErrors(single, result[-2], result[-1], jumps[1], jumps[0])
 
 
-def _captures(
-    rig: RigSimulation, tick: int, show: Callable[[int, int], Image]
-) -> Iterator[tuple[int, tuple[int, Capture]]]:
-    """Give what each camera, by its number, captured nearest to a frame of the first one, within
-    half a period, with the number of its frame; not what was lost."""
+def nearest_frames(rig: RigSimulation, tick: int) -> Iterator[tuple[int, int, int]]:
+    """Give what each camera captured nearest to a frame of the first one, within half a period and
+    but for what was lost: the camera's number, its frame's, and its time by the rig's clock, drift
+    excepted, in nanoseconds."""
     now_s = rig.times_s(0)[tick]
     period_s = 1.0 / rig.cameras[0].frame_rate
-    for number, seen in enumerate(rig.cameras):
+    for number in range(len(rig.cameras)):
         times_s = rig.times_s(number)
         frame = int(np.argmin(np.abs(times_s - now_s)))
         if abs(times_s[frame] - now_s) > period_s / 2.0 or rig.dropped[number][frame]:
             continue
         said_ns = int(rig.stamps_ns(number)[frame])
-        time_ns = said_ns + round(1e9 * (1.0 + rig.clocks[number].offset_s))
-        people = [person_message(seen, frame)]
-        capture = Capture(rig.names[number], time_ns, people, show(number, frame))
-        yield number, (frame, capture)
+        yield number, frame, said_ns + round(1e9 * (1.0 + rig.clocks[number].offset_s))
+
+
+def _captures(
+    rig: RigSimulation, tick: int, show: Callable[[int, int], Image]
+) -> Iterator[tuple[int, tuple[int, Capture]]]:
+    """Give what each camera, by its number, captured, with the number of its frame."""
+    for number, frame, time_ns in nearest_frames(rig, tick):
+        people = [person_message(rig.cameras[number], frame)]
+        yield number, (frame, Capture(rig.names[number], time_ns, people, show(number, frame)))
 
 
 def _follow(
@@ -237,12 +242,13 @@ def places_of(rig: RigSimulation, off: PlaceDeviation) -> dict[str, Placement]:
     random = np.random.default_rng(PLACED_SEED)
     wrong = {}
     for number, name in enumerate(rig.names):
-        place = _placement(rig.rig_from_camera[number])
+        place = placement_of(rig.rig_from_camera[number])
         shift = random.normal(0.0, off.translation_m, 3)
         turn = rotations.from_vector(random.normal(0.0, off.rotation_rad, 3))
         wrong[name] = Placement(place.translation + shift, rotations.multiply(turn, place.rotation))
     return wrong
 
 
-def _placement(rig_from_camera: Transform) -> Placement:
+def placement_of(rig_from_camera: Transform) -> Placement:
+    """Return where a camera is as the tracker takes it."""
     return Placement(rig_from_camera.translation, quaternions(rig_from_camera.rotation[None])[0])

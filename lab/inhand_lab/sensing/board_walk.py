@@ -120,7 +120,7 @@ def board_walk(
         share = random.uniform(0.35, 0.65)
         one, two = (way / np.linalg.norm(way) for way in ways)
         towards = share * one + (1.0 - share) * two
-        places.append(_facing(board, middle, towards, random, parameters.tilt_deg))
+        places.append(facing(board, middle, towards, random, parameters.tilt_deg))
     if parameters.on_floor:
         x, y, _ = parameters.centre
         lying = Rotation.from_euler("z", random.uniform(-np.pi, np.pi)).as_matrix()
@@ -130,7 +130,7 @@ def board_walk(
     return BoardWalk(parameters, board, np.array(places))
 
 
-def _facing(
+def facing(
     board: CharucoBoard, middle: Array, towards: Array, random: np.random.Generator, tilt: float
 ) -> Array:
     """Return a board's pose (4, 4) with its face about towards a direction (3,), at any roll."""

@@ -14,7 +14,7 @@ first. The rig's time is the first camera's, which is what ``simulate`` makes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from inhand_lab.geometry.transforms import Transform
 from inhand_lab.sensing.cameras import KINECT, Camera
+from inhand_lab.sensing.skeleton_noise import MISSING, SkeletonReading
 from inhand_lab.world.enactment import Enactment
 from inhand_lab.world.other_moments import enactment_at
 from inhand_lab.world.parameters import (
@@ -141,18 +142,26 @@ def simulate_rig(
     performance: int = 0,
     *,
     roaming: bool = False,
+    upside_down: Collection[str] = (),
 ) -> RigSimulation:
     """Simulate somebody who does something before so many cameras, one to four, of one kind.
 
     The first camera's simulation is what ``simulate`` makes, but for the room's walls behind it,
     which it does not see. The rig is the same in every performance of a participant's interaction.
     Whoever is ``roaming`` walks about and turns while using the thing; the cameras stand farther
-    away. Raises ValueError for an interaction that is unknown or not done on the way, another
-    number of cameras, or under two frames.
+    away. Cameras ``upside_down``, by name, hang that way where they would stand, and follow nobody,
+    as skeleton trackers do that know upright people only. Raises ValueError for an interaction that
+    is unknown or not done on the way, another number of cameras, a name of none of them, or under
+    two frames.
     """
     views = ROAMING_VIEWS if roaming else USUAL_VIEWS
     cast = Casting(interaction, participant, seed, performance, views, roaming=roaming)
-    return simulate_rig_cast(cast, frames, camera, cameras)
+    rig = simulate_rig_cast(cast, frames, camera, cameras)
+    if unknown := sorted(set(upside_down) - set(rig.names)):
+        raise ValueError(f"there is no camera {unknown[0]}; there are: {', '.join(rig.names)}")
+    return RigSimulation(
+        tuple(_turned(view) if view.name in upside_down else view for view in rig.views)
+    )
 
 
 def simulate_rig_cast(cast: Casting, frames: int, camera: Camera, cameras: int) -> RigSimulation:
@@ -248,6 +257,26 @@ def _place_beside(
 
 def _position(camera_from_world: Transform) -> Array:
     return camera_from_world.inverse().translation
+
+
+def _turned(view: RigView) -> RigView:
+    """A view by the camera upside down, which follows nobody; the light, which is each camera's
+    own, turns with it and comes from below."""
+    seen, turn = view.simulation, Transform(np.zeros(3), np.diag([-1.0, -1.0, 1.0]))
+    body = seen.body_in_camera.seen_from(turn)
+    reading = SkeletonReading(
+        turn.apply(seen.reading.joints),
+        np.full_like(seen.reading.states, MISSING),
+        np.zeros_like(seen.reading.confidences),
+    )
+    turned = replace(
+        seen,
+        camera_from_world=turn @ seen.camera_from_world,
+        camera_from_object=turn @ seen.camera_from_object,
+        body_in_camera=body,
+        reading=reading,
+    )
+    return replace(view, simulation=turned, rig_from_camera=view.rig_from_camera @ turn.inverse())
 
 
 def _clock(

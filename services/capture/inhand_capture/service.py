@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
+from inhand_runtime.calibration_watch import CalibrationWatch
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError
 from inhand_runtime.settings import Settings
@@ -194,6 +195,7 @@ def _publish(
     camera = CameraPublisher(outlets, daemon.instance, chosen.depth_codec)
     previews = Previews(outlets.publisher(PREVIEW, daemon.instance), daemon.health)
     end = EndOfCapture(daemon.stop, shutter)
+    calibration = CalibrationWatch(chosen.calibration, daemon.health)
 
     def wanted() -> bool:
         estimated = stage is not None and camera.wants_skeletons()
@@ -216,6 +218,7 @@ def _publish(
         for captured in captures(open_source, wanted, end, opened=opened, lost=watched.lost):
             daemon.health.came_round()
             watched.look()
+            calibration.look()
             if captured is not None:
                 _publish_moment(captured, camera, previews, stage)
                 watched.captured()

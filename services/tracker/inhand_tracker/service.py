@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Sequence
 from functools import cache, partial
 
+from inhand_runtime.calibration_watch import CalibrationWatch
 from inhand_runtime.compiled import make_loops
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError
@@ -71,6 +72,7 @@ class TrackerService:
         self._every = settings.every_frame
         self._effort = Effort()
         self._cameras = _cameras_of(daemon, settings)
+        self._calibration = CalibrationWatch(settings.calibration, daemon.health, now)
 
     def run(self) -> None:
         """Track until the daemon stops."""
@@ -108,6 +110,7 @@ class TrackerService:
         """Take what has come by now, since only then it is known what is the newest; where every
         frame matters, as much as the next moment needs, and let the rest wait in the inbox."""
         self._daemon.health.came_round()
+        self._calibration.look()
         if self._every and self._cameras.decided():
             return
         timeout_s = min(self._cameras.wait_s(self._now()), POLL_S)

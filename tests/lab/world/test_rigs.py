@@ -107,3 +107,20 @@ def test_a_rig_of_no_or_five_cameras_or_of_one_frame_is_refused() -> None:
             simulate_rig("drinkFromMug", 0, 0, cameras=cameras)
     with pytest.raises(ValueError, match="2 frames"):
         simulate_rig("drinkFromMug", 0, 0, frames=1)
+
+
+def test_a_camera_upside_down_sees_the_same_the_other_way_up_and_follows_nobody() -> None:
+    upright, turned = (
+        simulate_rig("drinkFromMug", 2, seed=4, frames=20, cameras=2, upside_down=down)
+        for down in ((), ("left",))
+    )
+    for one, other in zip(in_rig(upright, 1), in_rig(turned, 1), strict=True):
+        assert np.allclose(one, other)
+    seen, expected = turned.cameras[1], upright.cameras[1]
+    assert np.allclose(seen.translations, expected.translations * [-1.0, -1.0, 1.0])
+    assert not seen.joint_states.any()
+    shown, usual = (one.draw(3).canvas.labels for one in (seen, expected))
+    assert np.mean(shown[::-1, ::-1] != usual) < 0.005
+    assert arrays_of(turned.cameras[0]) == arrays_of(upright.cameras[0])
+    with pytest.raises(ValueError, match="no camera high; there are: front, left"):
+        simulate_rig("drinkFromMug", 2, seed=4, frames=20, cameras=2, upside_down=("high",))

@@ -16,7 +16,7 @@ from inhand_calibration.from_board.adjustment import (
     Adjusted,
     adjust,
 )
-from inhand_calibration.from_board.alignment import Alignment, align
+from inhand_calibration.from_board.alignment import DEFAULT_ALIGNMENT, Alignment, align
 from inhand_calibration.from_board.moments import (
     DEFAULT_MOMENTS,
     Moment,
@@ -172,7 +172,9 @@ def _apart(cameras: Sequence[CameraSights], joined: set[int]) -> str:
         f"{' and '.join(others)} never saw the board together with "
         f"{' or '.join(names[index] for index in sorted(joined))} often enough "
         f"({counted(LEAST_PLACES, 'place')} at least): hold it where two of them see it, "
-        "standing still, in as many places as you can"
+        "standing still, in as many places as you can. Clocks that are more than "
+        f"{DEFAULT_ALIGNMENT.longest_offset_s:.0f} s apart look the same: set those of all hosts "
+        "by one time"
     )
 
 

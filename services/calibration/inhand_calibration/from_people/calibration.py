@@ -173,7 +173,8 @@ def _tracks_of(skeletons: CameraSkeletons, parameters: PeopleCalibrationParamete
     if not tracks:
         raise CalibrationError(
             f"{skeletons.name} followed nobody for two seconds: walk about where it sees you from "
-            "head to foot (of an image that is upside down no skeletons can be made: turn it)"
+            "head to foot (in an image that is upside down some trackers find nobody: write "
+            "rotate = 180 in its settings)"
         )
     if seconds < least:
         raise CalibrationError(

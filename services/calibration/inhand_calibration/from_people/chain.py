@@ -94,7 +94,8 @@ def _unreached(
     if longest >= acceptance.least_common_s and max(shares) >= acceptance.repeating_share:
         return CalibrationError(
             f"the walk repeats itself, so that the clocks of {placed} and {missing} fit at several "
-            "offsets: walk no circle, stop now and then, and turn another way"
+            "offsets: walk no circle, stop now and then, and turn another way; or, where one "
+            "server sets the clocks, say how far they may be apart, such as --clocks-within 0.5"
         )
     for first, second in pairs:
         mirrored = find_pair(tracks[first], [_mirrored(t) for t in tracks[second]], parameters)
