@@ -203,7 +203,7 @@ def test_the_demonstration_tracks_a_stranger_and_loses_nothing(tmp_path: Path) -
     stands_alone(Path(told["recording"]), tmp_path / "bop")
 
 
-@pytest.mark.long
+@pytest.mark.exhaustive
 def test_the_demonstration_of_three_cameras_tracks_by_all_and_loses_nothing(
     tmp_path: Path,
 ) -> None:

@@ -44,10 +44,12 @@ class PoseGaussian:
 
 @dataclass(frozen=True)
 class PoseMixture:
-    """A mixture of normal distributions over poses; its ``weights`` (K,) sum to 1."""
+    """A mixture of normal distributions over poses; its ``weights`` (K,) sum to 1. Of its parts
+    those that are ``carried``, by their indices, go on from what was believed a moment before."""
 
     parts: tuple[PoseGaussian, ...]
     weights: Array
+    carried: tuple[int, ...] = ()
 
     @cached_property
     def means(self) -> tuple[Array, Array]:

@@ -80,7 +80,9 @@ def test_its_covariance_turns_with_it_and_fades_into_the_expected_one() -> None:
 
 def test_an_object_that_was_left_stays_and_grows_less_certain() -> None:
     now = gaussian([-0.5, 0.4, 1.5], [-1.0, 2.0, 0.2])
-    *_, left = carry_over(BEFORE, Expected(now), 2 * SECOND, FOR_EVER_S, DEFAULT_FUSION).parts
+    mixture = carry_over(BEFORE, Expected(now), 2 * SECOND, FOR_EVER_S, DEFAULT_FUSION)
+    stays, *_, left = mixture.parts
+    assert [mixture.parts[one] for one in mixture.carried] == [stays, left]
     np.testing.assert_array_equal(left.centre, BELIEVED.centre)
     assert same_rotation(left.rotation, BELIEVED.rotation)
     grown = np.diag(left.covariance - BELIEVED.covariance)

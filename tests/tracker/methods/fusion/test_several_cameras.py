@@ -66,6 +66,18 @@ def test_another_cameras_image_is_enough_where_the_first_has_none() -> None:
     assert np.abs(across).mean() < 0.3 * OFF[1]
 
 
+def test_what_lies_is_not_lost_as_a_body_goes_away_from_it() -> None:
+    near, far = (np.diag([deviation**2] * 3 + [0.1**2] * 3) for deviation in (0.02, 0.1))
+    places = (PLACE + np.array([0.03, 0.0, 0.0]), PLACE + np.array([0.0, 0.3, 0.4]), PLACE)
+    parts = tuple(map(PoseGaussian, places, [TURN] * 3, (near, far, near)))
+    belief = PoseMixture(parts, np.array([1e-4, 1.0 - 1.1e-4, 1e-5]), carried=(0, 2))
+    for seed in range(4):
+        eyes = sight(learned=appearance(returns_depth=False))
+        search = ImageSearch(eyes, SPHERE, DEFAULT_FUSION, seed)
+        found = search.look(belief, FRONT, FAR_AWAY, 1.0, 1.0, [LEFT])
+        assert np.linalg.norm(found.centre - PLACE) < 0.01
+
+
 def test_each_camera_has_colours_of_its_own() -> None:
     eyes = sight(learned=appearance(returns_depth=False))
     search = ImageSearch(eyes, SPHERE, DEFAULT_FUSION, 1)

@@ -154,6 +154,7 @@ def carry_over(
     parts = [stays, *afresh.parts]
     shares = [parameters.stays_share, *(parameters.afresh_share * afresh.weights)]
     of_body = len(parts)
+    carried = (0, of_body) if parameters.leaves else (0,)
     if parameters.leaves:
         parts.append(_left(before.believed, parameters))
         shares.append(parameters.left_share)
@@ -167,7 +168,7 @@ def carry_over(
         weights = np.array(shares)
         weights[by_body] *= (1.0 - parameters.leap_doubt) / weights[by_body].sum()
         weights[~by_body] *= parameters.leap_doubt / weights[~by_body].sum()
-    return PoseMixture(tuple(parts), weights)
+    return PoseMixture(tuple(parts), weights, carried)
 
 
 def carry_on(before: Belief, time_ns: int, parameters: FusionParameters) -> PoseMixture:

@@ -92,7 +92,10 @@ class ImageSearch:
             )
             for one in others
         ]
-        opened = self._open_all(glances, belief.parts[0], hypotheses, joints)
+        doubted = _doubted(belief, len(glances), parameters)
+        at = self._sphere.middles(*(mean[doubted] for mean in belief.means))
+        middles = np.concatenate((self._sphere.middles(*hypotheses), at))
+        opened = self._open_all(glances, belief.parts[0], middles, joints)
         if not opened:
             self._found = self.tried = None
             self.convinces = False
@@ -103,11 +106,11 @@ class ImageSearch:
         posterior = ImagePosterior(self._sight, self._sphere, views, belief, sharpest, parameters)
         posterior, scores = self._compare_unseen(posterior, *hypotheses)
         self.tried = Hypotheses(*hypotheses, scores)
-        found = None if thoroughly else self._modes(posterior, self.tried)
+        found = None if thoroughly else self._modes(posterior, self.tried, doubted)
         if found is None or _unconvincing(found[1], posterior):
             self.tried = narrow(posterior, self.tried, self._random)
             posterior = replace(posterior, thorough=True)
-            found = self._modes(posterior, self.tried)
+            found = self._modes(posterior, self.tried, doubted)
         modes, seen = found
         weighed = posterior.weigh(modes, seen)
         best = int(np.argmax(weighed.weights))
@@ -135,11 +138,10 @@ class ImageSearch:
         self,
         glances: Sequence["_Glance"],
         guess: PoseGaussian,
-        hypotheses: tuple[Array, Array],
+        middles: Array,
         joints: Array,
     ) -> list[tuple["_Glance", SightView]]:
-        """Prepare the images that hypotheses (P, 3), (P, 4) lie in."""
-        middles = self._sphere.middles(*hypotheses)
+        """Prepare the images that an object at one of the ``middles`` (P, 3) lies in."""
         opened = []
         for glance in glances:
             region = self._region(glance.points(middles), glance.image.camera)
@@ -210,13 +212,14 @@ class ImageSearch:
         return replace(posterior, shown=_shown(posterior, weighed, scores)), scores
 
     def _modes(
-        self, posterior: ImagePosterior, tried: Hypotheses
+        self, posterior: ImagePosterior, tried: Hypotheses, doubted: list[int]
     ) -> tuple[list[PoseGaussian], Array]:
-        """The ``modes`` near the means of parts that are believed, and near the likeliest of the
-        hypotheses that were ``tried``."""
+        """The ``modes`` near the means of parts that are believed, or ``doubted``, and near the
+        likeliest of the hypotheses that were ``tried``."""
         means, turns = posterior.belief.means
         parameters = posterior.parameters
         believed = posterior.belief.weights >= parameters.least_refined_weight
+        believed[doubted] = True
         likeliest = tried.best(
             parameters.narrowed_refined if posterior.thorough else parameters.refined_hypotheses
         )
@@ -365,6 +368,16 @@ def _shown(posterior: ImagePosterior, weighed: Sequence[Array], scores: Array) -
     best = int(np.argmax(scores))
     each = zip(posterior.views, weighed, strict=True)
     return max(1.0, float(sum(one.sharpness * seen[best, VISIBLE] for one, seen in each)))
+
+
+def _doubted(belief: PoseMixture, images: int, parameters: FusionParameters) -> list[int]:
+    """The parts that go on from what was believed a moment before, where a body makes all of them
+    so unlikely that hardly a hypothesis is near: it may have left the object, as several images
+    show plainly. What that is worth with one image was not measured."""
+    carried = list(belief.carried)
+    if images < 2 or (belief.weights[carried] >= parameters.least_refined_weight).any():
+        return []
+    return carried
 
 
 def _unconvincing(seen: Array, posterior: ImagePosterior) -> bool:
