@@ -1,5 +1,6 @@
 """The gate over real sockets, with a small server behind it."""
 
+import asyncio
 import http.client
 import socket
 import ssl
@@ -12,8 +13,10 @@ from inhand_runtime.errors import InhandError
 from inhand_studio.access.gate import gate
 from inhand_studio.access.parameters import DEFAULT_GATE as GATE
 from inhand_studio.access.settings import AccessSettings
+from websockets.asyncio.client import connect as connect_in_a_loop
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Origin
 
 
 def _ask(
@@ -48,6 +51,18 @@ def _socket(url: str, path: str = "/echo", **options: object) -> ClientConnectio
     origin = url[:-1]
     options = {"origin": origin, "compression": None, "max_size": None, **options}
     return connect(url.replace("http", "ws", 1)[:-1] + path, **options)  # type: ignore[arg-type]
+
+
+async def _echoed(url: str, tls: ssl.SSLContext, cookie: str) -> str | bytes:
+    """What comes back of a word over TLS, in one thread: two that read and write one encrypted
+    socket at once may wait for each other."""
+    address = url.replace("http", "ws", 1)[:-1] + "/echo"
+    own = {"Cookie": cookie}
+    async with connect_in_a_loop(
+        address, origin=Origin(url[:-1]), ssl=tls, additional_headers=own
+    ) as made:
+        await made.send("in")
+        return await made.recv()
 
 
 def _status(url: str, **options: object) -> int:
@@ -168,9 +183,7 @@ def test_with_a_certificate_pages_sockets_and_the_cookie_are_encrypted(tmp_path:
         assert "Secure" in headers["Set-Cookie"]
         given = headers["Set-Cookie"].partition(";")[0]
         assert _ask(url, tls=trusting, Cookie=given)[2] == "inside /"
-        with _socket(url, ssl=trusting, additional_headers={"Cookie": given}) as made:
-            made.send("in")
-            assert made.recv() == "in"
+        assert asyncio.run(_echoed(url, trusting, given)) == "in"
         with pytest.raises(http.client.HTTPException):
             _ask(url.replace("https", "http"))
 
