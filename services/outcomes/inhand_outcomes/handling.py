@@ -228,8 +228,9 @@ def _moved(
     place, covariance = _place(track, lying)
     frames = _shown(track, held)
     ways = track.positions[frames] - place
-    covariances = _doubted(covariance + track.covariances[frames, :3, :3], parameters)
-    variances, axes = np.linalg.eigh(covariances)
+    variances, axes = np.linalg.eigh(covariance + track.covariances[frames, :3, :3])
+    # The last axis is the one that is known worst, and widened as far as it is known worse.
+    variances[:, 2] += (parameters.doubt**2 - 1.0) * (variances[:, 2] - variances[:, 1])
     along = np.einsum("tji,tj->ti", axes, ways)
     beyond = np.maximum(np.square(along) - parameters.noise**2 * variances, 0.0)
     distances = np.sqrt(beyond.sum(axis=1))
@@ -243,18 +244,9 @@ def _moved(
     moved = float(lasting[farthest])
     if moved == 0.0:
         return 0.0, 0.0
-    way = ways[farthest] / np.linalg.norm(ways[farthest])
-    spread = float(np.sqrt(way @ covariances[farthest] @ way))
+    way = along[farthest] / np.linalg.norm(along[farthest])
+    spread = float(np.sqrt(np.square(way) @ variances[farthest]))
     return moved, float(normal_share((moved - parameters.moved_m) / spread))
-
-
-def _doubted(covariances: Array, parameters: HandlingParameters) -> Array:
-    """Covariances (T, 3, 3) that are ``doubt`` times as wide along the axis that is known worst, as
-    far as it is known worse than the others."""
-    variances, axes = np.linalg.eigh(covariances)
-    worst = axes[:, :, 2]
-    more = (parameters.doubt**2 - 1.0) * (variances[:, 2] - variances[:, 1])
-    return np.asarray(covariances + more[:, None, None] * worst[:, :, None] * worst[:, None, :])
 
 
 def _shown(track: Track, stretch: Stretch) -> Indices:
