@@ -65,7 +65,7 @@ def tracked_people(
     """The folder of the tracked recordings of a seed's people, with a Kinect's skeletons or with
     ones that were estimated from their images; raises InhandError."""
     recordings = recorded_people(folder, seed, participants, estimated=estimated)
-    tracked = recordings[0].parents[2] / f"tracked_{seed}"
+    tracked = taught.recogniser.with_name(f"tracked_{seed}")
     for number in range(participants):
         paths = [path for path in recordings if path.stem.endswith(f"_p{number:02}")]
         track(taught, paths, tracked, left_handed=is_left_handed(seed, number))
