@@ -1,7 +1,6 @@
 """The test's own ear and mouth on a rig's keys."""
 
 import contextlib
-import os
 import socket
 import struct
 from collections.abc import Iterator
@@ -63,8 +62,11 @@ def lingering_s() -> list[int]:
     found = []
     for one in psutil.Process().net_connections("tcp"):
         if one.raddr:
-            with socket.socket(fileno=os.dup(one.fd)) as own:
+            own = socket.socket(fileno=one.fd)
+            try:
                 value = own.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
-                on, seconds = struct.unpack("ii", value)
-                found.append(seconds if on else 0)
+            finally:
+                own.detach()
+            on, seconds = struct.unpack("ii", value)
+            found.append(seconds if on else 0)
     return found

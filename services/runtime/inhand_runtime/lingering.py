@@ -9,6 +9,7 @@ import contextlib
 import os
 import re
 import socket
+import stat
 import struct
 
 import psutil
@@ -23,10 +24,24 @@ def close_at_once(ends: tuple[str, str]) -> None:
     for one in psutil.Process().net_connections("tcp"):
         listens = one.status == psutil.CONN_LISTEN
         if not listens and (one.laddr.port, one.raddr.port) == ports:
-            with contextlib.suppress(OSError):  # the link is gone by now
-                _let_not_linger(one.fd)
+            let_not_linger(one.fd, ports)
 
 
-def _let_not_linger(number: int) -> None:
-    with socket.socket(fileno=os.dup(number)) as own:
-        own.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _DO_NOT_LINGER)
+def let_not_linger(number: int, ports: tuple[int, ...]) -> None:
+    """Set it for a descriptor that was a socket between these ports a moment ago.
+
+    The link may be gone by now and its number given to anything: what is no socket, or one between
+    other ports, stays as it is, and no second descriptor is left of it, which would hold a lock.
+    """
+    with contextlib.suppress(OSError):
+        if not stat.S_ISSOCK(os.fstat(number).st_mode):
+            return
+        own = os.dup(number)  # the number stays with this socket while it is looked at
+        try:
+            taken = socket.socket(fileno=own)
+        except OSError:
+            os.close(own)
+            return
+        with taken:
+            if (taken.getsockname()[1], taken.getpeername()[1]) == ports:
+                taken.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _DO_NOT_LINGER)
