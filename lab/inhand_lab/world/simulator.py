@@ -36,6 +36,10 @@ PREPARED_AHEAD_S = 4.0
 """Time before its first frame at which the next performance is prepared, seconds: memory holds two
 from then on."""
 
+PREPARED_APART_S = 1.0
+"""Time between the cameras of a rig that prepare it, seconds: all at once, they would take the
+processor from whoever watches them, as no real camera does."""
+
 
 def _known(interaction: str) -> str:
     if interaction not in INTERACTIONS:
@@ -188,6 +192,7 @@ class SimulatorSource:
             round(1e9 * options.start),
             round(1e9 * options.frames / options.frame_rate),
             round(1e9 * PREPARED_AHEAD_S),
+            round(1e9 * options.view * PREPARED_APART_S),
             options.loop,
             options.own_clock,
         )

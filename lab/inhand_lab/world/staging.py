@@ -21,13 +21,15 @@ from inhand_lab.world.rigs import RigView
 class Staging:
     """The first performance begins at ``start_ns`` (since the epoch), and each takes ``length_ns``.
 
-    Without ``loop`` there is one alone. A further one is prepared ``ahead_ns`` before it begins.
+    Without ``loop`` there is one alone. A further one is prepared ``ahead_ns`` before it begins,
+    but not before the one that is on is shown, and ``apart_ns`` later if time is left.
     ``own_clock`` says that stamps are by the camera's clock, and not by the host's.
     """
 
     start_ns: int
     length_ns: int
     ahead_ns: int
+    apart_ns: int = 0
     loop: bool = True
     own_clock: bool = False
 
@@ -38,6 +40,12 @@ class Staging:
     def begin_ns(self, performance: int) -> int:
         """When a performance begins, nanoseconds since the epoch."""
         return self.start_ns + performance * self.length_ns
+
+    def prepared_ns(self, performance: int, shown_ns: int) -> int:
+        """When the one after a performance, first shown at a time, is prepared."""
+        next_ns = self.begin_ns(performance + 1)
+        first_ns = max(shown_ns, next_ns - self.ahead_ns)
+        return first_ns + min(self.apart_ns, (next_ns - first_ns) // 2)
 
 
 @dataclass(frozen=True)
@@ -66,11 +74,11 @@ def staged_frames(
             if number < current or number > current + 1:
                 number, view = current, perform(current)
             following: Future[RigView] | None = None
+            prepared_ns = staging.prepared_ns(number, time.time_ns())
             for frame in _frames_of(staging, number, view):
                 if frame.due_ns - time.time_ns() > 2 * staging.length_ns and number:
                     break
-                ahead_ns = staging.begin_ns(number + 1) - frame.due_ns
-                if staging.loop and following is None and ahead_ns <= staging.ahead_ns:
+                if staging.loop and following is None and frame.due_ns >= prepared_ns:
                     following = executor.submit(perform, number + 1)
                 yield frame
             if not staging.loop:

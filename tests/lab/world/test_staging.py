@@ -92,6 +92,12 @@ def test_the_clock_says_which_performance_is_on() -> None:
     assert staging.begin_ns(9) == 1_900
 
 
+def test_cameras_of_a_rig_prepare_the_next_performance_one_after_another() -> None:
+    apart = [Staging(1_000, 100, ahead_ns=40, apart_ns=view * 10) for view in range(3)]
+    assert [one.prepared_ns(2, shown_ns=1_200) for one in apart] == [1_260, 1_270, 1_280]
+    assert [one.prepared_ns(2, shown_ns=1_290) for one in apart] == [1_290, 1_295, 1_295]
+
+
 @pytest.mark.parametrize(
     ("options", "line"),
     [
