@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 from running_rig import RunningRig
-from scheduling import ONE_THREAD, ordered, usable_cores
+from scheduling import ONE_THREAD, WaitingApart, ordered, usable_cores
 from wire import Wire
+from xdist.remote import Producer
 
 # Example times on a busy machine say nothing about the code; each test has its own timeout.
 settings.register_profile("inhand", deadline=None)
@@ -22,7 +23,13 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    return usable_cores()
+    return usable_cores() + 1
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> WaitingApart | None:
+    apart = (config.option.numprocesses or 0) > usable_cores()
+    return WaitingApart(config, log) if apart and config.option.dist == "loadfile" else None
 
 
 @pytest.hookimpl(tryfirst=True)
