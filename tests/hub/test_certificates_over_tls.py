@@ -24,7 +24,7 @@ from inhand_hub.certificates import (
     new_authority,
     new_key,
 )
-from inhand_runtime import session as runtime_session
+from inhand_runtime import session, zenoh_config
 from inhand_runtime.errors import InhandError
 from inhand_runtime.inbox import Received
 from inhand_runtime.settings import ZenohSettings
@@ -63,8 +63,8 @@ def test_a_certificate_that_the_hub_does_not_take_gets_nobody_in(
     site: HubSite, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The files are not looked at before: the hub itself must refuse them.
-    monkeypatch.setattr(runtime_session, "require_client", lambda _settings: None)
-    monkeypatch.setattr(runtime_session, "CLIENT_TIMEOUT_MS", 500)
+    monkeypatch.setattr(session, "require_client", lambda _settings: None)
+    monkeypatch.setattr(zenoh_config, "CLIENT_TIMEOUT_MS", 500)
     authority, name = authority_of(site), site.member("front").common_name
     foreign, key = new_authority("Another one"), new_key()
     hub = site.folder.hub
@@ -84,12 +84,12 @@ def test_a_certificate_that_the_hub_does_not_take_gets_nobody_in(
 def test_without_a_certificate_or_without_tls_nobody_gets_in(
     site: HubSite, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(runtime_session, "CLIENT_TIMEOUT_MS", 500)
+    monkeypatch.setattr(zenoh_config, "CLIENT_TIMEOUT_MS", 500)
     plain = ZenohSettings(mode="client", connect=(site.address.replace("tls/", "tcp/"),))
     with pytest.raises(InhandError, match="it may want tls"), site.joined_by(plain):
         pass
     authority = str(site.folder.hub / "authority.pem")
-    bare = runtime_session.zenoh_config(
+    bare = zenoh_config.zenoh_config(
         {
             "mode": "client",
             "connect/endpoints": [site.address],
@@ -104,7 +104,7 @@ def test_without_a_certificate_or_without_tls_nobody_gets_in(
 def test_a_member_does_not_take_a_foreign_hub_for_its_own(
     site: HubSite, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(runtime_session, "CLIENT_TIMEOUT_MS", 500)
+    monkeypatch.setattr(zenoh_config, "CLIENT_TIMEOUT_MS", 500)
     foreign = new_authority("Another one")
     issued = member_certificate(foreign, "kitchen.front.0", new_key())
     settings = site.settings_of(given(tmp_path / "given", issued, foreign.certificate))

@@ -18,7 +18,7 @@ from hub_site import (
     short_keys,
     start_hub,
 )
-from inhand_runtime import session as runtime_session
+from inhand_runtime import zenoh_config
 from inhand_runtime.errors import InhandError
 from inhand_runtime.session import open_session
 from inhand_runtime.settings import ZenohSettings
@@ -118,7 +118,7 @@ def test_who_has_no_password_of_the_site_is_told_so_and_reaches_nothing(
     for words, settings in refused.items():
         with pytest.raises(InhandError, match=words):
             opened(settings)
-    bare = runtime_session.zenoh_config(
+    bare = zenoh_config.zenoh_config(
         {
             "mode": "client",
             "connect/endpoints": [guests.address],

@@ -15,6 +15,7 @@ from hub_site import (
     short_keys,
 )
 from inhand_runtime import session as runtime_session
+from inhand_runtime import zenoh_config
 from inhand_runtime.questions import answer, ask
 from inhand_runtime.session import tokens, watch_tokens
 from inhand_schemas.keys import Site
@@ -227,7 +228,7 @@ def test_who_comes_as_a_peer_or_a_router_may_do_no_more(
         "connect_private_key": str(given.key),
         "enable_mtls": True,
     }
-    config = runtime_session.zenoh_config(
+    config = zenoh_config.zenoh_config(
         {
             "mode": mode,
             "listen/endpoints": [],

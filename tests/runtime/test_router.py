@@ -7,7 +7,7 @@ from examples import EXAMPLES
 from hub_site import REALM, RIG, SITE, free_address, made_site
 from inhand_hub.access import access_control
 from inhand_hub.site_folder import SiteFolder, create_site
-from inhand_runtime import session as runtime_session
+from inhand_runtime import zenoh_config
 from inhand_runtime.errors import InhandError
 from inhand_runtime.router import RouterSettings, open_router
 from inhand_runtime.session import open_session, tokens
@@ -80,7 +80,7 @@ def test_an_address_in_use_is_refused_with_the_mend(folder: SiteFolder) -> None:
 def test_a_hub_of_another_address_than_its_certificate_s_is_not_trusted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(runtime_session, "CLIENT_TIMEOUT_MS", 500)
+    monkeypatch.setattr(zenoh_config, "CLIENT_TIMEOUT_MS", 500)
     folder, address = create_site(tmp_path / "site", REALM, (RIG,), ("hub.local",)), free_address()
     folder.add("viewer", "anna", RIG, ())
     with (

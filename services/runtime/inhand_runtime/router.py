@@ -12,13 +12,15 @@ from inhand_schemas.topics import Delivery
 from inhand_runtime.errors import InhandError
 from inhand_runtime.session import (
     CONGESTION,
-    FOR_EVER_MS,
-    HANDSHAKE_TIMEOUT_MS,
     PRIORITIES,
-    RETRY,
     Session,
     closing_at_once,
     log_what_is_asked_for,
+)
+from inhand_runtime.zenoh_config import (
+    FOR_EVER_MS,
+    HANDSHAKE_TIMEOUT_MS,
+    RETRY,
     zenoh_config,
 )
 

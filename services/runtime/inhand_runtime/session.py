@@ -1,4 +1,4 @@
-"""Zenoh sessions, publishers, subscribers and liveliness tokens: no other module imports Zenoh.
+"""Zenoh sessions, publishers, subscribers and liveliness tokens.
 
 Peers meet without multicast: the first process of a rig takes the meeting address and the later
 ones connect to it; gossip then connects each to all. When the one that holds the address goes
@@ -11,8 +11,7 @@ import json
 import os
 import secrets
 import time
-from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
+from collections.abc import Callable, Iterator
 from typing import Any, Generic, TypeVar
 
 import zenoh
@@ -23,11 +22,12 @@ from inhand_schemas.messages import Message
 from inhand_schemas.topics import Delivery, Topic
 
 from inhand_runtime.errors import InhandError, SettingsError
-from inhand_runtime.hub_access import read_password, require_client, why_closed
+from inhand_runtime.hub_access import require_client, why_closed
 from inhand_runtime.inbox import Received
 from inhand_runtime.lingering import close_at_once
 from inhand_runtime.reconnection import Links, Reconnection
 from inhand_runtime.settings import ZenohSettings
+from inhand_runtime.zenoh_config import session_config
 
 T = TypeVar("T", bound=Message)
 
@@ -42,31 +42,9 @@ REPEAT_S = 1.0
 miss the first one for ever (see ``Publisher.repeat``)."""
 MOST_KEPT_KEYS = 1024
 """Number of keys whose last kept value a subscription remembers, to pass no repetition on."""
-CLIENT_TIMEOUT_MS = 3_000
-HANDSHAKE_TIMEOUT_MS = 1_500
-FOR_EVER_MS = -1
-RETRY = {"period_init_ms": 100, "period_max_ms": 1000}
-"""How soon a connection is tried again."""
 LIVELINESS_TIMEOUT_S = 0.5
-LEASE_MS = 10_000
-"""Milliseconds without a sign of life after which a link is closed, whatever waits for it."""
-LONGEST_WAIT_US = 7_000_000
-"""Microseconds that a frame waits for a link that takes nothing before the link is closed: who
-stands still for less keeps it. Were it to wait at the end of the lease, closing the link would hold
-a thread that sends."""
-SIGNS_IN_A_LEASE = 10
-"""Number of signs of life that are sent in that time."""
 GO_BETWEEN = "60be60be60be"
 """The first digits of the id of a session that only brings others together."""
-LONGEST_QUEUE = 16
-"""Batches of 64 KiB that may wait for a link: some frames, or bursts of small messages, which share
-batches, so that a busy moment drops none."""
-
-SENDING_THREADS = 8
-"""Number of Zenoh's threads that send: where a link to somebody who stands still is closed, one of
-them waits for seconds for what a publisher still holds for that link, and with the single one that
-Zenoh has by itself so does all else (seen with Zenoh 1.10.2)."""
-_RUNTIME_VARIABLE = "ZENOH_RUNTIME"
 _LOG_VARIABLE, _NO_SETTINGS = "RUST_LOG", ",zenoh::api::session=info"
 
 PRIORITIES = {
@@ -109,7 +87,7 @@ def _open_client(settings: ZenohSettings) -> Session:
     if not settings.connect:
         raise SettingsError('zenoh.mode = "client" needs zenoh.connect, the addresses of hubs')
     require_client(settings)
-    config = _config(settings, listen=(), connect=settings.connect)
+    config = session_config(settings, listen=(), connect=settings.connect)
     try:
         return zenoh.open(config)
     except zenoh.ZError:
@@ -118,10 +96,12 @@ def _open_client(settings: ZenohSettings) -> Session:
 
 def _open_peer(settings: ZenohSettings) -> Session:
     with contextlib.suppress(zenoh.ZError):
-        return zenoh.open(_config(settings, (settings.meeting, *settings.listen), settings.connect))
+        return zenoh.open(
+            session_config(settings, (settings.meeting, *settings.listen), settings.connect)
+        )
     listen = settings.listen or (_any_port(settings.meeting),)
     try:
-        return zenoh.open(_config(settings, listen, (settings.meeting, *settings.connect)))
+        return zenoh.open(session_config(settings, listen, (settings.meeting, *settings.connect)))
     except zenoh.ZError:
         setting = "listen" if settings.listen else "meeting"
         raise SettingsError(
@@ -158,7 +138,7 @@ def _reconnected(session: Session, settings: ZenohSettings) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _go_between(settings: ZenohSettings) -> Iterator[Callable[[], Links]]:
-    config = _config(settings, listen=(), connect=(settings.meeting, *settings.connect))
+    config = session_config(settings, listen=(), connect=(settings.meeting, *settings.connect))
     config.insert_json5("id", json.dumps(GO_BETWEEN + secrets.token_hex(10)))
     config.insert_json5("open/return_conditions/connect_scouted", "false")
     with zenoh.open(config) as session:
@@ -174,62 +154,6 @@ def _links(session: Session) -> Links:
 
 def _any_port(endpoint: str) -> str:
     return endpoint.rsplit(":", 1)[0] + ":0"
-
-
-def _config(
-    settings: ZenohSettings, listen: tuple[str, ...], connect: tuple[str, ...]
-) -> zenoh.Config:
-    client = settings.mode == "client"
-    values: dict[str, Any] = {
-        "mode": settings.mode,
-        "listen/endpoints": list(listen),
-        "connect/endpoints": list(connect),
-        "connect/timeout_ms": CLIENT_TIMEOUT_MS if client else FOR_EVER_MS,
-        "connect/exit_on_failure": client,
-        "connect/retry": RETRY,
-    }
-    if settings.credentials is not None:
-        values["transport/link/tls"] = {
-            **_known_by(settings.credentials.authority),
-            "connect_certificate": str(settings.credentials.certificate),
-            "connect_private_key": str(settings.credentials.key),
-            "enable_mtls": True,
-        }
-    if settings.login is not None:
-        password = read_password(settings.login)
-        values["transport/auth/usrpwd"] = {"user": settings.login.user, "password": password}
-        values["transport/link/tls"] = _known_by(settings.login.authority)
-    return zenoh_config(values)
-
-
-def _known_by(authority: Path) -> dict[str, Any]:
-    """Zenoh's settings of TLS by which a client knows its hub."""
-    return {
-        "root_ca_certificate": str(authority),
-        "verify_name_on_connect": True,
-        "close_link_on_expiration": True,
-    }
-
-
-def zenoh_config(values: Mapping[str, Any]) -> zenoh.Config:
-    """Zenoh's settings of a session, with those that all sessions of ours have."""
-    shared: dict[str, Any] = {
-        "transport/unicast/open_timeout": HANDSHAKE_TIMEOUT_MS,
-        "scouting/multicast/enabled": False,
-        "transport/link/tx/lease": LEASE_MS,
-        "transport/link/tx/keep_alive": SIGNS_IN_A_LEASE,
-        "transport/link/tx/queue/congestion_control/block/wait_before_close": LONGEST_WAIT_US,
-        "transport/link/tx/queue/size/data": LONGEST_QUEUE,
-        "transport/link/tx/queue/size/data_low": LONGEST_QUEUE,
-        "transport/link/tx/queue/size/real_time": LONGEST_QUEUE,
-        "transport/shared_memory/enabled": False,
-    }
-    # Zenoh reads it once, when a process opens its first session.
-    os.environ.setdefault(_RUNTIME_VARIABLE, f"(tx: (worker_threads: {SENDING_THREADS}))")
-    config = zenoh.Config()
-    for key, value in {**shared, **values}.items():
-        config.insert_json5(key, json.dumps(value))
-    return config
 
 
 class Publisher(Generic[T]):
