@@ -17,7 +17,16 @@ from xdist.workermanage import WorkerController
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 """Environment of workers: threads of one that wait for each other take the others' cores."""
 
-WAITING = ("tests/hub/", "tests/runtime/")
+WAITING = (
+    "tests/hub/",
+    "tests/runtime/",
+    "tests/recorder/",
+    "tests/outcomes/test_service.py",
+    "tests/outcomes/homeassistant/",
+    "tests/inhand/test_backup.py",
+    "tests/inhand/test_metrics.py",
+    "tests/studio/test_camera_view.py",
+)
 """Where tests wait for what others do or no longer do: they use a fifth of a core."""
 
 
