@@ -97,10 +97,13 @@ def test_what_a_tracker_takes_as_always_in_use_counts_only_where_settings_say_so
     rig: RunningRig,
 ) -> None:
     unsaid = ("--without-recogniser", "--speed", "9")
-    daemon = start(rig)
+    goal = '[[outcomes.home.goals]]\nname = "tea"\nkind = "sip"\nobject = "cpu"\nat_least = 1\n'
+    daemon = start(rig, goal)
     carry(rig, *unsaid, "--until", "3")
-    troubles = rig.health("home")["troubles"]
-    assert [one.partition(":")[0] for one in troubles] == ["nothing is measured of cup"]
+    assert sorted(one.partition(":")[0] for one in rig.health("home")["troubles"]) == [
+        "nothing is measured of cup",
+        "the goal tea counts 'cpu', which is not measured (did you mean cup?)",
+    ]
     daemon.stop()
     start(rig, 'always_in_use = ["cup"]\n')
     carry(rig, *unsaid)

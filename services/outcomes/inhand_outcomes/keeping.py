@@ -12,7 +12,14 @@ from inhand_runtime.settings_errors import suggestion
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from inhand_outcomes.regions import Region
-from inhand_outcomes.rules import Goal, PersonsGoal, QuietHours, Rules
+from inhand_outcomes.rules import (
+    MOST_PERSON,
+    Goal,
+    PersonNumber,
+    PersonsGoal,
+    QuietHours,
+    Rules,
+)
 from inhand_outcomes.store.database import Database, open_database
 from inhand_outcomes.store.failures import StoreError
 from inhand_outcomes.store.retention import Retention
@@ -73,7 +80,7 @@ class KeepingSettings(Section):
     keep: frozenset[Kept] = frozenset({"numbers", "poses"})
     keep_days: Annotated[int, Field(ge=0)] = 400
     keep_totals_days: Annotated[int, Field(ge=0)] = 0
-    people: Mapping[Annotated[int, Field(ge=0)], Annotated[str, Field(min_length=1)]] = {}
+    people: Mapping[PersonNumber, Annotated[str, Field(min_length=1)]] = {}
     goals: tuple[Goal, ...] = ()
     quiet: QuietHours | None = None
     regions: tuple[Region, ...] = ()
@@ -136,6 +143,8 @@ def _goals_person(goal: Goal, people: Mapping[int, str]) -> int | None:
 def person_number(text: str, people: Mapping[int, str]) -> int:
     """Return the number of a person, who is named by it or by ``people``; raises ValueError."""
     if text.isdecimal():
+        if int(text) > MOST_PERSON:
+            raise ValueError(f"nobody has the number {text}: it is beyond {MOST_PERSON}")
         return int(text)
     for number, name in people.items():
         if name == text:

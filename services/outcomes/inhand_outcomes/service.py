@@ -81,6 +81,12 @@ def run(settings: Settings[OutcomesSettings]) -> None:
         for name in set(chosen.always_in_use) - set(things):
             unknown = f"always_in_use names {name!r}, which is not measured"
             daemon.health.trouble(f"object {name}", unknown + suggestion(name, things))
+        for goal in chosen.goals:
+            if goal.object is not None and goal.object not in things:
+                unknown = f"the goal {goal.name} counts {goal.object!r}, which is not measured"
+                daemon.health.trouble(
+                    f"goal {goal.name}", unknown + suggestion(goal.object, things)
+                )
         watcher = Watcher(things, place)
         pausing = Pausing()
         home = None
