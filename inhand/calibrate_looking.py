@@ -160,7 +160,7 @@ def _say(places: PlacesTogether, cameras: tuple[str, ...]) -> None:
 
 
 def _listed(counts: dict[str, int]) -> str:
-    return ", ".join(f"{name} {count:,}" for name, count in sorted(counts.items()))
+    return ", ".join(f"{name} {count:,}" for name, count in sorted(counts.items())) or "none yet"
 
 
 def _skeletons(camera: str, rows: list[tuple[int, Person]]) -> CameraSkeletons:

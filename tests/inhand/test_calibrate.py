@@ -138,6 +138,15 @@ def test_what_does_not_belong_together_is_refused(
     assert said in capsys.readouterr().err
 
 
+def test_a_check_is_against_the_calibration_of_a_tracker_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    config = tmp_path / "rig.toml"
+    config.write_text('[tracker.mug]\ncameras = ["a", "b"]\ncalibration = "cameras.toml"\n')
+    assert main(["calibrate", "--check", "--config", str(config)]) == 2
+    assert f"cannot read {tmp_path / 'cameras.toml'}" in capsys.readouterr().err
+
+
 def test_settings_are_not_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     settings = tmp_path / "rig.toml"
     settings.write_text('[capture.front]\nsource = "oak"\n')

@@ -159,7 +159,7 @@ def test_different_messages_of_one_number_and_time_are_no_copies(tmp_path: Path)
 def test_a_recording_that_is_given_twice_is_refused(tmp_path: Path) -> None:
     one = write_rig(tmp_path / "one.mcap")
     (tmp_path / "link.mcap").symlink_to(one)
-    with pytest.raises(RecordingError, match="link.mcap is given twice"):
+    with pytest.raises(RecordingError, match=r"link\.mcap is given twice"):
         merge([one, tmp_path / "link.mcap"], tmp_path / "all.mcap", [OWN, OWN])
 
 
