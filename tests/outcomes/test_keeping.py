@@ -22,6 +22,7 @@ PEOPLE = {"0": "anna", "1": "ben"}
         ({"database": "mysql://home"}, "write an address as postgresql"),
         ({"database": "postgresql+psycopg://me:secret@host/home"}, "leave the password out"),
         ({"database": ""}, "name a file"),
+        ({"database": "postgresql+psycopg://me@host:x/home"}, "it is no address"),
         ({"sure": 1.1}, "less than or equal to 1"),
         ({"keep": ["images"]}, "'numbers' or 'poses'"),
         ({"keep_days": 90, "keep_totals_days": 30}, "keep_days at least"),

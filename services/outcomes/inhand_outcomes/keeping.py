@@ -20,7 +20,7 @@ from inhand_outcomes.rules import (
     QuietHours,
     Rules,
 )
-from inhand_outcomes.store.database import Database, open_database
+from inhand_outcomes.store.database import Database, open_database, readable_address
 from inhand_outcomes.store.failures import StoreError
 from inhand_outcomes.store.retention import Retention
 from inhand_outcomes.store.saving import Keeping, Kept
@@ -40,6 +40,8 @@ def _database(text: str, info: ValidationInfo) -> str:
     user = text.removeprefix(POSTGRESQL).partition("/")[0].rpartition("@")[0]
     if ":" in user or "password=" in text:
         raise ValueError("leave the password out: write it to a file, and name it password_file")
+    if not readable_address(text):
+        raise ValueError(f"it is no address: write it as {POSTGRESQL}USER@HOST/DATABASE")
     return text
 
 
