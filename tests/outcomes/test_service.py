@@ -2,6 +2,7 @@
 
 import json
 import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -141,6 +142,21 @@ def test_what_is_remembered_at_a_start_waits_for_the_next_captures(rig: RunningR
         assert again.end_quiet(loop.pose_clock.now_ns()) == []
         assert len(again.followed) == 1
     saver.database.close()
+
+
+def test_a_capture_from_years_ahead_makes_nothing_that_is_kept_too_old(rig: RunningRig) -> None:
+    saver, now_ns = new_saver(rig.folder), time.time_ns()
+    saver.save([sip(now_ns)])
+    rig.configure("[outcomes.home]")
+    settings = load_settings(rig.config, "outcomes", OutcomesSettings)
+    with running_daemon("outcomes", settings) as daemon:
+        waiting, watcher = WaitingOutcomes(lambda: saver), Watcher({}, "inhand/rig")
+        rules, retention = Rules([], ZURICH), Retention(days=400)
+        loop = OutcomesLoop(daemon, watcher, waiting, rules, retention, Pausing())
+        loop.clock.hear(now_ns + 500 * 86_400 * S)
+        daemon.stop.set()
+        loop.run()
+    assert [one.outcome.kind for one in kept(rig)] == ["sip"]
 
 
 def journal_until(rig: RunningRig) -> float:

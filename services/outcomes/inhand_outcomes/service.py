@@ -358,9 +358,11 @@ class OutcomesLoop:
             keep_floor_map(database, kept)
         if today != self.watcher.floors.day:
             self.watcher.floors.begin(today, floor_maps(database, today))
-        if today != self._tidied:
-            remove_old(database, self.retention, today)
-            self._tidied = today
+        # A capture of a wrong clock, far ahead, must not make all that is kept too old.
+        surely = min(today, local_day(time.time_ns(), self.rules.zone))
+        if surely != self._tidied:
+            remove_old(database, self.retention, surely)
+            self._tidied = surely
 
     def _publish(self, event: Event) -> None:
         self._events.put(event)
