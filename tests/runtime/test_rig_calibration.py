@@ -97,7 +97,15 @@ def test_a_file_that_is_not_there_and_one_that_cannot_be_written_are_said(tmp_pa
     with pytest.raises(SettingsError, match=r"pipe\.toml is a pipe: name a file"):
         read_rig_calibration(tmp_path / "pipe.toml")
     with pytest.raises(InhandError, match="cannot write"):
-        write_rig_calibration(tmp_path / "nowhere" / "rig.toml", RIG)
+        write_rig_calibration(Path("/proc/rig.toml"), RIG)
+    (tmp_path / "file").touch()
+    with pytest.raises(InhandError, match="cannot write"):
+        write_rig_calibration(tmp_path / "file" / "rig.toml", RIG)
+
+
+def test_the_folder_of_a_file_is_made(tmp_path: Path) -> None:
+    write_rig_calibration(tmp_path / "new" / "rig.toml", RIG)
+    assert read_rig_calibration(tmp_path / "new" / "rig.toml") == RIG
 
 
 def test_settings_are_not_written_over_by_a_calibration(written: Path) -> None:

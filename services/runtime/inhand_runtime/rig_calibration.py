@@ -101,8 +101,13 @@ def require_place_for_calibration(path: Path) -> None:
 
 
 def write_rig_calibration(path: Path, calibration: RigCalibration) -> None:
-    """Write a file as a whole or not at all, readable by all; raises InhandError."""
+    """Write a file as a whole or not at all, readable by all, and make its folder where there is
+    none; raises InhandError."""
     part = path.with_name(f".{path.name}.unfinished")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InhandError(f"cannot write {path}: {error.strerror}") from None
     try:
         with part.open("w", encoding="utf-8") as file:
             file.write(_text(calibration))
