@@ -29,6 +29,8 @@ PEOPLE = {"0": "anna", "1": "ben"}
         ({"keep_days": 0, "keep_totals_days": 30}, "keep_days at least"),
         ({"people": {"0": "anna", "1": "anna"}}, "two have one name"),
         ({"people": {"0": "1"}}, "another's number"),
+        ({"people": {"0": "an\x1b[2Jna"}}, "letters that can be shown"),
+        ({"people": {"0": " "}}, "letters that can be shown"),
         ({"goals": [DRINK, DRINK]}, "two have one name"),
         ({"people": PEOPLE, "goals": [{**DRINK, "person": "bne"}]}, r"did you mean ben\?"),
         ({"goals": [{**DRINK, "person": "ben"}]}, "or name people in the settings"),

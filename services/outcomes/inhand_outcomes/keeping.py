@@ -95,6 +95,8 @@ class KeepingSettings(Section):
             raise ValueError("keep_totals_days must be keep_days at least: details have totals")
         if len(set(self.people.values())) < len(self.people):
             raise ValueError("people: two have one name")
+        if not all(name.isprintable() and name.strip() for name in self.people.values()):
+            raise ValueError("people: write names in letters that can be shown")
         if any(name.isdecimal() for name in self.people.values()):
             raise ValueError("people: a name of digits alone would be another's number")
         names = [goal.name for goal in self.goals]
