@@ -172,13 +172,18 @@ def clock_of_shared(
 @dataclass(frozen=True)
 class Merged:
     """A merged file: its messages, those of each source, those that were left out because another
-    source has them too, and the damaged ones by topic."""
+    source has them too, and the damaged ones by topic.
+
+    ``unlike`` has the names of what sources attached differently, as meshes of one object's name,
+    and the source whose own a reader takes.
+    """
 
     path: Path
     messages: int
     by_source: Mapping[str, int]
     repeated: int
     damaged: Mapping[str, int]
+    unlike: Mapping[str, str]
 
 
 def merge_recordings(
@@ -213,7 +218,7 @@ def merge_recordings(
                 counter.count(message.key, message.sequence)
             written[hosts[number].name] += 1
             on_message()
-        _write_about(writer, hosts, clocks, counter)
+        unlike = _write_about(writer, hosts, clocks, counter)
         path = writer.close()
     except BaseException:
         writer.abandon()
@@ -222,7 +227,7 @@ def merge_recordings(
     damaged = Counter[str]()
     for host in hosts:
         damaged.update(host.recording.damaged)
-    return Merged(path, sum(written.values()), written, repeated, damaged)
+    return Merged(path, sum(written.values()), written, repeated, damaged, unlike)
 
 
 MERGING_SUFFIX = ".merging"
@@ -253,11 +258,17 @@ def _write_about(
     hosts: Sequence[Host],
     clocks: Sequence[HostClock],
     counter: LossCounter,
-) -> None:
+) -> dict[str, str]:
+    """Write what is attached, and the records; returns ``Merged.unlike``."""
     attached: dict[tuple[str, bytes], Attachment] = {}
+    unlike: dict[str, str] = {}
     for host in hosts:
         for one in host.recording.attachments():
-            attached.setdefault((one.name, one.data), one)
+            if (one.name, one.data) in attached:
+                continue
+            if any(name == one.name for name, _ in attached):
+                unlike[one.name] = host.name
+            attached[one.name, one.data] = one
     attach(writer, list(attached.values()))
     sources = {path: of for host in hosts for path, of in host.recording.metadata().items()}
     about = {"sources": "\n".join(path.name for path in sources)}
@@ -266,6 +277,7 @@ def _write_about(
     records = records_of(sources, counter, None)
     for name, values in (records | {MERGE_RECORD: about | losses_by_source(sources)}).items():
         writer.add_metadata(name, values)
+    return unlike
 
 
 def clock_in_words(clock: HostClock) -> str:
