@@ -74,7 +74,7 @@ from inhand.bench_tables import (
     watching_table,
     weighing_table,
 )
-from inhand.looking import positive_count
+from inhand.looking import positive_count, seed_number
 from inhand.progress import progress_bar, progress_bars
 from inhand.results import write_json
 
@@ -131,7 +131,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--seeds",
-        type=int,
+        type=seed_number,
         nargs="+",
         metavar="S",
         help="for outcomes, rigs and handovers: seeds of the people who are watched "

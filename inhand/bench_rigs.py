@@ -56,7 +56,7 @@ def measure_rigs(arguments: argparse.Namespace) -> tuple[Table, dict[str, Any]]:
     if not 2 <= cameras <= len(RIG_CAMERAS):
         raise SettingsError(f"--cameras is from 2 to {len(RIG_CAMERAS)}, not {cameras}")
     off_mm, off_deg = arguments.placed_off_mm, arguments.placed_off_deg
-    if min(off_mm, off_deg) < 0.0:
+    if not all(0.0 <= off < math.inf for off in (off_mm, off_deg)):
         raise SettingsError("--placed-off-mm and --placed-off-deg are 0 or more")
     off = PlaceDeviation(1e-3 * off_mm / math.sqrt(3.0), math.radians(off_deg) / math.sqrt(3.0))
     runs = [

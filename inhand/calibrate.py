@@ -225,14 +225,14 @@ def _calibration_in_use(arguments: argparse.Namespace) -> Path:
         return Path(arguments.check)
     rig_file = load_rig_file(arguments.config)
     folder = Path() if arguments.config is None else arguments.config.parent
-    named = {
-        str(table["calibration"])
-        for table in rig_file.capture.values()
+    named: set[Path] = {
+        folder / table["calibration"]
+        for table in (*rig_file.capture.values(), *rig_file.tracker.values())
         if isinstance(table.get("calibration"), str)
     }
-    if len(named) != 1:
+    if len({path.resolve() for path in named}) != 1:
         raise SettingsError(
             ("several calibrations are" if named else "no calibration is")
             + " named in the settings: name one with --check FILE"
         )
-    return Path(folder / named.pop())
+    return named.pop()

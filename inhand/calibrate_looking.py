@@ -7,6 +7,7 @@ from collections import defaultdict, deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from inhand_calibration.arrays import Array
@@ -24,9 +25,10 @@ from inhand_calibration.from_board.sheet import LINE_MM
 from inhand_calibration.from_board.sights import CameraSights
 from inhand_calibration.from_board.together import PlacesTogether
 from inhand_calibration.from_people.skeletons import CameraSkeletons
-from inhand_runtime.recording import RecordingError, read_recording
+from inhand_runtime.recording import RecordedMessage, RecordingError, read_recording
 from inhand_runtime.wording import counted
 from inhand_schemas.errors import MessageError
+from inhand_schemas.keys import Site, parse_key
 from inhand_schemas.messages import CameraInfo, Message, Person, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, RGBD, SKELETONS, AnyTopic, topic_of
 
@@ -115,8 +117,10 @@ def _messages(arguments: argparse.Namespace, topics: Sequence[AnyTopic]) -> Iter
     raises InhandError."""
     if arguments.recordings:
         streams = [topic.stream for topic in topics]
+        sites: dict[str, Site] = {}
         for path in arguments.recordings:
             for recorded in read_recording(path, streams=streams):
+                _require_one_rig(sites, recorded, path)
                 try:
                     message = recorded.message()
                 except MessageError as error:
@@ -144,6 +148,17 @@ def _messages(arguments: argparse.Namespace, topics: Sequence[AnyTopic]) -> Iter
             print(f"{counted(look.skipped, 'picture')} left out: this computer is too slow for all")
 
 
+def _require_one_rig(sites: dict[str, Site], recorded: RecordedMessage, path: Path) -> None:
+    """Note the rig of a message's camera; raises RecordingError where two rigs have one of that
+    name, which would pass for one camera."""
+    site = parse_key(recorded.key).site
+    if sites.setdefault(recorded.name, site) != site:
+        raise RecordingError(
+            f"{path}: {recorded.key} is of another rig's camera {recorded.name}: give recordings "
+            "in which each camera has a name of its own"
+        )
+
+
 def _note(places: PlacesTogether, heard: _Heard, done: "Future[Array | None]") -> None:
     middle = done.result()
     if middle is not None:
@@ -160,7 +175,7 @@ def _say(places: PlacesTogether, cameras: tuple[str, ...]) -> None:
 
 
 def _listed(counts: dict[str, int]) -> str:
-    return ", ".join(f"{name} {count:,}" for name, count in sorted(counts.items()))
+    return ", ".join(f"{name} {count:,}" for name, count in sorted(counts.items())) or "none yet"
 
 
 def _skeletons(camera: str, rows: list[tuple[int, Person]]) -> CameraSkeletons:

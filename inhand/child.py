@@ -53,6 +53,7 @@ class Child:
         self._failures: list[float] = []
         self._heartbeats: Heartbeats | None = None
         self._silent_s: float | None = None
+        self._was_up = False
         self._tended_at = time.monotonic()
 
     def tend(self) -> int | None:
@@ -82,7 +83,8 @@ class Child:
             return None
         self._process = None
         self._hear_no_more()
-        self.done = code in (DONE, WRONG_USAGE)
+        # Settings by which it was up were right: a file that they name has changed since.
+        self.done = code == DONE or (code == WRONG_USAGE and not self._was_up)
         if self.done:
             log.info("%s ended with exit code %d", self.name, code)
         else:
@@ -130,7 +132,7 @@ class Child:
         if self._process is None or self._heartbeats is None:
             self._silent_s = None
         elif self._heartbeats.came_from(self._process.pid):
-            self._silent_s = 0.0
+            self._silent_s, self._was_up = 0.0, True
         elif self._silent_s is not None:
             self._silent_s += awake
             if self._silent_s > HANGS_AFTER_S:

@@ -176,6 +176,11 @@ def positive_count(text: str) -> int:
     return _above(0, text, int, "a whole number, 1 or more")
 
 
+def seed_number(text: str) -> int:
+    """Read a seed, 0 or more; raises ArgumentTypeError, which argparse shows."""
+    return _above(-1, text, int, "a whole number, 0 or more")
+
+
 def camera_name(text: str) -> str:
     """Read a camera's name; raises ArgumentTypeError, which argparse shows."""
     try:

@@ -19,6 +19,7 @@ from inhand_runtime.errors import InhandError
 from inhand_runtime.exit_codes import DONE
 from inhand_runtime.settings import load_settings
 from inhand_runtime.settings_errors import suggestion
+from inhand_runtime.wording import printable
 from inhand_runtime.writable import require_writable_file
 
 from inhand.looking import output
@@ -177,7 +178,7 @@ def _show_where(kept: Kept, arguments: argparse.Namespace) -> dict[str, Any]:
     place = places.get(arguments.object)
     if place is None:
         known = suggestion(arguments.object, sorted(places)) if places else ""
-        raise InhandError(f"{arguments.object} was seen nowhere yet{known}")
+        raise InhandError(printable(f"{arguments.object} was seen nowhere yet{known}"))
     print(place_text(place, kept.settings))
     return place_row(place, kept.settings)
 

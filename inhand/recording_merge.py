@@ -163,6 +163,10 @@ def _say(merged: Merged, clocks: list[HostClock]) -> None:
         print(f"    {1e-6 * clock.offset_ns:+.1f}{unsure} ms{drift}: {clock.evidence}")
     if merged.repeated:
         print(f"  {counted(merged.repeated, 'message')} that another host has too taken once")
+    for name, taken in merged.unlike.items():
+        print(
+            f"  {name} is not the same of all hosts: all are kept, and readers take that of {taken}"
+        )
     for topic, count in merged.damaged.items():
         print(f"  {topic}: {counted(count, 'damaged message')} left out")
 
@@ -173,6 +177,7 @@ def _values(merged: Merged, clocks: list[HostClock]) -> dict[str, object]:
         "messages": merged.messages,
         "repeated": merged.repeated,
         "damaged": dict(merged.damaged),
+        "unlike": dict(merged.unlike),
         "hosts": {
             name: {
                 "messages": messages,

@@ -20,7 +20,8 @@ UP_WITHIN_S = 20.0
 
 
 class Supervisor:
-    """Runs the processes of a plan until all are done, one has wrong settings, or it shall end.
+    """Runs the processes of a plan until all are done, one starts with wrong settings, or it shall
+    end.
 
     It ends on SIGTERM or SIGINT, and when ``stop`` is set. Processes are stopped stage by stage in
     the given order, so that what is under way reaches the last, and started in reverse: a stage
@@ -66,7 +67,7 @@ class Supervisor:
             self._take_over()
             self._begin_next_stage()
             for child in self._started:
-                if child.tend() == WRONG_USAGE:
+                if child.tend() == WRONG_USAGE and child.done:
                     log.error("%s has wrong settings (see above): stopping everything", child.name)
                     return WRONG_USAGE
                 child.kill_if_it_hangs()

@@ -33,6 +33,7 @@ def test_errors_stand_beside_the_best_and_the_mean_camera_s() -> None:
         (["--cameras", "5"], "--cameras is from 2 to 4, not 5"),
         (["--interactions", "hammerNail"], "hammerNail"),
         (["--placed-off-mm", "-1"], "--placed-off-mm and --placed-off-deg are 0 or more"),
+        (["--placed-off-deg", "nan"], "--placed-off-mm and --placed-off-deg are 0 or more"),
     ],
 )
 def test_what_cannot_be_simulated_is_refused(
@@ -40,3 +41,9 @@ def test_what_cannot_be_simulated_is_refused(
 ) -> None:
     assert main(["bench", "rigs", *arguments]) == 2
     assert reason in capsys.readouterr().err
+
+
+def test_a_seed_below_0_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["bench", "rigs", "--seeds", "1", "-1"])
+    assert "write a whole number, 0 or more, not '-1'" in capsys.readouterr().err

@@ -19,10 +19,12 @@ from inhand_lab.sensing.board_walk import (
     looking_at,
 )
 from inhand_runtime.rig_calibration import read_rig_calibration, write_rig_calibration
+from inhand_schemas.keys import Site
 from inhand_schemas.messages import Pose
 from inhand_schemas.topics import INFO, RGBD
 from played import Entry, write
 from running_rig import RunningRig
+from small_rig import write_rig
 
 from inhand.__main__ import main
 
@@ -136,6 +138,24 @@ def test_what_does_not_belong_together_is_refused(
     monkeypatch.chdir(tmp_path)
     assert main(["calibrate", *arguments]) == 2
     assert said in capsys.readouterr().err
+
+
+def test_cameras_of_one_name_in_two_rigs_do_not_pass_for_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    paths = [write_rig(tmp_path / f"{rig}.mcap", site=Site(rig=rig)) for rig in ("hall", "kitchen")]
+    output = tmp_path / "cameras.toml"
+    assert main(["calibrate", "--people", *map(str, paths), "-o", str(output)]) == 1
+    assert "kitchen/info/front is of another rig's camera front" in capsys.readouterr().err
+
+
+def test_a_check_is_against_the_calibration_of_a_tracker_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    config = tmp_path / "rig.toml"
+    config.write_text('[tracker.mug]\ncameras = ["a", "b"]\ncalibration = "cameras.toml"\n')
+    assert main(["calibrate", "--check", "--config", str(config)]) == 2
+    assert f"cannot read {tmp_path / 'cameras.toml'}" in capsys.readouterr().err
 
 
 def test_settings_are_not_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,7 @@
 import logging
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -78,6 +79,44 @@ OF_ANOTHER = """
 import subprocess, sys, time
 subprocess.Popen([sys.executable, "-c", {script!r}], stdout=subprocess.DEVNULL).wait()
 """
+
+
+WRONG_LATER = """
+import sys, time
+from pathlib import Path
+from inhand_runtime.service_manager import ServiceManager
+if Path({file!r}).exists():
+    sys.exit(2)
+Path({file!r}).touch()
+manager = ServiceManager()
+for _ in range(50):
+    manager.advanced()
+    time.sleep(0.02)
+sys.exit(1)
+"""
+
+
+def test_a_child_that_was_up_is_started_again_where_its_settings_are_wrong_later(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    script = WRONG_LATER.format(file=str(tmp_path / "was_up"))
+    child = Child("tracker mug", [sys.executable, "-c", script])
+    codes: list[int] = []
+    while len(codes) < 2:
+        if (code := child.tend()) is not None:
+            codes.append(code)
+        child.kill_if_it_hangs()
+        time.sleep(0.01)
+    assert codes == [1, 2]
+    assert not child.done
+    assert "tracker mug ended with exit code 2; starting it again" in caplog.text
+
+
+def test_a_child_that_starts_with_wrong_settings_is_not_started_again() -> None:
+    child = Child("tracker mug", [sys.executable, "-S", "-c", "raise SystemExit(2)"])
+    while child.tend() is None:
+        time.sleep(0.01)
+    assert child.done
 
 
 def _tended(script: str, seconds: float) -> tuple[bool, bool]:

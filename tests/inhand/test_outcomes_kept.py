@@ -118,6 +118,8 @@ def test_where_says_where_a_thing_was_last(
     assert "(worn, anna)" in printed
     with pytest.raises(InhandError, match=r"did you mean glasses\?"):
         ask(["where", "glases", "--config", str(config)])
+    with pytest.raises(InhandError, match=r"m\\x1b\[2Jug was seen nowhere"):
+        ask(["where", "m\x1b[2Jug", "--config", str(config)])
 
 
 def test_a_person_is_forgotten_by_name_while_a_daemon_keeps_the_database_open(

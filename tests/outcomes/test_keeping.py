@@ -22,15 +22,28 @@ PEOPLE = {"0": "anna", "1": "ben"}
         ({"database": "mysql://home"}, "write an address as postgresql"),
         ({"database": "postgresql+psycopg://me:secret@host/home"}, "leave the password out"),
         ({"database": ""}, "name a file"),
+        ({"database": "postgresql+psycopg://me@host:x/home"}, "it is no address"),
         ({"sure": 1.1}, "less than or equal to 1"),
         ({"keep": ["images"]}, "'numbers' or 'poses'"),
         ({"keep_days": 90, "keep_totals_days": 30}, "keep_days at least"),
         ({"keep_days": 0, "keep_totals_days": 30}, "keep_days at least"),
         ({"people": {"0": "anna", "1": "anna"}}, "two have one name"),
         ({"people": {"0": "1"}}, "another's number"),
+        ({"people": {"0": "an\x1b[2Jna"}}, "letters that can be shown"),
+        ({"people": {"0": " "}}, "letters that can be shown"),
         ({"goals": [DRINK, DRINK]}, "two have one name"),
         ({"people": PEOPLE, "goals": [{**DRINK, "person": "bne"}]}, r"did you mean ben\?"),
         ({"goals": [{**DRINK, "person": "ben"}]}, "or name people in the settings"),
+        ({"goals": [{**DRINK, "kind": "sipp"}]}, r"no kind 'sipp' \(did you mean sip\?\)"),
+        (
+            {"goals": [{**DRINK, "amount": "volume_l"}]},
+            r"a sip has no amount 'volume_l' \(did you mean volume_ml\?\)",
+        ),
+        ({"goals": [{**DRINK, "amount": "speed_m_s"}]}, "a sip has no amount 'speed_m_s'"),
+        ({"goals": [{**DRINK, "object": "tea pot"}]}, "object 'tea pot' is no name"),
+        ({"goals": [{**DRINK, "person": -1}]}, "greater than or equal to 0"),
+        ({"goals": [{**DRINK, "amount": "days", "per": "week"}]}, "8 days, and a week has 7"),
+        ({"people": {str(2**63): "anna"}}, "less than or equal to"),
         ({"regions": [HALL, HALL]}, "two have one name"),
         ({"regions": [{**HALL, "to": [1.0, 3.0]}]}, "hall has no area"),
         ({"regions": [{**HALL, "to": [9.0, 3.0]}]}, "less than or equal to 6"),
@@ -54,6 +67,11 @@ def test_a_goal_is_of_the_person_whom_it_names() -> None:
     settings = KeepingSettings.model_validate({"people": PEOPLE, "goals": goals})
     assert [one.person for one in settings.rules.goals] == [1, 0]
     assert person_number("7", settings.people) == 7
+
+
+def test_a_number_that_no_person_can_have_is_refused() -> None:
+    with pytest.raises(ValueError, match="nobody has the number 9223372036854775808"):
+        person_number(str(2**63), {})
 
 
 def test_quiet_hours_that_do_not_pass_midnight_are_by_day() -> None:

@@ -2,6 +2,7 @@
 
 import json
 import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -97,10 +98,13 @@ def test_what_a_tracker_takes_as_always_in_use_counts_only_where_settings_say_so
     rig: RunningRig,
 ) -> None:
     unsaid = ("--without-recogniser", "--speed", "9")
-    daemon = start(rig)
+    goal = '[[outcomes.home.goals]]\nname = "tea"\nkind = "sip"\nobject = "cpu"\nat_least = 1\n'
+    daemon = start(rig, goal)
     carry(rig, *unsaid, "--until", "3")
-    troubles = rig.health("home")["troubles"]
-    assert [one.partition(":")[0] for one in troubles] == ["nothing is measured of cup"]
+    assert sorted(one.partition(":")[0] for one in rig.health("home")["troubles"]) == [
+        "nothing is measured of cup",
+        "the goal tea counts 'cpu', which is not measured (did you mean cup?)",
+    ]
     daemon.stop()
     start(rig, 'always_in_use = ["cup"]\n')
     carry(rig, *unsaid)
@@ -138,6 +142,21 @@ def test_what_is_remembered_at_a_start_waits_for_the_next_captures(rig: RunningR
         assert again.end_quiet(loop.pose_clock.now_ns()) == []
         assert len(again.followed) == 1
     saver.database.close()
+
+
+def test_a_capture_from_years_ahead_makes_nothing_that_is_kept_too_old(rig: RunningRig) -> None:
+    saver, now_ns = new_saver(rig.folder), time.time_ns()
+    saver.save([sip(now_ns)])
+    rig.configure("[outcomes.home]")
+    settings = load_settings(rig.config, "outcomes", OutcomesSettings)
+    with running_daemon("outcomes", settings) as daemon:
+        waiting, watcher = WaitingOutcomes(lambda: saver), Watcher({}, "inhand/rig")
+        rules, retention = Rules([], ZURICH), Retention(days=400)
+        loop = OutcomesLoop(daemon, watcher, waiting, rules, retention, Pausing())
+        loop.clock.hear(now_ns + 500 * 86_400 * S)
+        daemon.stop.set()
+        loop.run()
+    assert [one.outcome.kind for one in kept(rig)] == ["sip"]
 
 
 def journal_until(rig: RunningRig) -> float:

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import inhand_recorder
 import pytest
+from inhand_recorder.attachments import attach_mesh, meshes_in, read_attachments
+from inhand_recorder.conversion import Selection, convert_recording
 from inhand_recorder.conversion_records import records_of
 from inhand_recorder.losses import LOSSES_RECORD, LossCounter
 from inhand_recorder.merging import (
@@ -25,11 +27,12 @@ from inhand_runtime.recording import (
     read_metadata,
     read_recording,
 )
+from inhand_runtime.recording.copying import copy_message
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import ObjectPose
-from inhand_schemas.topics import LABEL
+from inhand_schemas.topics import LABEL, POSE
 from msgspec import structs
-from small_rig import FRAME_NS, write_rig
+from small_rig import FRAME_NS, START_NS, write_rig
 
 OWN = HostClock(0, "its own")
 LATE_NS = 1_500_000_000
@@ -123,6 +126,61 @@ def test_different_messages_of_one_key_are_refused_with_the_mend(tmp_path: Path)
     exclude = ("pose/*", "rgbd/*", "skeletons/*", "info/*")
     with pytest.raises(RecordingError, match=r"different messages of .*label/mug"):
         merge([one, other], tmp_path / "all.mcap", [OWN, OWN], exclude)
+
+
+def other_poses(path: Path, output: Path) -> Path:
+    """Write a recording again with all times and numbers as they are, and other poses."""
+    with RecordingWriter(output) as writer:
+        for one in read_recording(path):
+            message, payload = one.message(), one.payload
+            if isinstance(message, ObjectPose) and one.topic is POSE:
+                payload = POSE.encode(structs.replace(message, confidence=0.125))
+            writer.write(
+                one.key,
+                payload,
+                received_ns=one.received_ns,
+                captured_ns=one.captured_ns,
+                sequence=one.sequence,
+            )
+    return output
+
+
+def test_different_messages_of_one_number_and_time_are_no_copies(tmp_path: Path) -> None:
+    one = write_rig(tmp_path / "one.mcap")
+    other = other_poses(one, tmp_path / "other.mcap")
+    with pytest.raises(RecordingError, match=r"different messages of .*pose/mug"):
+        merge([one, other], tmp_path / "all.mcap", [OWN, OWN])
+    with (
+        inhand_recorder.open([one, other]) as both,
+        pytest.raises(RecordingError, match=r"different messages of .*pose/mug"),
+    ):
+        convert_recording(both, tmp_path / "all.mcap", Selection())
+    assert not list(tmp_path.glob("all*"))
+
+
+def test_meshes_of_one_name_that_differ_are_kept_and_named(tmp_path: Path) -> None:
+    paths = []
+    for rig in ("hall", "attic"):
+        path = tmp_path / f"{rig}.mcap"
+        with RecordingWriter(path) as writer:
+            attach_mesh(writer, "mug", rig.encode(), START_NS)
+            attach_mesh(writer, "jug", b"alike", START_NS)
+            for one in read_recording(write_rig(tmp_path / "rig.mcap", site=Site(rig=rig))):
+                copy_message(writer, one)
+        (tmp_path / "rig.mcap").unlink()
+        paths.append(path)
+    merged = merge(paths, tmp_path / "all.mcap", [OWN, OWN])
+    assert merged.unlike == {"objects/mug/mesh.ply": "attic.mcap"}
+    kept = read_attachments(tmp_path / "all.mcap")
+    assert sorted(one.data for one in kept) == [b"alike", b"attic", b"hall"]
+    assert meshes_in(kept)["mug"] == b"attic"
+
+
+def test_a_recording_that_is_given_twice_is_refused(tmp_path: Path) -> None:
+    one = write_rig(tmp_path / "one.mcap")
+    (tmp_path / "link.mcap").symlink_to(one)
+    with pytest.raises(RecordingError, match=r"link\.mcap is given twice"):
+        merge([one, tmp_path / "link.mcap"], tmp_path / "all.mcap", [OWN, OWN])
 
 
 def test_labels_of_one_object_in_cameras_of_two_hosts_are_no_clash(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """A calibration that changes while a daemon works by it is said."""
 
+import os
 from pathlib import Path
 
 from inhand_runtime.calibration_watch import LOOK_S, CalibrationWatch
@@ -22,6 +23,9 @@ def test_a_file_that_is_written_anew_or_gone_is_said_until_it_is_as_before(tmp_p
     assert "`inhand reload` takes it over" in troubles()
     path.unlink()
     assert "cameras.toml cannot be read any more" in troubles()
+    os.mkfifo(path)
+    assert "cameras.toml cannot be read any more" in troubles()
+    path.unlink()
     path.write_text("version = 1")
     assert troubles() == ""
 

@@ -1,5 +1,6 @@
 """The calibration file of a rig: what is written is read, and what is wrong in it is said."""
 
+import os
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -65,6 +66,9 @@ def test_the_clock_of_a_camera_that_was_not_estimated_is_the_rigs() -> None:
         ("[0.1, -2.0, 1.25]", "[0.1, nan, 1.25]", "cameras.front.translation"),
         ("[0.1, -2.0, 1.25]", "[0.1, -2.0]", "cameras.front.translation"),
         ("[0.001, ", "[-0.001, ", "cameras.front.translation_deviation"),
+        ("[0.1, -2.0, 1.25]", "[0.1, 1e308, 1.25]", "less than or equal to 1000"),
+        ("[0.001, ", "[1e200, ", "less than or equal to 1000"),
+        ("clock_offset_ns = -", "clock_offset_ns = -99999999999999", "greater than or equal to"),
         ('method = "board"', 'method = "bord"', "there is no 'bord' (did you mean board?)"),
         ("version = 1", "version = 2", "for a later release of Inhand"),
         ("version = 1", "", "setting version is missing"),
@@ -89,8 +93,19 @@ def test_what_is_wrong_in_a_file_is_said_with_its_place(
 def test_a_file_that_is_not_there_and_one_that_cannot_be_written_are_said(tmp_path: Path) -> None:
     with pytest.raises(SettingsError, match="cannot read"):
         read_rig_calibration(tmp_path / "rig.toml")
+    os.mkfifo(tmp_path / "pipe.toml")
+    with pytest.raises(SettingsError, match=r"pipe\.toml is a pipe: name a file"):
+        read_rig_calibration(tmp_path / "pipe.toml")
     with pytest.raises(InhandError, match="cannot write"):
-        write_rig_calibration(tmp_path / "nowhere" / "rig.toml", RIG)
+        write_rig_calibration(Path("/proc/rig.toml"), RIG)
+    (tmp_path / "file").touch()
+    with pytest.raises(InhandError, match="cannot write"):
+        write_rig_calibration(tmp_path / "file" / "rig.toml", RIG)
+
+
+def test_the_folder_of_a_file_is_made(tmp_path: Path) -> None:
+    write_rig_calibration(tmp_path / "new" / "rig.toml", RIG)
+    assert read_rig_calibration(tmp_path / "new" / "rig.toml") == RIG
 
 
 def test_settings_are_not_written_over_by_a_calibration(written: Path) -> None:

@@ -45,3 +45,14 @@ def test_what_another_says_does_nothing_to_a_terminal() -> None:
     lines = roll.troubles()
     assert len(lines) == 2
     assert all(line.isprintable() for line in lines)
+
+
+def test_labels_of_one_object_from_several_cameras_are_no_fault() -> None:
+    roll = Roll()
+    for name in ("front", "left"):
+        roll.change("capture", name, True)
+        traffic = TopicHealth(published=1, rate_hz=1.0)
+        topics = {f"inhand/@v1/rig/{key}": traffic for key in ("label/mug", "info/front")}
+        roll.hear(replace(HEALTH, instance=name, topics=topics))
+    (line,) = roll.troubles()
+    assert line.startswith("info/front is published by capture front and by capture left")

@@ -26,6 +26,7 @@ class CameraSettings(Section):
     rate: float = 1.0
     mode: Literal["fast", "slow"] | Literal["exact"] = "fast"
     serial: str | None = None
+    images: frozenset[Literal["colour", "depth"]] = frozenset()
     places: tuple[str, ...] = ()
     file: FilePath = Path("camera.yaml")
     options: dict[str, Any] = {}
@@ -121,6 +122,10 @@ def test_without_a_file_an_instance_is_called_like_its_service() -> None:
         (
             '[capture.front]\nsource = "x"\nmode = 3\n',
             "rig.toml:3: setting capture.front.mode: there is no 3 (there are: fast, slow, exact)",
+        ),
+        (
+            '[capture.front]\nsource = "x"\nimages = ["deep"]\n',
+            "rig.toml:3: setting capture.front.images.0: there is no 'deep' (did you mean depth?)",
         ),
         (
             '[log]\nlevel = "INFO"\n',

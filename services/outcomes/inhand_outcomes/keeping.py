@@ -12,8 +12,15 @@ from inhand_runtime.settings_errors import suggestion
 from pydantic import AfterValidator, Field, ValidationInfo, model_validator
 
 from inhand_outcomes.regions import Region
-from inhand_outcomes.rules import Goal, PersonsGoal, QuietHours, Rules
-from inhand_outcomes.store.database import Database, open_database
+from inhand_outcomes.rules import (
+    MOST_PERSON,
+    Goal,
+    PersonNumber,
+    PersonsGoal,
+    QuietHours,
+    Rules,
+)
+from inhand_outcomes.store.database import Database, open_database, readable_address
 from inhand_outcomes.store.failures import StoreError
 from inhand_outcomes.store.retention import Retention
 from inhand_outcomes.store.saving import Keeping, Kept
@@ -33,6 +40,8 @@ def _database(text: str, info: ValidationInfo) -> str:
     user = text.removeprefix(POSTGRESQL).partition("/")[0].rpartition("@")[0]
     if ":" in user or "password=" in text:
         raise ValueError("leave the password out: write it to a file, and name it password_file")
+    if not readable_address(text):
+        raise ValueError(f"it is no address: write it as {POSTGRESQL}USER@HOST/DATABASE")
     return text
 
 
@@ -73,7 +82,7 @@ class KeepingSettings(Section):
     keep: frozenset[Kept] = frozenset({"numbers", "poses"})
     keep_days: Annotated[int, Field(ge=0)] = 400
     keep_totals_days: Annotated[int, Field(ge=0)] = 0
-    people: Mapping[Annotated[int, Field(ge=0)], Annotated[str, Field(min_length=1)]] = {}
+    people: Mapping[PersonNumber, Annotated[str, Field(min_length=1)]] = {}
     goals: tuple[Goal, ...] = ()
     quiet: QuietHours | None = None
     regions: tuple[Region, ...] = ()
@@ -86,6 +95,8 @@ class KeepingSettings(Section):
             raise ValueError("keep_totals_days must be keep_days at least: details have totals")
         if len(set(self.people.values())) < len(self.people):
             raise ValueError("people: two have one name")
+        if not all(name.isprintable() and name.strip() for name in self.people.values()):
+            raise ValueError("people: write names in letters that can be shown")
         if any(name.isdecimal() for name in self.people.values()):
             raise ValueError("people: a name of digits alone would be another's number")
         names = [goal.name for goal in self.goals]
@@ -136,6 +147,8 @@ def _goals_person(goal: Goal, people: Mapping[int, str]) -> int | None:
 def person_number(text: str, people: Mapping[int, str]) -> int:
     """Return the number of a person, who is named by it or by ``people``; raises ValueError."""
     if text.isdecimal():
+        if int(text) > MOST_PERSON:
+            raise ValueError(f"nobody has the number {text}: it is beyond {MOST_PERSON}")
         return int(text)
     for number, name in people.items():
         if name == text:

@@ -14,6 +14,7 @@ from typing import Annotated, Literal, Self
 from zoneinfo import ZoneInfo
 
 from inhand_runtime.settings import Section
+from inhand_runtime.settings_errors import suggestion
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import require_name
 from inhand_schemas.messages import Event
@@ -29,6 +30,7 @@ from inhand_outcomes.days import (
     local_time,
     seconds_of,
 )
+from inhand_outcomes.kinds import amounts_by_kind
 from inhand_outcomes.outcome import adds_up
 from inhand_outcomes.totals import DayTotal, sum_of_amount
 
@@ -47,12 +49,17 @@ MISSED: Literal["goal_missed"] = "goal_missed"
 BEGUN, ENDED = "begun", "ended"
 
 
-def _name(name: str) -> str:
-    try:
-        require_name("goal", name)
-    except KeyFormatError as error:
-        raise ValueError(str(error)) from None
-    return name
+def _named(what: str) -> AfterValidator:
+    """A check that a text can be the name of something."""
+
+    def check(name: str) -> str:
+        try:
+            require_name(what, name)
+        except KeyFormatError as error:
+            raise ValueError(str(error)) from None
+        return name
+
+    return AfterValidator(check)
 
 
 def _clock(clock: time) -> time:
@@ -62,6 +69,9 @@ def _clock(clock: time) -> time:
 
 
 Clock = Annotated[time, AfterValidator(_clock)]
+MOST_PERSON = 2**63 - 1
+PersonNumber = Annotated[int, Field(ge=0, le=MOST_PERSON)]
+"""The number that skeletons have of a person."""
 
 
 class Goal(Section):
@@ -74,24 +84,33 @@ class Goal(Section):
     At ``remind_at`` there is a reminder where less than the day's share is done.
     """
 
-    name: Annotated[str, AfterValidator(_name)]
+    name: Annotated[str, _named("goal")]
     kind: str
     amount: str = TIMES
     at_least: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
     at_most: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
     per: Period = "day"
-    object: str | None = None
-    person: int | str | None = None
+    object: Annotated[str, _named("object")] | None = None
+    person: PersonNumber | str | None = None
     remind_at: tuple[Clock, ...] = ()
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
+        kinds = amounts_by_kind()
+        if self.kind not in kinds:
+            raise ValueError(f"there is no kind {self.kind!r}" + suggestion(self.kind, kinds))
+        amounts = (TIMES, DAYS, *sorted(kinds[self.kind]))
+        if self.amount not in amounts:
+            wrong = f"a {self.kind} has no amount {self.amount!r}"
+            raise ValueError(wrong + suggestion(self.amount, amounts))
         if (self.at_least is None) == (self.at_most is None):
             raise ValueError("a goal has at_least or at_most, one of both")
         if self.at_most is not None and self.remind_at:
             raise ValueError("remind_at is for at_least: nobody is behind with at_most")
         if self.amount == DAYS and self.per == "day":
             raise ValueError('amount = "days" is for per = "week"')
+        if self.amount == DAYS and self.at_least is not None and self.at_least > DAYS_A_WEEK:
+            raise ValueError(f"at_least is {self.at_least:g} days, and a week has {DAYS_A_WEEK}")
         return self
 
     @property

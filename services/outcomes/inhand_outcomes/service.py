@@ -81,6 +81,12 @@ def run(settings: Settings[OutcomesSettings]) -> None:
         for name in set(chosen.always_in_use) - set(things):
             unknown = f"always_in_use names {name!r}, which is not measured"
             daemon.health.trouble(f"object {name}", unknown + suggestion(name, things))
+        for goal in chosen.goals:
+            if goal.object is not None and goal.object not in things:
+                unknown = f"the goal {goal.name} counts {goal.object!r}, which is not measured"
+                daemon.health.trouble(
+                    f"goal {goal.name}", unknown + suggestion(goal.object, things)
+                )
         watcher = Watcher(things, place)
         pausing = Pausing()
         home = None
@@ -352,9 +358,11 @@ class OutcomesLoop:
             keep_floor_map(database, kept)
         if today != self.watcher.floors.day:
             self.watcher.floors.begin(today, floor_maps(database, today))
-        if today != self._tidied:
-            remove_old(database, self.retention, today)
-            self._tidied = today
+        # A capture of a wrong clock, far ahead, must not make all that is kept too old.
+        surely = min(today, local_day(time.time_ns(), self.rules.zone))
+        if surely != self._tidied:
+            remove_old(database, self.retention, surely)
+            self._tidied = surely
 
     def _publish(self, event: Event) -> None:
         self._events.put(event)

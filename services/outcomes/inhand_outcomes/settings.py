@@ -1,13 +1,13 @@
 """What a settings file says of outcomes."""
 
-from typing import Annotated
+from typing import Annotated, Self
 
 from inhand_runtime.errors import SettingsError
 from inhand_runtime.settings import FilePath, Section, Settings
 from inhand_runtime.settings_errors import suggestion
 from inhand_runtime.writable import try_folder
-from inhand_schemas.fields import Name, Vector3
-from pydantic import AfterValidator
+from inhand_schemas.fields import Name
+from pydantic import AfterValidator, Field, model_validator
 
 from inhand_outcomes.homeassistant.settings import HomeAssistantSettings, check_homeassistant
 from inhand_outcomes.keeping import KeepingSettings
@@ -20,12 +20,27 @@ def _known_use(name: str | None) -> str | None:
     return name
 
 
+Metres = Annotated[float, Field(allow_inf_nan=False)]
+Point = tuple[Metres, Metres, Metres]
+
+
 class ObjectUse(Section):
     """``[outcomes.NAME.objects.OBJECT]``: how an object is used, where its model does not say so,
     and points of it in its own frame, metres, where its mesh does not show them."""
 
     use: Annotated[str | None, AfterValidator(_known_use)] = None
-    parts: dict[Name, Vector3] = {}
+    parts: dict[str, Point] = {}
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        uses = USES.values() if self.use is None else (USES[self.use],)
+        known = sorted({part for use in uses for part in use.parts})
+        for name in self.parts:
+            if not known:
+                raise ValueError(f"{self.use} goes by no parts: leave {name} out")
+            if name not in known:
+                raise ValueError(f"there is no part {name!r}" + suggestion(name, known))
+        return self
 
 
 class OutcomesSettings(KeepingSettings):

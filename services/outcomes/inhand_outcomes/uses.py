@@ -43,36 +43,60 @@ class Use:
     measure: Measure
     interaction: str
     kinds: Mapping[str, tuple[str, ...]]
-    """The kinds of its outcomes, each with the amounts of which there are totals."""
+    """The kinds of its outcomes, each with its amounts."""
     complete: Completion | None = None
     in_hand: bool = True
     """Whether it takes a hand that holds the thing."""
+    parts: tuple[str, ...] = ()
+    """Names of the parts of a thing that it goes by."""
 
 
 DURATION, VOLUME, AREA, STROKES = "duration_s", "volume_ml", "area_m2", "stroke_count"
+SPEED, ANGLE = "speed_m_s", "angle_deg"
+LIFTED = ("range_m", "up_s", "down_s", "tilt_deg", "difference_m")
 
 USES: Mapping[str, Use] = {
-    "golf": Use(golf, "hitGolfBall", {"swing": ()}),
-    "hammering": Use(hammering, "hammerNail", {"strike": ()}),
-    "lifting": Use(lifting, "liftWeights", {"repetition": (DURATION,)}),
-    "painting": Use(painting, "paintWall", {"painting": (AREA, DURATION, STROKES)}),
-    "shaking": Use(shaking, "shakeVinegar", {"shake": (STROKES, DURATION)}),
-    "sweeping": Use(sweeping, "sweepFloor", {"sweeping": (AREA, DURATION, STROKES)}),
-    "tennis": Use(tennis, "hitTennisBall", {"stroke": ()}),
-    "drinking": Use(drinking, "drinkFromMug", {"sip": (VOLUME,), "refill": (VOLUME,)}, sip_volumes),
+    "golf": Use(golf, "hitGolfBall", {"swing": (SPEED, ANGLE)}, parts=("head",)),
+    "hammering": Use(hammering, "hammerNail", {"strike": (SPEED, "rate_per_min")}, parts=("face",)),
+    "lifting": Use(lifting, "liftWeights", {"repetition": (DURATION, *LIFTED)}),
+    "painting": Use(
+        painting, "paintWall", {"painting": (AREA, DURATION, STROKES)}, parts=("head",)
+    ),
+    "shaking": Use(shaking, "shakeVinegar", {"shake": (STROKES, DURATION, "rate_per_s")}),
+    "sweeping": Use(
+        sweeping, "sweepFloor", {"sweeping": (AREA, DURATION, STROKES)}, parts=("head",)
+    ),
+    "tennis": Use(tennis, "hitTennisBall", {"stroke": (SPEED, ANGLE)}, parts=("head",)),
+    "drinking": Use(
+        drinking,
+        "drinkFromMug",
+        {"sip": (VOLUME,), "refill": (VOLUME,)},
+        sip_volumes,
+        parts=("rim",),
+    ),
     "pouring": Use(
-        pouring, "pourCream", {"pour": (VOLUME, DURATION), "refill": (VOLUME,)}, pour_volumes
+        pouring,
+        "pourCream",
+        {"pour": (VOLUME, DURATION, ANGLE), "refill": (VOLUME,)},
+        pour_volumes,
+        parts=("spout",),
     ),
     "phoning": Use(phoning, "answerPhone", {"call": (DURATION,)}),
-    "filming": Use(filming, "recordVideo", {"filming": (DURATION,)}),
-    "playing": Use(playing, "playFlute", {"playing": (DURATION,)}),
+    "filming": Use(
+        filming,
+        "recordVideo",
+        {"filming": (DURATION, "azimuth_deg", "elevation_deg")},
+        parts=("lens",),
+    ),
+    "playing": Use(playing, "playFlute", {"playing": (DURATION,)}, parts=("mouth_hole",)),
     "wearing": Use(
         wearing,
         "putOnGlasses",
         {"put_on": (), "taken_off": (), "worn": (DURATION,)},
         in_hand=False,
+        parts=("bridge",),
     ),
-    "reading": Use(reading, "magnifyText", {"reading": (DURATION,)}),
+    "reading": Use(reading, "magnifyText", {"reading": (DURATION,)}, parts=("lens", "handle")),
     "shoes": Use(shoes, "putOnShoe", {"shoe_on": (), "shoe_off": ()}, in_hand=False),
 }
 """The uses by name."""

@@ -20,6 +20,7 @@ from mcap.records import Attachment
 from inhand_recorder.attachments import attach
 from inhand_recorder.conversion_records import losses_by_source, records_of
 from inhand_recorder.losses import LossCounter
+from inhand_recorder.recorded_content import content_digest
 from inhand_recorder.recording_reader import Recording, matches
 
 MERGE_RECORD = "merge"
@@ -66,12 +67,15 @@ class Host:
 def hosts_of(recordings: Sequence[Recording], exclude: Sequence[str] = ()) -> list[Host]:
     """Return what is taken of each recording: all but the topics that match a pattern.
 
-    Raises RecordingError for a pattern that matches no topic of any, where nothing is left, and for
-    two files of one name, of which the records could not say which is which.
+    Raises RecordingError for a pattern that matches no topic of any, where nothing is left, for a
+    file that is given twice, and for two files of one name, of which the records could not say
+    which is which.
     """
     paths = [path for one in recordings for path in one.paths]
     for number, path in enumerate(paths):
         for former in paths[:number]:
+            if former.samefile(path):
+                raise RecordingError(f"{path} is given twice: give each host's recording once")
             if former.name == path.name:
                 raise RecordingError(
                     f"{former} and {path} have one name: name files after their hosts"
@@ -91,7 +95,7 @@ def hosts_of(recordings: Sequence[Recording], exclude: Sequence[str] = ()) -> li
 
 
 Stamp = tuple[int, int]
-"""A message's number and its time of capture, by which two copies of it are known."""
+"""A message's number and its time of capture, which two copies of it have in common."""
 
 
 def shared_receptions(first: Host, other: Host) -> dict[str, dict[Stamp, tuple[int, int]]]:
@@ -104,9 +108,13 @@ def shared_receptions(first: Host, other: Host) -> dict[str, dict[Stamp, tuple[i
     for key in sorted(set(first.keys) & set(other.keys)):
         own, others = _receptions(first.recording, key), _receptions(other.recording, key)
         both = own.keys() & others.keys()
-        if both:
-            shared[key] = {stamp: (own[stamp], others[stamp]) for stamp in both}
-        elif own and others and not _of_other_cameras(first, other, key):
+        same = {stamp for stamp in both if own[stamp].content == others[stamp].content}
+        if same:
+            shared[key] = {
+                stamp: (own[stamp].received_ns, others[stamp].received_ns) for stamp in same
+            }
+        differ = own and others if not same else both - same
+        if differ and not _of_other_cameras(first, other, key):
             topic = "/".join(key.split("/")[-2:])
             raise RecordingError(
                 f"{first.name} and {other.name} hold different messages of {key}: leave it out "
@@ -115,8 +123,19 @@ def shared_receptions(first: Host, other: Host) -> dict[str, dict[Stamp, tuple[i
     return shared
 
 
-def _receptions(recording: Recording, key: str) -> dict[Stamp, int]:
-    return {(one.sequence, one.captured_ns): one.received_ns for one in recording.messages([key])}
+@dataclass(frozen=True)
+class _Reception:
+    """When a message was received, and a digest of what it says."""
+
+    received_ns: int
+    content: bytes
+
+
+def _receptions(recording: Recording, key: str) -> dict[Stamp, _Reception]:
+    return {
+        (one.sequence, one.captured_ns): _Reception(one.received_ns, content_digest(one))
+        for one in recording.messages([key])
+    }
 
 
 def _of_other_cameras(first: Host, other: Host, key: str) -> bool:
@@ -153,13 +172,18 @@ def clock_of_shared(
 @dataclass(frozen=True)
 class Merged:
     """A merged file: its messages, those of each source, those that were left out because another
-    source has them too, and the damaged ones by topic."""
+    source has them too, and the damaged ones by topic.
+
+    ``unlike`` has the names of what sources attached differently, as meshes of one object's name,
+    and the source whose own a reader takes.
+    """
 
     path: Path
     messages: int
     by_source: Mapping[str, int]
     repeated: int
     damaged: Mapping[str, int]
+    unlike: Mapping[str, str]
 
 
 def merge_recordings(
@@ -194,7 +218,7 @@ def merge_recordings(
                 counter.count(message.key, message.sequence)
             written[hosts[number].name] += 1
             on_message()
-        _write_about(writer, hosts, clocks, counter)
+        unlike = _write_about(writer, hosts, clocks, counter)
         path = writer.close()
     except BaseException:
         writer.abandon()
@@ -203,7 +227,7 @@ def merge_recordings(
     damaged = Counter[str]()
     for host in hosts:
         damaged.update(host.recording.damaged)
-    return Merged(path, sum(written.values()), written, repeated, damaged)
+    return Merged(path, sum(written.values()), written, repeated, damaged, unlike)
 
 
 MERGING_SUFFIX = ".merging"
@@ -234,11 +258,17 @@ def _write_about(
     hosts: Sequence[Host],
     clocks: Sequence[HostClock],
     counter: LossCounter,
-) -> None:
+) -> dict[str, str]:
+    """Write what is attached, and the records; returns ``Merged.unlike``."""
     attached: dict[tuple[str, bytes], Attachment] = {}
+    unlike: dict[str, str] = {}
     for host in hosts:
         for one in host.recording.attachments():
-            attached.setdefault((one.name, one.data), one)
+            if (one.name, one.data) in attached:
+                continue
+            if any(name == one.name for name, _ in attached):
+                unlike[one.name] = host.name
+            attached[one.name, one.data] = one
     attach(writer, list(attached.values()))
     sources = {path: of for host in hosts for path, of in host.recording.metadata().items()}
     about = {"sources": "\n".join(path.name for path in sources)}
@@ -247,6 +277,7 @@ def _write_about(
     records = records_of(sources, counter, None)
     for name, values in (records | {MERGE_RECORD: about | losses_by_source(sources)}).items():
         writer.add_metadata(name, values)
+    return unlike
 
 
 def clock_in_words(clock: HostClock) -> str:

@@ -22,6 +22,7 @@ from mcap.records import Attachment
 
 from inhand_recorder.attachments import first_attachments, read_attachments
 from inhand_recorder.recorded import Recorded, decoded
+from inhand_recorder.recorded_content import content_digest
 from inhand_recorder.recording_files import RecordingFiles
 from inhand_recorder.recording_series import Places, Series
 
@@ -178,16 +179,25 @@ class Recording:
     ) -> Iterator[RecordedMessage]:
         """Yield messages of whole keys as they were recorded, without decoding them.
 
-        Damaged ones are passed over and counted.
+        Damaged ones are passed over and counted. Raises RecordingError where files hold different
+        messages of one key with one number and the same times.
         """
         repeats = _Repeats()
+        latest: dict[str, RecordedMessage] = {}
         for key, file, number in self._merged(list(keys), start_ns, end_ns):
             message = self.whole_at(key, file, number)
             if message is None:
                 continue
             stamp = message.sequence, message.captured_ns, message.received_ns
             if not repeats.has(key, self._kinds[key], file, stamp):
+                latest[key] = message
                 yield message
+            elif content_digest(latest[key]) != content_digest(message):
+                raise RecordingError(
+                    f"{self._files.summaries[file].path.name} and another file hold different "
+                    f"messages of {key} at one time: give recordings of one rig each, or leave the "
+                    "topic out"
+                )
 
     def messages_apart(
         self, keys: Iterable[str], *, start_ns: int = 0, end_ns: int = LATEST_NS

@@ -4,7 +4,9 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from inhand_runtime.errors import SettingsError
 from inhand_runtime.health import HealthBoard
+from inhand_runtime.settings_file import settings_data
 
 LOOK_S = 2.0
 """Seconds between looks at the file."""
@@ -47,6 +49,6 @@ class CalibrationWatch:
 
 def _content(path: Path) -> bytes | None:
     try:
-        return path.read_bytes()
-    except OSError:
+        return settings_data(path)
+    except SettingsError:
         return None

@@ -101,8 +101,13 @@ def require_place_for_calibration(path: Path) -> None:
 
 
 def write_rig_calibration(path: Path, calibration: RigCalibration) -> None:
-    """Write a file as a whole or not at all, readable by all; raises InhandError."""
+    """Write a file as a whole or not at all, readable by all, and make its folder where there is
+    none; raises InhandError."""
     part = path.with_name(f".{path.name}.unfinished")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InhandError(f"cannot write {path}: {error.strerror}") from None
     try:
         with part.open("w", encoding="utf-8") as file:
             file.write(_text(calibration))
@@ -168,20 +173,27 @@ def _readable_version(version: int) -> int:
     return version
 
 
+FARTHEST_M = 1000.0
+"""Metres from its rig's origin beyond which no camera is; the squares of absurd places overflow."""
+MOST_CLOCK_NS = 2**62
+"""Nanoseconds between two clocks, at the most: 146 years, with which times still are numbers of 64
+bits."""
+
 _Number = Annotated[float, Field(allow_inf_nan=False)]
-_Deviation = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+_Metres = Annotated[float, Field(ge=-FARTHEST_M, le=FARTHEST_M, allow_inf_nan=False)]
+_Deviation = Annotated[float, Field(ge=0, le=FARTHEST_M, allow_inf_nan=False)]
 _Rotation = Annotated[tuple[_Number, _Number, _Number, _Number], AfterValidator(_unit)]
 
 
 class _Camera(Section):
     """``[cameras.NAME]``."""
 
-    translation: tuple[_Number, _Number, _Number]
+    translation: tuple[_Metres, _Metres, _Metres]
     rotation: _Rotation
     translation_deviation: tuple[_Deviation, _Deviation, _Deviation]
     rotation_deviation: tuple[_Deviation, _Deviation, _Deviation]
-    clock_offset_ns: int | None = None
-    clock_deviation_ns: Annotated[int, Field(ge=0)] | None = None
+    clock_offset_ns: Annotated[int, Field(ge=-MOST_CLOCK_NS, le=MOST_CLOCK_NS)] | None = None
+    clock_deviation_ns: Annotated[int, Field(ge=0, le=MOST_CLOCK_NS)] | None = None
     method: Method
     made: AwareDatetime
 

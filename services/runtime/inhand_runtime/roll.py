@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from inhand_schemas.errors import KeyFormatError
 from inhand_schemas.keys import parse_key
 from inhand_schemas.messages import Health
+from inhand_schemas.topics import LABEL
 
 from inhand_runtime.daemon import HEALTH_PERIOD_S
 from inhand_runtime.wording import printable
@@ -107,14 +108,22 @@ def _published_twice(living: dict[Instance, Heard | None]) -> list[str]:
     publishers: dict[str, list[str]] = {}
     for instance, heard in living.items():
         for key, topic in () if heard is None else heard.health.topics.items():
-            if topic.published and topic.rate_hz > 0.0:
+            if topic.published and topic.rate_hz > 0.0 and not _of_cameras(key):
                 publishers.setdefault(key, []).append(" ".join(instance))
     return [
-        f"{short_key(key)} is published by {' and by '.join(names)}: readers get both; stop one, "
-        "or give it another name"
+        f"{short_key(key)} is published by {' and by '.join(names)}: readers get all of them; stop "
+        "one, or give it another name"
         for key, names in publishers.items()
         if len(names) > 1
     ]
+
+
+def _of_cameras(key: str) -> bool:
+    """Whether it is an object's labels, which each simulated camera of a rig has."""
+    try:
+        return parse_key(key).stream == LABEL.stream
+    except KeyFormatError:
+        return False
 
 
 def short_key(key: str) -> str:

@@ -30,7 +30,7 @@ def part_of(annotation: Any, part: str | int) -> Any:
     arguments = get_args(annotation)
     if get_origin(annotation) in (dict, Mapping):
         return arguments[1]
-    if get_origin(annotation) in (tuple, list, Sequence):
+    if get_origin(annotation) in (tuple, list, set, frozenset, Sequence):
         return arguments[0]
     return Any
 

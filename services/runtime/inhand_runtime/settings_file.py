@@ -22,8 +22,10 @@ def read_values(path: Path) -> dict[str, Any]:
 
 
 def settings_data(path: Path) -> bytes:
-    """Read the content of a file; raises SettingsError."""
+    """Read the content of a file; raises SettingsError, also for a pipe, which may never end."""
     try:
+        if path.is_fifo():
+            raise SettingsError(f"{path} is a pipe: name a file")
         return path.read_bytes()
     except OSError as error:
         raise SettingsError(f"cannot read {path}: {error.strerror}") from None

@@ -5,6 +5,7 @@ import sqlite3
 import stat
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -182,6 +183,15 @@ def test_a_damaged_file_is_named_with_the_mend(
         latest(open_database(file), 1)
     assert str(file) in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_database_of_another_program_is_left_alone(tmp_path: Path) -> None:
+    with closing(sqlite3.connect(tmp_path / "other.db")) as other:
+        other.execute("CREATE TABLE outcomes (theirs INTEGER)")
+    with pytest.raises(StoreError, match="tables of another program are in it: name another"):
+        open_database(tmp_path / "other.db")
+    with closing(sqlite3.connect(tmp_path / "other.db")) as other:
+        assert other.execute("SELECT name FROM sqlite_master").fetchall() == [("outcomes",)]
 
 
 def test_a_database_that_another_holds_is_said_to_be_held(tmp_path: Path) -> None:

@@ -9,8 +9,8 @@ from inhand_outcomes.store.goal_marks import events_to_publish, judge_goals, mar
 from kept_outcomes import ZURICH, S, at, new_saver, sip
 
 GOALS = [
-    Goal(name="drink", kind="sip", amount="volume_ml", at_least=100, remind_at=(time(15),)),
-    Goal(name="tilt", kind="sip", amount="angle_deg", at_least=60),
+    Goal(name="drink", kind="pour", amount="volume_ml", at_least=100, remind_at=(time(15),)),
+    Goal(name="tilt", kind="pour", amount="angle_deg", at_least=60),
     Goal(name="lift", kind="repetition", amount="days", at_least=1, per="week"),
 ]
 RULES = Rules([PersonsGoal(goal, None) for goal in GOALS], ZURICH)
@@ -20,7 +20,7 @@ def test_each_event_is_raised_once_over_restarts_and_waits_until_it_is_published
     tmp_path: Path,
 ) -> None:
     saver = new_saver(tmp_path)
-    saver.save([sip(at("2026-05-08 14:00"), ml=40.0)])  # a Friday
+    saver.save([sip(at("2026-05-08 14:00"), ml=40.0, kind="pour")])  # a Friday
     steep = {"volume_ml": Amount(30.0, 4.0), "angle_deg": Amount(61.0, 3.0)}
     raised = []
     for text in ("05-08 14:30", "05-08 15:00", "05-08 16:00", "05-09 00:05", "05-11 00:05"):
@@ -28,7 +28,7 @@ def test_each_event_is_raised_once_over_restarts_and_waits_until_it_is_published
         raised.append(judge_goals(database, RULES, at(f"2026-{text}")))
         assert judge_goals(database, RULES, at(f"2026-{text}") + S) == 0
         if text == "05-08 15:00":
-            saver.save([sip(at("2026-05-08 15:30"), amounts=steep)])
+            saver.save([sip(at("2026-05-08 15:30"), amounts=steep, kind="pour")])
         database.close()
     events = events_to_publish(saver.database)
     shown = [(event.kind, event.description, event.amounts) for event in events]

@@ -5,15 +5,11 @@ from collections.abc import Iterable
 
 import msgspec
 
-from inhand_outcomes.handling import DROPPED, LEFT_IN_USE, PUT_DOWN, TAKEN_UP
+from inhand_outcomes.kinds import HANDLED
 from inhand_outcomes.outcome import adds_up
 from inhand_outcomes.rules import Goal
 from inhand_outcomes.totals import DayTotal
 from inhand_outcomes.uses import DURATION, USES
-from inhand_outcomes.watching import HANDED_OVER
-
-HANDLED = (TAKEN_UP, PUT_DOWN, DROPPED, HANDED_OVER, LEFT_IN_USE)
-"""Kinds that there are of every object."""
 
 
 class ObjectShape(msgspec.Struct, frozen=True):
@@ -58,7 +54,7 @@ def object_shape(
     of it before: an entity stays as long as its object does."""
     kinds: dict[str, set[str]] = {kind: set() for kind in HANDLED}
     for kind, amounts in USES[use].kinds.items() if use in USES else ():
-        kinds.setdefault(kind, set()).update(amounts)
+        kinds.setdefault(kind, set()).update(filter(is_shown, amounts))
     for kind, amounts in before.kinds if before is not None else ():
         kinds.setdefault(kind, set()).update(amounts)
     for total in seen:

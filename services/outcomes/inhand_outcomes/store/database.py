@@ -10,6 +10,7 @@ from typing import Any
 
 from sqlalchemy import Connection, Engine, create_engine, event, text
 from sqlalchemy.engine import URL, make_url
+from sqlalchemy.exc import ArgumentError
 from sqlalchemy.orm import Session
 
 from inhand_outcomes.store.failures import explained
@@ -84,6 +85,15 @@ def open_database(
         database.close()
         raise
     return database
+
+
+def readable_address(text: str) -> bool:
+    """Whether ``open_database`` can read an address of PostgreSQL."""
+    try:
+        make_url(text)
+    except (ArgumentError, ValueError):  # of a port that is no number
+        return False
+    return True
 
 
 def _claim(

@@ -18,6 +18,7 @@ _MENDS = (
     ("unable to open", "it cannot be opened: let this user read and write the file's folder"),
     ("disk i/o error", "the disk cannot be read or written: look at the disk"),
     ("password", "it does not let this user in: look at the user and at password_file"),
+    ("already exists", "tables of another program are in it: name another database"),
     ("does not exist", "it is not there: make it with createdb, or look at the address"),
     ("connection", "it cannot be reached: see that it runs, and look at the address"),
 )
