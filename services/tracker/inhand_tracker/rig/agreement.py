@@ -44,6 +44,11 @@ class Agreement:
                 self._note(camera, seen[camera], [seen[one] for one in trusted], time_ns)
         self._decide(list(seen))
 
+    def leave_out(self, camera: str, off_m: float) -> None:
+        """Take a camera to be off by so much, until it is compared and agrees."""
+        self.left_out[camera] = off_m
+        self._differences.pop(camera, None)
+
     def _note(
         self, camera: str, own: Sequence[Array], others: Sequence[Sequence[Array]], time_ns: int
     ) -> None:

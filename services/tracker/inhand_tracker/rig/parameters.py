@@ -101,5 +101,14 @@ class RigParameters:
     together_m: float = 0.05
     """Metres that a camera which was left out must not differ by any more."""
 
+    # How a camera that is very far off is found (far_off).
+    far_off_s: float = 6.0
+    """Seconds for which somebody whom one camera sees is compared with somebody whom others see."""
+    alike_m: float = 0.15
+    """Metres, root mean square, that joints of one person may differ by, laid on each other."""
+    alike_share: float = 0.5
+    """The same as a share of what they differ by when their times are exchanged: two people who
+    stand are alike at all times, and only one who moves shows that they are one."""
+
 
 DEFAULT_RIG = RigParameters()

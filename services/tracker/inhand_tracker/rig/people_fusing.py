@@ -15,6 +15,7 @@ from inhand_tracker.geometry.image import ViewPull
 from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.people.cheapest_pairs import cheapest_pairs
 from inhand_tracker.rig.agreement import FEWEST_JOINTS, Agreement
+from inhand_tracker.rig.far_off import FarOff
 from inhand_tracker.rig.joint_fusion import fuse_joints
 from inhand_tracker.rig.kernels.fuse import mean_distance
 from inhand_tracker.rig.parameters import DEFAULT_RIG, RigParameters
@@ -38,6 +39,7 @@ class PeopleFuser:
         self._tracks: list[PersonTrack] = []
         self._next = 0
         self._agreement = Agreement(parameters)
+        self._far_off = FarOff(parameters)
         self._compared_ns = 0
         self.pulls: list[list[ViewPull]] = []
         """By how much each camera has each person elsewhere, where that was just compared."""
@@ -145,6 +147,33 @@ class PeopleFuser:
             self._agreement.compare(
                 {camera: seen[camera] for camera in self._places if camera in seen}, time_ns
             )
+        self._compare_far(sightings, matched, time_ns)
+
+    def _compare_far(
+        self,
+        sightings: Mapping[str, Sequence[Sighting]],
+        matched: Mapping[int, Sequence[Sighting]],
+        time_ns: int,
+    ) -> None:
+        """Watch whether the only person of a camera is that of most others, who are believed, or
+        of the first one."""
+        persons = {
+            one.camera: seen
+            for seen in matched.values()
+            for one in seen
+            if not self._off(one.camera)
+        }
+        cameras = [camera for camera in self._places if camera in persons]
+        alone = all(len(sightings[camera]) == 1 for camera in cameras)
+        others = max(cameras, key=lambda camera: len(persons[camera]), default="")
+        for camera in self._places:
+            if not alone or camera not in persons or persons[camera] is persons[others]:
+                self._far_off.forget(camera)
+                continue
+            own, theirs = sightings[camera][0], sightings[others][0]
+            off_m = self._far_off.compare(camera, own.joints, theirs.joints, time_ns)
+            if off_m is not None:
+                self._agreement.leave_out(camera, off_m)
 
     def _pulls(self, by_camera: Mapping[str, Array]) -> list[ViewPull]:
         """By how much cameras, those that agree by and large, have a person elsewhere than all of
