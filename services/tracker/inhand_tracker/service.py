@@ -83,7 +83,9 @@ class TrackerService:
                 self._watch(fresh)
             self._take_what_came()
             skipped = self._cameras.next(self._now())
-            if skipped is not None:
+            if skipped is None:
+                self._cameras.decode_ahead()
+            else:
                 self._skip(skipped)
                 began = self._now()
                 if self._track():
