@@ -63,8 +63,8 @@ VERBS = {
 
 
 IN_ONE_THREAD = ("capture", "tracker")
-"""Daemons in which NumPy computes in one thread, unless the user chose otherwise: a frame's matrices
-are small, and a second thread waits for a core on which another process works."""
+"""Daemons in which NumPy computes in one thread, unless the user chose otherwise: a frame has small
+matrices, and a second thread waits for a core on which another process works."""
 
 WRITTEN_FILES = ("json", "output", "sheet", "picture", "board")
 WRITTEN_FOLDERS = ("out", "report", "folder")

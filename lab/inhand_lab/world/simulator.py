@@ -36,6 +36,10 @@ PREPARED_AHEAD_S = 4.0
 """Time before its first frame at which the next performance is prepared, seconds: memory holds two
 from then on."""
 
+PREPARED_APART_S = 1.0
+"""Seconds by which a camera of a rig prepares the next performance before the one of the number
+below: all at once would leave no core to who works on their frames."""
+
 
 def _known(interaction: str) -> str:
     if interaction not in INTERACTIONS:
@@ -187,7 +191,7 @@ class SimulatorSource:
         return Staging(
             round(1e9 * options.start),
             round(1e9 * options.frames / options.frame_rate),
-            round(1e9 * PREPARED_AHEAD_S),
+            round(1e9 * (PREPARED_AHEAD_S + options.view * PREPARED_APART_S)),
             options.loop,
             options.own_clock,
         )
