@@ -62,6 +62,10 @@ VERBS = {
 """Verbs whose module has ``add_arguments(parser)`` and ``run(arguments) -> int``."""
 
 
+IN_ONE_THREAD = ("capture", "tracker")
+"""Daemons in which NumPy computes in one thread, unless the user chose otherwise: a frame has small
+matrices, and a second thread waits for a core on which another process works."""
+
 WRITTEN_FILES = ("json", "output", "sheet", "picture", "board")
 WRITTEN_FOLDERS = ("out", "report", "folder")
 """Names of the arguments that say where a verb writes."""
@@ -91,6 +95,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(verb: str, arguments: list[str]) -> int:
+    if verb in IN_ONE_THREAD:
+        # NumPy looks at it when it is imported.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     # A module cannot have a keyword's name.
     module = importlib.import_module(f"inhand.{verb}_" if iskeyword(verb) else f"inhand.{verb}")
     if verb in DAEMONS:

@@ -131,3 +131,19 @@ def test_the_default_method_tracks_with_images_without_the_extra(tmp_path: Path)
     done = _run(WITHOUT_EXTRAS + TRACK, MODEL, tmp_path / "joints.npy")
     assert done.returncode == 0, done.stderr
     assert done.stdout == "tracked\n"
+
+
+def test_numpy_computes_in_one_thread_where_frames_are_worked_on() -> None:
+    program = """
+import os, sys
+from inhand.__main__ import main
+try:
+    main([sys.argv[1], "--help"])
+except SystemExit:
+    pass
+import numpy as np
+np.ones((600, 600)) @ np.ones((600, 600))
+sys.exit(len(os.listdir("/proc/self/task")) - 1)
+"""
+    for daemon in ("capture", "tracker"):
+        assert subprocess.run([sys.executable, "-c", program, daemon]).returncode == 0

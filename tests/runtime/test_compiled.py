@@ -6,11 +6,15 @@ import os
 import shutil
 import subprocess
 import sys
+import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from inhand_runtime.cache_folder import cache_folder
+from inhand_tracker.geometry.rotations import from_matrix
 
 ROOT = Path(__file__).parents[2]
 
@@ -250,3 +254,15 @@ def test_the_folder_is_what_was_chosen_else_the_services_else_the_users(
     for name, value in given.items():
         monkeypatch.setenv(name, value)
     assert cache_folder() == Path(folder)
+
+
+def test_what_is_not_a_number_stays_so_without_a_warning_in_every_thread() -> None:
+    nothing = np.zeros((2, 3, 3))
+    with warnings.catch_warnings(), ThreadPoolExecutor(1) as other, np.errstate(all="warn"):
+        warnings.simplefilter("error")
+        for turned in (
+            from_matrix(nothing / np.inf - np.inf),
+            other.submit(from_matrix, nothing - np.inf).result(),
+        ):
+            assert np.isnan(turned).any()
+        assert np.geterr()["invalid"] == "warn"

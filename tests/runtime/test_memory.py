@@ -36,6 +36,34 @@ def test_a_process_that_compiled_gives_the_compilers_pages_back_and_still_compil
     assert int(done.stdout) > 30_000
 
 
+FAULTS = """
+import gc, resource
+import numpy as np
+from inhand_runtime.memory import keep_memory, keep_what_started
+
+def faults_of(arrays):
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    for _ in range(arrays):
+        np.ones(2_000_000)
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
+
+keep_memory()
+faults_of(1)
+print(faults_of(10))
+keep_what_started()
+print(len(gc.get_objects()))
+"""
+
+
+def test_large_arrays_are_made_again_where_the_last_ones_were() -> None:
+    done = subprocess.run([sys.executable, "-c", FAULTS], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    faults, objects = map(int, done.stdout.split())
+    # The arrays have 16 MB, 39,000 pages in all.
+    assert faults < 1_000
+    assert objects < 1_000
+
+
 def test_a_read_only_page_that_was_written_before_keeps_what_was_written(tmp_path: Path) -> None:
     (path := tmp_path / "file").write_bytes(bytes(2 * mmap.PAGESIZE))
     with path.open("rb") as file:

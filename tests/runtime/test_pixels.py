@@ -9,6 +9,7 @@ from inhand_runtime.pixels import (
     decode_colour,
     decode_depth,
     decode_grey,
+    decode_metres,
     encode_colour,
     encode_depth,
 )
@@ -52,6 +53,17 @@ def test_depth_survives_every_codec(
     decoded = decode_depth(image)
     assert decoded.dtype == np.uint16
     np.testing.assert_array_equal(decoded, depth[:, :width])
+
+
+@pytest.mark.parametrize("codec", ["z16", "z16-zstd", "png16"])
+def test_depth_in_metres_is_that_in_units_times_their_length(
+    depth: NDArray[np.uint16], codec: DepthCodec
+) -> None:
+    image = encode_depth(depth, codec)
+    metres = decode_metres(image, 0.001)
+    assert metres.dtype == np.float32
+    np.testing.assert_array_equal(metres, decode_depth(image) * np.float32(0.001))
+    decode_depth(image)[:] = 0  # what is decoded is the caller's own
 
 
 def test_plain_depth_is_read_too(depth: NDArray[np.uint16]) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from inhand_runtime.pixels import encode_colour
 from inhand_runtime.rig_calibration import CameraCalibration, RigCalibration, write_rig_calibration
 from inhand_schemas.messages import CameraInfo, ObjectPose, Pose, RgbdFrame, Skeletons
 from inhand_schemas.topics import INFO, RGBD, SKELETONS
+from inhand_tracker import rig_cameras
 from inhand_tracker.geometry.arrays import Array
 from inhand_tracker.geometry.estimate import Estimate
 from inhand_tracker.geometry.image import Image, ViewPull
@@ -148,6 +150,26 @@ def test_poses_are_young_whatever_the_cameras_do() -> None:
     times_s = np.array([pose.time_ns / 1e9 - EPOCH_S for pose in daemon.poses["mug"]])
     assert np.percentile(np.array(daemon.published) - times_s, 99) < 0.06
     assert len(times_s) >= 59
+
+
+def test_frames_are_decoded_once_each_and_while_a_moment_still_waits_for_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    frames, decoded = [], rig_cameras.decoded
+
+    def noted(daemon: SimulatedDaemon, camera: str, frame: RgbdFrame, *rest: Any) -> Image | None:
+        frames.append((camera, frame.sequence, daemon.clock()))
+        return decoded(daemon, camera, frame, *rest)
+
+    monkeypatch.setattr(rig_cameras, "decoded", noted)
+    tracked(RigFilm(pictures=True), likelihood=("region",))
+    assert len({frame[:2] for frame in frames}) == len(frames) > 170
+    # The left camera's frames come last; the right one's do 18 ms before them.
+    begun = {(camera, number): at for camera, number, at in frames if number > 5}
+    waited_s = [at - begun["right", number] for (camera, number), at in begun.items()
+                if camera == "left" and ("right", number) in begun]  # fmt: skip
+    assert len(waited_s) > 40
+    assert min(waited_s) > 0.01
 
 
 def test_cameras_of_another_rate_cost_no_pose_and_no_trouble() -> None:

@@ -16,6 +16,7 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import copy_context
 from functools import cache, partial, wraps
 from pathlib import Path
 from types import FunctionType, ModuleType
@@ -127,6 +128,20 @@ def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     return compiled
 
 
+class _Silence(threading.local):
+    """A context of one thread in which NumPy does not warn of what is not a number.
+
+    It is made once: to enter and leave ``np.errstate`` takes longer than to turn a vector.
+    """
+
+    def __init__(self) -> None:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            self.context = copy_context()
+
+
+_SILENCE = _Silence()
+
+
 def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
     """Compile a function of double arrays so that it takes any number of them, as NumPy's own do.
 
@@ -148,14 +163,13 @@ def vectorised(layout: str) -> Callable[[Callable[..., None]], Any]:
         @cache
         def made() -> Any:
             with _MAKING:
-                ufunc = _vectorised(function, layout, types, caches)
-            return np.errstate(invalid="ignore", divide="ignore")(ufunc)
+                return _vectorised(function, layout, types, caches)
 
         _LOOPS.append(made)
 
         @wraps(function)
         def silent(*arrays: Any, **options: Any) -> Any:
-            return made()(*arrays, **options)
+            return _SILENCE.context.run(made(), *arrays, **options)
 
         return silent
 

@@ -62,6 +62,18 @@ def encode_depth(depth: NDArray[np.uint16], codec: DepthCodec = "z16-zstd") -> D
 
 def decode_depth(image: DepthImage) -> NDArray[np.uint16]:
     """(H, W) depth units; raises MessageError when the bytes are damaged."""
+    return _depth_units(image).astype(np.uint16)
+
+
+def decode_metres(image: DepthImage, unit_m: float) -> NDArray[np.float32]:
+    """(H, W) depth in metres by the metres in a unit; raises MessageError when the bytes are
+    damaged."""
+    return np.multiply(_depth_units(image), np.float32(unit_m), dtype=np.float32)
+
+
+def _depth_units(image: DepthImage) -> NDArray[np.uint16]:
+    """(H, W) depth units, which cannot be written; raises MessageError when the bytes are
+    damaged."""
     if image.codec == "png16":
         return decode_png(image.data, image.width, image.height)
     size = 2 * image.width * image.height
@@ -77,7 +89,7 @@ def decode_depth(image: DepthImage) -> NDArray[np.uint16]:
         raise MessageError(
             f"damaged depth: {counted(len(data), 'byte')}, where the image takes {size:,}"
         )
-    return np.frombuffer(data, "<u2").reshape(image.height, image.width).astype(np.uint16)
+    return np.frombuffer(data, "<u2").reshape(image.height, image.width)
 
 
 def _decode_jpeg(image: ColourImage, colour_space: str) -> NDArray[np.uint8]:

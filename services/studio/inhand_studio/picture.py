@@ -3,7 +3,7 @@
 import threading
 
 import numpy as np
-from inhand_runtime.pixels import decode_colour, decode_depth
+from inhand_runtime.pixels import decode_colour, decode_metres
 from inhand_schemas.messages import CameraInfo, ColourImage, Preview, RgbdFrame
 from inhand_tracker.geometry.arrays import Bytes, Singles
 
@@ -52,7 +52,7 @@ class Picture:
         """
         if isinstance(self._message, Preview) or self._message.depth is None:
             return None
-        return decode_depth(self._message.depth) * np.float32(info.depth_scale)
+        return decode_metres(self._message.depth, info.depth_scale)
 
     def _decoded(self) -> Bytes | None:
         message = self._message

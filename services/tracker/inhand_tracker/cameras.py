@@ -69,8 +69,13 @@ class Cameras(ABC):
         while there is none."""
 
     @abstractmethod
+    def decode_ahead(self) -> None:
+        """Decode what waits for the rest of its moment, while there is nothing else to do."""
+
+    @abstractmethod
     def look(self, effort: float) -> LiveFrame:
-        """Decode the moment that ``next`` went to; it is worth a share of the usual work."""
+        """Decode the moment that ``next`` went to, as far as that was not done ahead; it is worth a
+        share of the usual work."""
 
     @abstractmethod
     def note_unused(self, skipped: int = 0) -> None:
@@ -126,6 +131,9 @@ class OneCamera(Cameras):
         if self._moment is None:
             return None
         return [Bodies(one.people, one.time_ns) for one in self._moment.skipped]
+
+    def decode_ahead(self) -> None:
+        """Nothing: a frame is the last that its moment waits for."""
 
     def look(self, effort: float) -> LiveFrame:
         assert self._moment is not None

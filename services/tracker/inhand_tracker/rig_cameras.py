@@ -1,7 +1,8 @@
 """What a live tracker sees of several cameras: their messages, joined moment by moment."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from functools import cached_property, partial
 
 import msgspec
 import numpy as np
@@ -22,6 +23,7 @@ from inhand_tracker.cameras import (
     subscribe,
 )
 from inhand_tracker.frames import camera_frame, source_of
+from inhand_tracker.geometry.image import Image
 from inhand_tracker.geometry.placement import Placement
 from inhand_tracker.live.joining import Captured, JoinedMoment, JoinedMoments
 from inhand_tracker.rig.people_fusing import person_message
@@ -29,7 +31,20 @@ from inhand_tracker.rig.placing import PlaceDeviation
 from inhand_tracker.rig.rig_frames import Capture, RigFrame, RigFrames
 from inhand_tracker.wire.conversion import Need
 
-Captures = Sequence[Captured[Skeletons, RgbdFrame]]
+
+class _Frame:
+    """A camera's frame, whose image is decoded when it is first asked for, and once."""
+
+    def __init__(self, decode: Callable[[], Image | None]) -> None:
+        self._decode = decode
+
+    @cached_property
+    def image(self) -> Image | None:
+        """What is needed of the frame; None where it is damaged, or the camera is not known."""
+        return self._decode()
+
+
+Captures = Sequence[Captured[Skeletons, _Frame]]
 
 
 class RigCameras(Cameras):
@@ -55,12 +70,13 @@ class RigCameras(Cameras):
         self._calibration = calibration
         self._infos: dict[str, CameraInfo] = {}
         self._info_watch = InfoWatch(daemon.health)
-        self._moments: JoinedMoments[Skeletons, RgbdFrame] = JoinedMoments(
+        self._moments: JoinedMoments[Skeletons, _Frame] = JoinedMoments(
             cameras, pixels=bool(needs), every=every
         )
-        self._moment: JoinedMoment[Skeletons, RgbdFrame] | None = None
+        self._moment: JoinedMoment[Skeletons, _Frame] | None = None
         self._frames: RigFrames | None = None
         self._places: dict[str, Pose] = {}
+        self._undecoded: dict[str, _Frame] = {}
         self._keys = {
             key: (topic, camera)
             for camera in cameras
@@ -82,9 +98,10 @@ class RigCameras(Cameras):
                 self._info_watch.note(INFO.stream, camera, now)
                 self._place(camera, info)
         elif topic is RGBD:
-            if (frame := self._daemon.decode(RGBD, sample)) is not None:
+            if (message := self._daemon.decode(RGBD, sample)) is not None:
                 self._info_watch.note(RGBD.stream, camera, now)
-                self._moments.add_frame(camera, frame.sequence, frame, sample.arrived)
+                frame = self._undecoded[camera] = _Frame(partial(self._decode, camera, message))
+                self._moments.add_frame(camera, message.sequence, frame, sample.arrived)
         elif (skeletons := self._daemon.decode(SKELETONS, sample)) is not None:
             time_ns = skeletons.time_ns + self._calibration.clock_offset_ns(camera)
             self._moments.add_skeleton(
@@ -110,6 +127,14 @@ class RigCameras(Cameras):
             if frame is not None:
                 skipped.append(Bodies(_people(frame), frame.time_ns))
         return skipped
+
+    def decode_ahead(self) -> None:
+        """The newest frames are; where they come one after the other, only the last one of a moment
+        is still to be decoded when all are there."""
+        for camera, frame in self._undecoded.items():
+            if camera in self._places:
+                _ = frame.image
+        self._undecoded.clear()
 
     def look(self, effort: float) -> LiveFrame:
         assert self._moment is not None
@@ -184,11 +209,12 @@ class RigCameras(Cameras):
             return None
         captures = []
         for one in known:
-            info, image = self._infos.get(one.camera), None
-            if images:
-                image = decoded(self._daemon, one.camera, one.frame, info, self._needs)
+            image = one.frame.image if images and one.frame is not None else None
             captures.append(Capture(one.camera, one.time_ns, one.skeleton.people, image))
         return self._frames.join(captures)
+
+    def _decode(self, camera: str, message: RgbdFrame) -> Image | None:
+        return decoded(self._daemon, camera, message, self._infos.get(camera), self._needs)
 
     def _note_clocks(self) -> None:
         """Say whose clock is wrong."""
@@ -230,7 +256,7 @@ class RigCameras(Cameras):
             )
 
 
-def _by_rig_clock(captured: Captured[Skeletons, RgbdFrame]) -> Skeletons:
+def _by_rig_clock(captured: Captured[Skeletons, _Frame]) -> Skeletons:
     """Return a capture's skeletons with their time by the rig's clock."""
     return msgspec.structs.replace(captured.skeleton, time_ns=max(captured.time_ns, 0))
 

@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Sequence
 from functools import cache, partial
 
+import cv2
 from inhand_runtime.calibration_watch import CalibrationWatch
 from inhand_runtime.compiled import make_loops
 from inhand_runtime.daemon import Daemon, running_daemon
@@ -83,7 +84,9 @@ class TrackerService:
                 self._watch(fresh)
             self._take_what_came()
             skipped = self._cameras.next(self._now())
-            if skipped is not None:
+            if skipped is None:
+                self._cameras.decode_ahead()
+            else:
                 self._skip(skipped)
                 began = self._now()
                 if self._track():
@@ -205,6 +208,9 @@ def run(settings: Settings[TrackerSettings]) -> None:
 
 def _prepare(settings: Settings[TrackerSettings]) -> Watcher:
     """Make what no frame shall wait for, somebody's first one neither."""
+    # Parts of images are small: a second thread has less to do than it waits for a core, on which
+    # another process works, and the first one then waits for it.
+    cv2.setNumThreads(1)
     watcher = check(settings)
     if settings.service.cameras:
         compile_fusing()

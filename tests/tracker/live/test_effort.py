@@ -64,3 +64,11 @@ def test_single_slow_steps_change_nothing() -> None:
 def test_an_overload_is_met_within_two_decisions_where_work_follows_the_effort() -> None:
     assert 0.0 + 2.5 * decisions(0.0, 2.5)[1] <= MOST
     assert 0.2 + 2.0 * decisions(0.2, 2.0)[2] <= MOST
+
+
+def test_steps_that_are_longer_than_the_period_are_met_at_once() -> None:
+    effort = Effort()
+    for _ in range(DEFAULT_EFFORT.late_steps):
+        assert effort.share == 1.0
+        effort = after_step(effort, 1.2 * PERIOD_S, PERIOD_S)
+    assert 1.2 * effort.share <= MOST

@@ -28,9 +28,10 @@ def after_step(
 ) -> Effort:
     """The effort of the next step, after one that took ``step_s`` of the camera's ``period_s``."""
     loads = (*effort.loads, step_s / period_s)
-    if len(loads) < parameters.steps:
-        return replace(effort, loads=loads)
     load = median(loads)
+    late = len(loads) >= parameters.late_steps and load > 1.0
+    if len(loads) < parameters.steps and not late:
+        return replace(effort, loads=loads)
     if parameters.least_load <= load <= parameters.most_load:
         return Effort(effort.share)
     whole_load = load / effort.share

@@ -41,6 +41,9 @@ class EffortParameters:
 
     steps: int = 15
     """Number of steps whose median load decides: half a second at 30 Hz."""
+    late_steps: int = 5
+    """Number of steps whose median load decides already where it is above 1: until then each pose
+    is a step older than it could be, as at a start on a busy machine."""
     most_load: float = 0.85
     """Load above which the effort falls."""
     aim_load: float = 0.7

@@ -101,14 +101,14 @@ class Placing:
         return {
             camera: self._off_m(camera)
             for camera in self._others
-            if self._excess(camera) >= self._parameters.place_most
+            if self._excesses[camera] >= self._parameters.place_most
         }
 
     def settle(self) -> None:
         """Believe cameras to be where they were found to be by now, as far as their calibration
         allows. What is noted is of images that were looked at by what is believed."""
         for camera in self._others:
-            share = min(1.0, self._parameters.place_most / max(self._excess(camera), 1e-9))
+            share = min(1.0, self._parameters.place_most / max(self._excesses[camera], 1e-9))
             part = self._part(camera)
             self._believed[part] = share * self._mean[part]
 
@@ -150,6 +150,7 @@ class Placing:
         self._prior = self._said_covariance()
         self._known = np.linalg.inv(self._prior)
         self._covariance = self._prior
+        self._excesses = dict.fromkeys(self._others, 0.0)
 
     def _said_covariance(self) -> Array:
         """The covariance (6 N, 6 N) of other cameras' places in the frame of the home one: that
@@ -203,6 +204,7 @@ class Placing:
         seen = share * objects.information + people.information / times
         self._covariance = np.asarray(np.linalg.inv(self._known + seen), np.float64)
         self._mean = self._covariance @ (share * objects.pull + people.pull / times)
+        self._excesses = {camera: self._excess(camera) for camera in self._others}
 
     def _off_m(self, camera: str) -> float:
         """How far what was seen last is from where it would be if the camera were where it was said

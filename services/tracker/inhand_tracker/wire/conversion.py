@@ -4,7 +4,7 @@ from collections.abc import Collection
 from typing import Literal
 
 import numpy as np
-from inhand_runtime.pixels import decode_colour, decode_depth, decode_grey
+from inhand_runtime.pixels import decode_colour, decode_grey, decode_metres
 from inhand_schemas.errors import MessageError
 from inhand_schemas.messages import CameraInfo, Person, RgbdFrame
 
@@ -50,6 +50,6 @@ def image_of(frame: RgbdFrame, info: CameraInfo, needs: Collection[Need]) -> Ima
     return Image(
         None if grey is None else decode_grey(grey),
         intrinsics_of(info).scaled_to(size.width, size.height),
-        None if depth is None else decode_depth(depth) * np.float32(info.depth_scale),
+        None if depth is None else decode_metres(depth, info.depth_scale),
         None if colour is None else decode_colour(colour),
     )
