@@ -19,7 +19,7 @@ M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
 
 KEPT_BYTES = 32 * 2**20
 """Bytes of free memory that a process keeps, and of the largest array that is made of it: the
-images of four cameras, decoded, are 12 MB. More than this the C library does not take."""
+images of four cameras, decoded, are 11 MB. More than this the C library does not take."""
 
 MADV_DONTNEED = 4
 """Linux's number of the advice that pages are not needed now."""
@@ -33,7 +33,7 @@ def keep_memory() -> None:
     arrays with every frame.
 
     By itself it gives them back at once, and the system has to clear every page of the next ones,
-    which takes a fifth of the time of decoding a frame.
+    which takes a tenth of the time of decoding a frame.
     """
     if _mallopt is not None and _malloc_trim is not None:
         _mallopt(M_MMAP_THRESHOLD, KEPT_BYTES)
