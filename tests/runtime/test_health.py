@@ -144,6 +144,18 @@ def test_a_trouble_that_lasts_is_logged_once(caplog: pytest.LogCaptureFixture) -
     assert len(caplog.records) == 1
 
 
+def test_a_trouble_whose_numbers_change_is_logged_once_and_told_as_it_is_now(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    board = HealthBoard("tracker", "first")
+    for count in (12, 13, 9):
+        board.trouble("late", f"{count} of 90 frames came late")
+    assert len(caplog.records) == 1
+    assert board.report().troubles == ("9 of 90 frames came late",)
+    board.trouble("late", "no frame comes")
+    assert len(caplog.records) == 2
+
+
 def test_malformed_messages_are_a_trouble_while_they_come(caplog: pytest.LogCaptureFixture) -> None:
     clock = Clock()
     board = HealthBoard("tracker", "first", clock)

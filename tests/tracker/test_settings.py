@@ -47,6 +47,8 @@ RIG = CAMERA + '[capture.left]\nsource = "simulator"\n'
             r"there is no table \[capture\.lft\] \(did you mean left\?\)",
         ),
         ('cameras = ["front", "front"]', "one is named twice"),
+        ("cameras = []", "name two or more in it, or one in camera"),
+        ('cameras = ["front"]', "name two or more in it, or one in camera"),
         ('camera = "front"\ncameras = ["front", "left"]', "and leave camera out"),
         ('cameras = ["front", "left"]\nmethod = "gd-hand"', "gd-hand takes one camera"),
         ('camera = "front"\ncalibration = "notes.txt"', "it is for several cameras"),

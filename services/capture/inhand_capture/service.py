@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from inhand_runtime.calibration_watch import CalibrationWatch
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError
+from inhand_runtime.memory import keep_memory
 from inhand_runtime.settings import Settings
 from inhand_runtime.source import Captured, Source, SourceError, source_factory
 from inhand_schemas.messages import Pose
@@ -66,6 +67,7 @@ def run(settings: Settings[CaptureSettings]) -> None:
         return viewed(source, chosen.rotate, chosen.masks, ready.faces)
 
     shutter = kept_shutter(settings.site, settings.instance)
+    keep_memory()
     with running_daemon("capture", settings, prepare=prepared) as daemon:
         ready = prepared()
         watched = WatchedSource(chosen.source, daemon.health)

@@ -24,12 +24,7 @@ from inhand_runtime.health import HealthBoard
 from inhand_runtime.inbox import UNBOUNDED, Inbox, Lane, Received
 from inhand_runtime.known_member import require_known
 from inhand_runtime.logs import configure_logs
-from inhand_runtime.memory import (
-    give_libraries_back,
-    give_memory_back,
-    keep_memory,
-    keep_what_started,
-)
+from inhand_runtime.memory import give_libraries_back, give_memory_back, keep_what_started
 from inhand_runtime.questions import Question, answer, ask
 from inhand_runtime.service_manager import ServiceManager
 from inhand_runtime.session import (
@@ -263,7 +258,6 @@ def running_daemon(
     came into sight meanwhile, which sets ``daemon.stop``.
     """
     configure_logs(settings.log, settings.instance)
-    keep_memory()
     stop = threading.Event()
     opened = open_session(settings.zenoh) if router is None else router
     with set_on_signals(stop), opened as session:

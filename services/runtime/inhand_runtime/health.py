@@ -1,6 +1,7 @@
 """What an instance counts and knows about itself, and publishes once a second."""
 
 import logging
+import re
 import threading
 import time
 from collections import Counter, deque
@@ -31,6 +32,7 @@ FARTHEST_GAP = 1 << 20
 """Number of missing messages from which on a gap is another publisher's numbering."""
 LOOP_LATE_S = 3.0
 """Seconds after which a main loop that did not come round is called late."""
+_NUMBERS = re.compile(r"\d+")
 
 
 @dataclass(frozen=True)
@@ -187,14 +189,15 @@ class HealthBoard:
     def trouble(self, name: str, text: str, *, lasts_s: float = float("inf")) -> None:
         """Say what is wrong from now on, until ``well(name)`` or for some seconds.
 
-        While anything is wrong a running instance is degraded. A text is logged when it is new.
+        While anything is wrong a running instance is degraded. A text is logged when more of it than
+        its numbers is new.
         """
         text = text[:LONGEST_TEXT]
         with self._lock:
             before = self._troubles.get(name)
             self._set_trouble(name, text, self._now() + lasts_s)
             self._last_error = text
-        if before is None or before.text != text:
+        if before is None or _NUMBERS.sub("", before.text) != _NUMBERS.sub("", text):
             log.error("%s", text)
 
     def well(self, name: str) -> None:

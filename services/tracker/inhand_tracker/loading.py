@@ -20,8 +20,8 @@ from inhand_tracker.settings import TrackerSettings
 
 def check(settings: Settings[TrackerSettings]) -> Watcher:
     """Check all that can be known before a start, and load it; raises SettingsError."""
-    _require_cameras(settings)
     _require_rig(settings)
+    _require_cameras(settings)
     require_files(settings)
     try:
         return load_watcher(settings.instance, settings.service)
@@ -48,6 +48,8 @@ def _require_cameras(settings: Settings[TrackerSettings]) -> None:
 def _require_rig(settings: Settings[TrackerSettings]) -> None:
     """Raise SettingsError for cameras that cannot track together."""
     chosen, refusal = settings.service, settings.origin.refusal
+    if "cameras" in chosen.model_fields_set and len(chosen.cameras) < 2:
+        raise refusal("cameras", "name two or more in it, or one in camera")
     if not chosen.cameras:
         if chosen.calibration is not None:
             raise refusal("calibration", "it is for several cameras: name them in cameras")

@@ -10,6 +10,7 @@ from inhand_runtime.calibration_watch import CalibrationWatch
 from inhand_runtime.compiled import make_loops
 from inhand_runtime.daemon import Daemon, running_daemon
 from inhand_runtime.errors import InhandError
+from inhand_runtime.memory import keep_memory
 from inhand_runtime.rig_calibration import RigCalibration, read_rig_calibration
 from inhand_runtime.session import Publisher
 from inhand_runtime.settings import Settings
@@ -197,6 +198,7 @@ def _cameras_of(daemon: Daemon, settings: TrackerSettings) -> Cameras:
 def run(settings: Settings[TrackerSettings]) -> None:
     """Run until a signal; raises SettingsError before anything is tracked."""
     chosen, checked = settings.service, cache(partial(_prepare, settings))
+    keep_memory()
     with running_daemon("tracker", settings, prepare=checked) as daemon:
         first = checked()
         log.info("tracking %s with %s", ", ".join(first.names), chosen.method)
