@@ -189,8 +189,8 @@ class HealthBoard:
     def trouble(self, name: str, text: str, *, lasts_s: float = float("inf")) -> None:
         """Say what is wrong from now on, until ``well(name)`` or for some seconds.
 
-        While anything is wrong a running instance is degraded. A text is logged when more of it than
-        its numbers is new.
+        While anything is wrong a running instance is degraded. A text is logged when more than its
+        numbers is new.
         """
         text = text[:LONGEST_TEXT]
         with self._lock:
