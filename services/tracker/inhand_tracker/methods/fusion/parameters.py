@@ -56,6 +56,11 @@ class FusionParameters:
     """Seconds for which such a body may stay wrong."""
     leap_apart_m: float = 0.1
     """Metres from where the object is believed to be within which such a body is right again."""
+    wrong_body_share: float = 1e-3
+    """Probability at the least, where several cameras' images are searched, that an object goes on
+    from where it was believed to be, however unlikely a body makes that: what they show of it
+    outweighs any such odds, but no body has to be that wrong. 1e-5 did as well, and 1e-8 hardly
+    helped."""
     forgetting_s: float = 0.3
     """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
 

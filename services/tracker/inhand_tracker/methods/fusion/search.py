@@ -93,6 +93,8 @@ class ImageSearch:
             for one in others
         ]
         doubted = _doubted(belief, len(glances), parameters)
+        if len(glances) > 1:
+            belief = belief.with_carried(parameters.wrong_body_share)
         at = self._sphere.middles(*(mean[doubted] for mean in belief.means))
         middles = np.concatenate((self._sphere.middles(*hypotheses), at))
         opened = self._open_all(glances, belief.parts[0], middles, joints)
