@@ -63,16 +63,14 @@ class PoseMixture:
 
     def with_carried(self, least: float) -> "PoseMixture":
         """Return the mixture in which the parts that are carried weigh ``least`` together, at the
-        least: what they lack, each gets as much of."""
-        if not self.carried:
-            return self
+        least; each gets an equal share of what they lack."""
         carried = list(self.carried)
-        lacking = least - float(self.weights[carried].sum())
-        if lacking <= 0.0:
+        weight = float(self.weights[carried].sum())
+        if not carried or weight >= least:
             return self
-        weights = self.weights.copy()
-        weights[carried] += lacking / len(carried)
-        return replace(self, weights=weights / weights.sum())
+        weights = (1.0 - least) / (1.0 - weight) * self.weights
+        weights[carried] = self.weights[carried] + (least - weight) / len(carried)
+        return replace(self, weights=weights)
 
     def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
         """Draw ``count`` poses (P, 3) and (P, 4), of each part in proportion to its weight."""
