@@ -160,3 +160,14 @@ def test_a_part_that_weighs_nothing_has_no_density_and_no_warning() -> None:
     logs = chosen.log_densities(*chosen.sample(3, np.random.default_rng(8)))
     np.testing.assert_array_equal(logs[0], -np.inf)
     assert np.isfinite(logs[1]).all()
+
+
+def test_parts_that_are_carried_weigh_as_much_as_is_asked_at_the_least() -> None:
+    parts = (gaussian(0), gaussian(1), gaussian(2))
+    weights = np.array([0.0, 1.0, 0.0])
+    kept = PoseMixture(parts, weights, carried=(0, 2)).with_carried(0.2)
+    np.testing.assert_allclose(kept.weights, [0.1, 0.8, 0.1])
+    enough = PoseMixture(parts, np.array([0.1, 0.7, 0.2]), carried=(0, 2))
+    assert enough.with_carried(0.2) is enough
+    nothing = PoseMixture(parts, weights)
+    assert nothing.with_carried(0.2) is nothing

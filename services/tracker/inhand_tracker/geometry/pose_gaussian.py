@@ -5,7 +5,7 @@ Deviations are (translation of the centre, rotation vector on the left), in metr
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -60,6 +60,17 @@ class PoseMixture:
     def roots(self) -> Array:
         """The triangular roots (K, 6, 6) of the parts' covariances."""
         return roots_of(np.array([part.covariance for part in self.parts]))
+
+    def with_carried(self, least: float) -> "PoseMixture":
+        """Return the mixture in which the parts that are carried weigh ``least`` together, at the
+        least; each gets an equal share of what they lack."""
+        carried = list(self.carried)
+        weight = float(self.weights[carried].sum())
+        if not carried or weight >= least:
+            return self
+        weights = (1.0 - least) / (1.0 - weight) * self.weights
+        weights[carried] = self.weights[carried] + (least - weight) / len(carried)
+        return replace(self, weights=weights)
 
     def sample(self, count: int, random: np.random.Generator) -> tuple[Array, Array]:
         """Draw ``count`` poses (P, 3) and (P, 4), of each part in proportion to its weight."""

@@ -1,5 +1,6 @@
 """Poses judged by an image and a belief, both of which are known."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from inhand_tracker.geometry.bounding_sphere import BoundingSphere
 from inhand_tracker.geometry.pose_gaussian import PoseGaussian, PoseMixture
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
 from inhand_tracker.methods.fusion.posterior import ImagePosterior
+from inhand_tracker.sight.refinement import PosePrior, Refined
 from inhand_tracker.sight.view import PlacedView
 
 WIDE = PoseGaussian(TRUE.centre, TRUE.rotation, np.diag([0.2**2] * 3 + [0.5**2] * 3))
@@ -82,3 +84,36 @@ def test_the_likelier_of_two_modes_weighs_more() -> None:
     scores, seen = np.hstack([one.scores(*pose(mode)) for mode in (near, off)])
     mixture = one.weigh([near, off], seen)
     assert np.log(mixture.weights[0] / mixture.weights[1]) == pytest.approx(scores[0] - scores[1])
+
+
+class FirstStart(GaussianSight):
+    """A sight whose refinement by several views brings all poses to the first one."""
+
+    def refine_together(
+        self,
+        origins: np.ndarray,
+        turns: np.ndarray,
+        views: Sequence[PlacedView],
+        prior: PosePrior,
+        trust: float,
+        near: tuple[float, float],
+    ) -> tuple[Refined, np.ndarray]:
+        one = self.refine(origins[:1], turns[:1], views[0].view, prior, trust)
+        whole = replace(one, log_likelihoods=len(views) * one.log_likelihoods)
+        return whole, np.zeros(1, int)
+
+
+@pytest.mark.parametrize("thorough", [True, False])
+def test_a_likelier_start_is_a_mode_where_several_views_are_searched_thoroughly(
+    thorough: bool,
+) -> None:
+    view = PlacedView(View(None, None))
+    one = posterior(WIDE, sight=FirstStart(bonus=5.0, refines=False))
+    one = replace(one, views=(view, view), thorough=thorough)
+    off = TRUE.centre + np.array([0.05, 0.0, 0.0])
+    starts = np.stack((off, TRUE.centre)), np.tile(TRUE.rotation, (2, 1))
+    modes, seen = one.modes(*starts)
+    centres = [off, TRUE.centre] if thorough else [off]
+    np.testing.assert_allclose([mode.centre for mode in modes], centres)
+    assert (seen[-1] == pytest.approx(10.0)) == thorough
+    assert len(one.modes(starts[0][::-1], starts[1])[0]) == 1

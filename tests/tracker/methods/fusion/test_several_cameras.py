@@ -78,6 +78,23 @@ def test_what_lies_is_not_lost_as_a_body_goes_away_from_it() -> None:
         assert np.linalg.norm(found.centre - PLACE) < 0.01
 
 
+def test_several_cameras_outweigh_a_body_however_sure_it_is() -> None:
+    """The body is sure that the box is 60 cm away from where it was believed to be."""
+    wide, sure = (np.diag([deviation**2] * 3 + [0.1**2] * 3) for deviation in (0.04, 0.03))
+    body = PoseGaussian(PLACE + np.array([0.0, 0.4, 0.45]), TURN, sure)
+    carried = PoseGaussian(PLACE + np.array([0.01, 0.01, 0.02]), TURN, wide)
+    belief = PoseMixture((body, carried), np.array([1.0, 1e-60]), carried=(1,))
+    for seed in range(3):
+        eyes = sight(learned=appearance(returns_depth=False))
+        search = ImageSearch(eyes, SPHERE, DEFAULT_FUSION, seed)
+        found = search.look(belief, FRONT, FAR_AWAY, 1.0, 1.0, [LEFT])
+        assert np.linalg.norm(found.centre - PLACE) < 0.01
+        assert search.tried is not None
+        first = search.tried.centres[: DEFAULT_FUSION.hypotheses]
+        near = np.linalg.norm(first - PLACE, axis=1) < 0.2
+        assert near.mean() == pytest.approx(DEFAULT_FUSION.carried_tried_share, abs=0.01)
+
+
 def test_each_camera_has_colours_of_its_own() -> None:
     eyes = sight(learned=appearance(returns_depth=False))
     search = ImageSearch(eyes, SPHERE, DEFAULT_FUSION, 1)
@@ -104,9 +121,11 @@ def test_a_camera_that_sees_nothing_of_the_object_adds_nothing() -> None:
         np.testing.assert_array_equal(first.covariance, second.covariance)
 
 
-def looked_at(later_s: float, monkeypatch: pytest.MonkeyPatch) -> list[SideLook]:
-    """How another camera's images, captured at another time, are looked at while a wedge is
-    waved."""
+def looked_at(
+    later_s: float, monkeypatch: pytest.MonkeyPatch, body: np.ndarray | None = None
+) -> list[SideLook]:
+    """How another camera's images, captured at another time, are looked at while a wedge is waved,
+    or a ``body``'s joints (T, 20, 3) go."""
     seen: list[SideLook] = []
     looked = ImageSearch.look
 
@@ -118,7 +137,7 @@ def looked_at(later_s: float, monkeypatch: pytest.MonkeyPatch) -> list[SideLook]
     place = aside(70.0, np.array([0.0, 0.0, 2.5]))
     with monkeypatch.context() as patched:
         patched.setattr(ImageSearch, "look", look)
-        for frame, joints in enumerate(unseen_wave(FRAMES)):
+        for frame, joints in enumerate(unseen_wave(FRAMES) if body is None else body):
             blank = replace(images()[frame], source="aside", colour=None, depth=None)
             others = (OtherView(blank, place, later_s),)
             image = replace(images()[frame], others=others)
@@ -142,6 +161,20 @@ def test_what_was_captured_at_another_time_is_looked_at_where_the_object_was_the
     at_once = looked_at(0.0, monkeypatch)
     sharper = [one.sharpness > other.sharpness for one, other in zip(at_once, seen, strict=True)]
     assert np.mean(sharper[2:]) > 0.9
+
+
+def test_what_was_captured_at_another_time_is_not_looked_at_where_a_body_leaps(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """No object goes as a body does that is put 60 cm aside within a frame."""
+    leaps = unseen_wave(10)
+    leaps[6:] += np.array([0.6, 0.0, 0.0])
+    place = aside(70.0, np.array([0.0, 0.0, 2.5]))
+    seen = looked_at(0.5 * FRAME_NS / 1e9, monkeypatch, leaps)[6]
+    there = held(unseen_wave(10), seed=7)[0][5]
+    moved = seen.view_from_reference.points(there) - place.points(there)
+    assert np.linalg.norm(moved) < 0.05
+    assert seen.sharpness > 0.5
 
 
 def pulls_by(*others: SideLook) -> list[ViewPull]:

@@ -154,7 +154,6 @@ def carry_over(
     parts = [stays, *afresh.parts]
     shares = [parameters.stays_share, *(parameters.afresh_share * afresh.weights)]
     of_body = len(parts)
-    carried = (0, of_body) if parameters.leaves else (0,)
     if parameters.leaves:
         parts.append(_left(before.believed, parameters))
         shares.append(parameters.left_share)
@@ -168,7 +167,7 @@ def carry_over(
         weights = np.array(shares)
         weights[by_body] *= (1.0 - parameters.leap_doubt) / weights[by_body].sum()
         weights[~by_body] *= parameters.leap_doubt / weights[~by_body].sum()
-    return PoseMixture(tuple(parts), weights, carried)
+    return PoseMixture(tuple(parts), weights, (0, *range(of_body, len(parts))))
 
 
 def carry_on(before: Belief, time_ns: int, parameters: FusionParameters) -> PoseMixture:
@@ -176,11 +175,11 @@ def carry_on(before: Belief, time_ns: int, parameters: FusionParameters) -> Pose
     is known how it went, goes on so."""
     left = _left(before.believed, parameters)
     if before.earlier is None:
-        return PoseMixture((left,), np.ones(1))
+        return PoseMixture((left,), np.ones(1), (0,))
     elapsed_s = (time_ns - before.time_ns) / 1e9
     goes_on = _goes_on(before.earlier, before, elapsed_s, parameters)
     shares = np.array([parameters.left_share, parameters.goes_on_share])
-    return PoseMixture((left, goes_on), shares / shares.sum())
+    return PoseMixture((left, goes_on), shares / shares.sum(), (0, 1))
 
 
 def steady_before(
@@ -202,13 +201,19 @@ def _leaps(
 ) -> bool:
     """Whether a body takes what is expected away from where it was, as fast as no object goes that
     was not on its way already."""
-    earlier = before.earlier
-    if earlier is None:
+    if before.earlier is None:
         return False
     leap = float(np.linalg.norm(expected.whole.centre - before.expected.whole.centre))
-    went = float(np.linalg.norm(before.believed.centre - earlier.believed.centre))
-    speed = went / ((before.time_ns - earlier.time_ns) / 1e9)
-    return leap > elapsed_s * (parameters.leap_m_per_s + parameters.quickening * speed)
+    return leap > farthest_way(before, elapsed_s, parameters)
+
+
+def farthest_way(before: Belief, elapsed_s: float, parameters: FusionParameters) -> float:
+    """Metres that an object goes at the most, by how fast it was on its way already."""
+    speed = 0.0
+    if before.earlier is not None:
+        went = float(np.linalg.norm(before.believed.centre - before.earlier.believed.centre))
+        speed = went / ((before.time_ns - before.earlier.time_ns) / 1e9)
+    return elapsed_s * (parameters.leap_m_per_s + parameters.quickening * speed)
 
 
 def expect_afresh(expected: Expected) -> PoseMixture:

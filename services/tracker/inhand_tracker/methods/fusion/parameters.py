@@ -56,12 +56,20 @@ class FusionParameters:
     """Seconds for which such a body may stay wrong."""
     leap_apart_m: float = 0.1
     """Metres from where the object is believed to be within which such a body is right again."""
+    wrong_body_share: float = 1e-3
+    """Probability at the least, where several cameras' images are searched, that an object goes on
+    from where it was believed to be, however unlikely a body makes that. With 1e-5 glasses on a
+    head were followed as well, with 1e-8 no longer."""
     forgetting_s: float = 0.3
     """Seconds for which an image makes sure of a pose: one frame errs as the next does."""
 
     # How an image is searched (search, posterior).
     hypotheses: int = 120
     """Number of hypotheses; cost grows with it (`inhand bench tracker`)."""
+    carried_tried_share: float = 0.17
+    """Share of the hypotheses at the least, where several cameras' images are searched, that are
+    tried about where an object goes on from where it was believed to be: about the means alone, a
+    search comes off what moves, step by step. 0.3 was no better."""
     fewest_hypotheses: int = 25
     """Number of hypotheses that are tried with however little effort."""
     refines: bool = True

@@ -90,10 +90,27 @@ class ImagePosterior:
         order = np.argsort(nearest, kind="stable")
         starts, nearest = (centres[order], orientations[order]), nearest[order]
         if self.parameters.refines:
-            return self._refined(*starts, nearest)
+            modes, seen = self._refined(*starts, nearest)
+            if self.thorough and len(self.views) > 1:
+                return self._with_likelier(*starts, modes, seen)
+            return modes, seen
         covariances = np.array([part.covariance for part in self.belief.parts])[nearest]
         modes = list(map(PoseGaussian, *starts, covariances))
         return modes, self.scores(*starts)[1]
+
+    def _with_likelier(
+        self, centres: Array, orientations: Array, modes: list[PoseGaussian], seen: Array
+    ) -> tuple[list[PoseGaussian], Array]:
+        """Add the likeliest start to the modes, where refinement, which trusts the images less,
+        has left all of them less likely: as unsure as the nearest mode is."""
+        scores, seen_there = self.scores(centres, orientations)
+        means = means_of(modes)
+        best = int(np.argmax(scores))
+        if scores[best] <= (self._tempered(seen) + self.belief.log_density(*means)).max():
+            return modes, seen
+        nearest = int(np.argmin(np.linalg.norm(means[0] - centres[best], axis=1)))
+        start = PoseGaussian(centres[best], orientations[best], modes[nearest].covariance)
+        return [*modes, start], np.append(seen, seen_there[best])
 
     def _refined(
         self, centres: Array, orientations: Array, nearest: Indices

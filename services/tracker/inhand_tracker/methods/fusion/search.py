@@ -84,7 +84,6 @@ class ImageSearch:
         """
         self._support = None
         parameters = self._parameters.with_effort(effort)
-        hypotheses = belief.sample(parameters.hypotheses, self._random)
         glances = [_Glance(image, None, sharpness)] if image.has_pixels or not others else []
         glances += [
             _Glance(
@@ -93,6 +92,11 @@ class ImageSearch:
             for one in others
         ]
         doubted = _doubted(belief, len(glances), parameters)
+        tried = belief
+        if len(glances) > 1:
+            tried = belief.with_carried(parameters.carried_tried_share)
+            belief = belief.with_carried(parameters.wrong_body_share)
+        hypotheses = tried.sample(parameters.hypotheses, self._random)
         at = self._sphere.middles(*(mean[doubted] for mean in belief.means))
         middles = np.concatenate((self._sphere.middles(*hypotheses), at))
         opened = self._open_all(glances, belief.parts[0], middles, joints)

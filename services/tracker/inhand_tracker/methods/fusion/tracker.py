@@ -31,6 +31,7 @@ from inhand_tracker.methods.fusion.belief import (
     carry_on,
     carry_over,
     expect_afresh,
+    farthest_way,
     steady_before,
 )
 from inhand_tracker.methods.fusion.parameters import DEFAULT_FUSION, FusionParameters
@@ -231,7 +232,7 @@ class FusionFollower(Follower):
         """
         if not image.others:
             return []
-        motion = self._motion(belief.parts[0], time_ns)
+        motion = self._motion(belief, time_ns)
         return [self._other(one, motion, expected) for one in image.others]
 
     def _other(self, one: OtherView, motion: Motion, expected: Expected) -> SideLook:
@@ -255,13 +256,21 @@ class FusionFollower(Follower):
         off_pixels = one.image.camera.fx * off_m / away
         return 1.0 / (1.0 + (off_pixels / self._parameters.place_pixels) ** 2)
 
-    def _motion(self, believed: PoseGaussian, time_ns: int) -> Motion:
-        """How the object moves about a time at which it is believed somewhere."""
+    def _motion(self, belief: PoseMixture, time_ns: int) -> Motion:
+        """How the object moves on its way from where it was believed to be: as the likeliest of the
+        parts that go on from there has it, but for those that would go as fast as no object does.
+        Where a body alone has it elsewhere, that is no way that it goes."""
         before = self._before
         if before is None or not continues(before.time_ns, time_ns):
-            return Motion(believed.centre, np.zeros(3), np.zeros(3))
+            return Motion(belief.parts[0].centre, np.zeros(3), np.zeros(3))
         elapsed_s = (time_ns - before.time_ns) / 1e9
         was = before.believed
+        farthest = farthest_way(before, elapsed_s, self._parameters)
+        ways = np.linalg.norm(belief.means[0] - was.centre, axis=1)
+        possible = [one for one in belief.carried if ways[one] <= farthest]
+        if not possible:
+            return Motion(was.centre, np.zeros(3), np.zeros(3))
+        believed = belief.parts[max(possible, key=lambda one: belief.weights[one])]
         turned = rotations.to_vector(
             rotations.multiply(believed.rotation, rotations.conjugate(was.rotation))
         )
