@@ -1,12 +1,14 @@
 """Rigs that several processes show in step."""
 
+import os
+import threading
 import time
 from dataclasses import replace
 from itertools import islice
 
 import numpy as np
 import pytest
-from inhand_lab.world.rigs import RigSimulation, simulate_rig
+from inhand_lab.world.rigs import RigSimulation, RigView, simulate_rig
 from inhand_lab.world.simulator import SimulatorSource
 from inhand_lab.world.staging import Staging, staged_frames
 from inhand_runtime.source import Captured, SourceError
@@ -73,6 +75,22 @@ def test_lost_frames_are_not_shown_and_one_performance_follows_another(
     while (one := next(shown)).due_ns < staging.begin_ns(1):
         assert one.frame % 2 == 1
     assert one.frame == 1
+
+
+def test_what_prepares_the_next_performance_gives_way_to_who_watches(
+    first_performance: RigSimulation,
+) -> None:
+    view, priorities = first_performance.views[0], []
+
+    def perform(_number: int) -> RigView:
+        priorities.append(os.getpriority(os.PRIO_PROCESS, threading.get_native_id()))
+        return view
+
+    staging = Staging(time.time_ns() - LENGTH_NS + 300_000_000, LENGTH_NS, LENGTH_NS)
+    shown = staged_frames(staging, perform, (0, view))
+    while next(shown).due_ns < staging.begin_ns(1):
+        pass
+    assert priorities == [min(os.getpriority(os.PRIO_PROCESS, 0) + 10, 19)]
 
 
 def test_info_says_where_the_camera_stands() -> None:
