@@ -1,13 +1,15 @@
 """What a process gives back of its memory, and what it must keep."""
 
 import ctypes
+import gc
 import mmap
 import subprocess
 import sys
+import weakref
 from pathlib import Path
 
 import pytest
-from inhand_runtime.memory import MAPPINGS, give_libraries_back
+from inhand_runtime.memory import MAPPINGS, give_libraries_back, keep_what_started
 
 pytestmark = pytest.mark.skipif(not MAPPINGS.exists(), reason="only Linux lists mappings")
 
@@ -53,6 +55,22 @@ print(faults_of(10))
 keep_what_started()
 print(len(gc.get_objects()))
 """
+
+
+def test_what_an_earlier_start_left_is_collected_by_the_next_one() -> None:
+    class Left:
+        def __init__(self) -> None:
+            self.itself = self
+
+    left = Left()
+    gone = weakref.ref(left)
+    try:
+        keep_what_started()
+        del left
+        keep_what_started()
+    finally:
+        gc.unfreeze()
+    assert gone() is None
 
 
 def test_large_arrays_are_made_again_where_the_last_ones_were() -> None:

@@ -42,7 +42,9 @@ def keep_memory() -> None:
 
 def keep_what_started() -> None:
     """Let collections of garbage pass over all that is there: a start's modules and compiled code
-    live as long as the process, and to go through them takes as long as two frames."""
+    live as long as the process, and to go through them takes as long as two frames. What an earlier
+    start left, as of a hub that starts anew, is collected before."""
+    gc.unfreeze()
     gc.collect()
     gc.freeze()
 
