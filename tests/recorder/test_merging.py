@@ -27,7 +27,7 @@ from inhand_runtime.recording import (
     read_metadata,
     read_recording,
 )
-from inhand_runtime.recording.copying import copy_message
+from inhand_runtime.recording.copying import copy_message, write_beside
 from inhand_schemas.keys import Site
 from inhand_schemas.messages import ObjectPose
 from inhand_schemas.topics import LABEL, POSE
@@ -135,13 +135,7 @@ def other_poses(path: Path, output: Path) -> Path:
             message, payload = one.message(), one.payload
             if isinstance(message, ObjectPose) and one.topic is POSE:
                 payload = POSE.encode(structs.replace(message, confidence=0.125))
-            writer.write(
-                one.key,
-                payload,
-                received_ns=one.received_ns,
-                captured_ns=one.captured_ns,
-                sequence=one.sequence,
-            )
+            write_beside(writer, one.key, one, payload)
     return output
 
 

@@ -7,6 +7,7 @@ from shutil import copytree
 import msgspec
 from inhand_lab.datasets.dataset import Dataset, load_dataset
 from inhand_runtime.recording import RecordingWriter, read_recording
+from inhand_runtime.recording.copying import write_beside
 from inhand_schemas.messages import Person, Skeletons
 
 
@@ -23,13 +24,7 @@ def lacking(dataset: Dataset, folder: Path, missing: Collection[int]) -> Dataset
                 if isinstance(message, Skeletons):
                     people = tuple(_without(person, missing) for person in message.people)
                     message = msgspec.structs.replace(message, people=people)
-                writer.write(
-                    one.key,
-                    msgspec.msgpack.encode(message),
-                    received_ns=one.received_ns,
-                    captured_ns=one.captured_ns,
-                    sequence=one.sequence,
-                )
+                write_beside(writer, one.key, one, msgspec.msgpack.encode(message))
     return copy
 
 

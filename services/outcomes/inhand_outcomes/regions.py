@@ -6,9 +6,7 @@ from typing import Annotated, Self
 
 import numpy as np
 from inhand_runtime.settings import Section
-from inhand_schemas.errors import KeyFormatError
-from inhand_schemas.keys import require_name
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from inhand_outcomes.arrays import Array
 from inhand_outcomes.floor_map import (
@@ -18,6 +16,7 @@ from inhand_outcomes.floor_map import (
     map_of_cells,
     region_shares,
 )
+from inhand_outcomes.named import named
 from inhand_outcomes.store.floor_maps import Cells, KeptFloorMap
 
 SWEPT_BITS, KIND_BITS = 0x1F, 0xE0
@@ -27,19 +26,11 @@ Metres = Annotated[float, Field(ge=-6.0, le=6.0)]
 """Within a floor map, which reaches 6 m from the rig."""
 
 
-def _name(name: str) -> str:
-    try:
-        require_name("region", name)
-    except KeyFormatError as error:
-        raise ValueError(str(error)) from None
-    return name
-
-
 class Region(Section):
     """``[[outcomes.NAME.regions]]``: a rectangle of the floor from one corner to the one across,
     each x to the rig's right and y ahead of it, metres from the floor below the rig."""
 
-    name: Annotated[str, AfterValidator(_name)]
+    name: Annotated[str, named("region")]
     begin: tuple[Metres, Metres] = Field(alias="from")
     end: tuple[Metres, Metres] = Field(alias="to")
 

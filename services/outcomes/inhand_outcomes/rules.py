@@ -15,8 +15,6 @@ from zoneinfo import ZoneInfo
 
 from inhand_runtime.settings import Section
 from inhand_runtime.settings_errors import suggestion
-from inhand_schemas.errors import KeyFormatError
-from inhand_schemas.keys import require_name
 from inhand_schemas.messages import Event
 from pydantic import AfterValidator, Field, model_validator
 
@@ -31,6 +29,7 @@ from inhand_outcomes.days import (
     seconds_of,
 )
 from inhand_outcomes.kinds import amounts_by_kind
+from inhand_outcomes.named import named
 from inhand_outcomes.outcome import adds_up
 from inhand_outcomes.totals import DayTotal, sum_of_amount
 
@@ -47,19 +46,6 @@ EventKind = Literal["goal_reached", "goal_missed", "reminder"]
 REACHED: Literal["goal_reached"] = "goal_reached"
 MISSED: Literal["goal_missed"] = "goal_missed"
 BEGUN, ENDED = "begun", "ended"
-
-
-def _named(what: str) -> AfterValidator:
-    """A check that a text can be the name of something."""
-
-    def check(name: str) -> str:
-        try:
-            require_name(what, name)
-        except KeyFormatError as error:
-            raise ValueError(str(error)) from None
-        return name
-
-    return AfterValidator(check)
 
 
 def _clock(clock: time) -> time:
@@ -84,13 +70,13 @@ class Goal(Section):
     At ``remind_at`` there is a reminder where less than the day's share is done.
     """
 
-    name: Annotated[str, _named("goal")]
+    name: Annotated[str, named("goal")]
     kind: str
     amount: str = TIMES
     at_least: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
     at_most: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
     per: Period = "day"
-    object: Annotated[str, _named("object")] | None = None
+    object: Annotated[str, named("object")] | None = None
     person: PersonNumber | str | None = None
     remind_at: tuple[Clock, ...] = ()
 

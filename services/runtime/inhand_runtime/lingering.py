@@ -6,10 +6,8 @@ their links, with nothing wrong, may then be closed too. The settings of Zenoh d
 """
 
 import contextlib
-import os
 import re
 import socket
-import stat
 import struct
 
 import psutil
@@ -31,17 +29,12 @@ def let_not_linger(number: int, ports: tuple[int, ...]) -> None:
     """Set it for a descriptor that was a socket between these ports a moment ago.
 
     The link may be gone by now and its number given to anything: what is no socket, or one between
-    other ports, stays as it is, and no second descriptor is left of it, which would hold a lock.
+    other ports, stays as it is. No second descriptor is made, which might outlive a lock's.
     """
-    with contextlib.suppress(OSError):
-        if not stat.S_ISSOCK(os.fstat(number).st_mode):
-            return
-        own = os.dup(number)  # the number stays with this socket while it is looked at
+    with contextlib.suppress(OSError):  # it is no socket, or none that is connected
+        taken = socket.socket(fileno=number)
         try:
-            taken = socket.socket(fileno=own)
-        except OSError:
-            os.close(own)
-            return
-        with taken:
             if (taken.getsockname()[1], taken.getpeername()[1]) == ports:
                 taken.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _DO_NOT_LINGER)
+        finally:
+            taken.detach()

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cache, partial
 
 import msgspec
 import numpy as np
@@ -31,20 +31,10 @@ from inhand_tracker.rig.placing import PlaceDeviation
 from inhand_tracker.rig.rig_frames import Capture, RigFrame, RigFrames
 from inhand_tracker.wire.conversion import Need
 
-
-class _Frame:
-    """A camera's frame, whose image is decoded when it is first asked for, and once."""
-
-    def __init__(self, decode: Callable[[], Image | None]) -> None:
-        self._decode = decode
-
-    @cached_property
-    def image(self) -> Image | None:
-        """What is needed of the frame; None where it is damaged, or the camera is not known."""
-        return self._decode()
-
-
-Captures = Sequence[Captured[Skeletons, _Frame]]
+Frame = Callable[[], Image | None]
+"""Gives what is needed of a camera's frame, decoded once, when it is first asked for; None where it
+is damaged, or the camera is not known."""
+Captures = Sequence[Captured[Skeletons, Frame]]
 
 
 class RigCameras(Cameras):
@@ -70,13 +60,13 @@ class RigCameras(Cameras):
         self._calibration = calibration
         self._infos: dict[str, CameraInfo] = {}
         self._info_watch = InfoWatch(daemon.health)
-        self._moments: JoinedMoments[Skeletons, _Frame] = JoinedMoments(
+        self._moments: JoinedMoments[Skeletons, Frame] = JoinedMoments(
             cameras, pixels=bool(needs), every=every
         )
-        self._moment: JoinedMoment[Skeletons, _Frame] | None = None
+        self._moment: JoinedMoment[Skeletons, Frame] | None = None
         self._frames: RigFrames | None = None
         self._places: dict[str, Pose] = {}
-        self._undecoded: dict[str, _Frame] = {}
+        self._undecoded: dict[str, Frame] = {}
         self._keys = {
             key: (topic, camera)
             for camera in cameras
@@ -100,7 +90,7 @@ class RigCameras(Cameras):
         elif topic is RGBD:
             if (message := self._daemon.decode(RGBD, sample)) is not None:
                 self._info_watch.note(RGBD.stream, camera, now)
-                frame = self._undecoded[camera] = _Frame(partial(self._decode, camera, message))
+                frame = self._undecoded[camera] = cache(partial(self._decode, camera, message))
                 self._moments.add_frame(camera, message.sequence, frame, sample.arrived)
         elif (skeletons := self._daemon.decode(SKELETONS, sample)) is not None:
             time_ns = skeletons.time_ns + self._calibration.clock_offset_ns(camera)
@@ -133,7 +123,7 @@ class RigCameras(Cameras):
         is still to be decoded when all are there."""
         for camera, frame in self._undecoded.items():
             if camera in self._places:
-                _ = frame.image
+                frame()
         self._undecoded.clear()
 
     def look(self, effort: float) -> LiveFrame:
@@ -209,7 +199,7 @@ class RigCameras(Cameras):
             return None
         captures = []
         for one in known:
-            image = one.frame.image if images and one.frame is not None else None
+            image = one.frame() if images and one.frame is not None else None
             captures.append(Capture(one.camera, one.time_ns, one.skeleton.people, image))
         return self._frames.join(captures)
 
@@ -256,7 +246,7 @@ class RigCameras(Cameras):
             )
 
 
-def _by_rig_clock(captured: Captured[Skeletons, _Frame]) -> Skeletons:
+def _by_rig_clock(captured: Captured[Skeletons, Frame]) -> Skeletons:
     """Return a capture's skeletons with their time by the rig's clock."""
     return msgspec.structs.replace(captured.skeleton, time_ns=max(captured.time_ns, 0))
 

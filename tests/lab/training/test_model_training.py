@@ -15,6 +15,7 @@ from inhand_lab.training.model_summary import summarise_model
 from inhand_lab.training.model_training import entries_for, model_stages, train
 from inhand_runtime.errors import InhandError
 from inhand_runtime.recording import RecordingWriter, read_recording
+from inhand_runtime.recording.copying import write_beside
 from inhand_tracker.model.model_file import load_model
 from waving import write_dataset
 
@@ -48,13 +49,7 @@ def rewrite_labels(path: Path, change: Callable[[dict], None]) -> None:
                 values = msgspec.msgpack.decode(payload)
                 change(values)
                 payload = msgspec.msgpack.encode(values)
-            writer.write(
-                one.key,
-                payload,
-                received_ns=one.received_ns,
-                captured_ns=one.captured_ns,
-                sequence=one.sequence,
-            )
+            write_beside(writer, one.key, one, payload)
 
 
 def test_a_label_that_is_not_a_number_is_one_line_that_names_the_file(dataset: Dataset) -> None:
@@ -165,13 +160,7 @@ def without_labels(dataset: Dataset, entry: DatasetEntry) -> None:
     path.unlink()
     with RecordingWriter(path) as writer:
         for one in messages:
-            writer.write(
-                one.key,
-                bytes(one.payload),
-                received_ns=one.received_ns,
-                captured_ns=one.captured_ns,
-                sequence=one.sequence,
-            )
+            write_beside(writer, one.key, one, bytes(one.payload))
 
 
 def with_a_nan(dataset: Dataset, entry: DatasetEntry) -> None:

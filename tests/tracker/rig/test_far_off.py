@@ -33,12 +33,17 @@ def bumped(place: Placement, metres: float) -> Placement:
 
 
 def watched(
-    walks: dict[str, Walk], truly: dict[str, Placement], seconds: float
+    walks: dict[str, Walk],
+    truly: dict[str, Placement],
+    seconds: float,
+    fuser: PeopleFuser | None = None,
+    since: float = 0.0,
 ) -> tuple[PeopleFuser, int]:
-    """The fuser after what cameras saw from where they truly are, and how many people there are at
-    last."""
-    fuser, people, random = PeopleFuser(PLACES), [], np.random.default_rng(5)
-    for frame in range(round(seconds * 1e9 / FRAME_NS)):
+    """The fuser after what cameras saw from where they truly are, ``since`` some second on, and how
+    many people there are at last."""
+    fuser = fuser or PeopleFuser(PLACES)
+    people, random = [], np.random.default_rng(5)
+    for frame in range(*(round(time * 1e9 / FRAME_NS) for time in (since, since + seconds))):
         time_ns = FRAME_NS * (frame + 1)
         seen = []
         for camera, walk in walks.items():
@@ -80,12 +85,5 @@ def test_a_camera_that_is_back_in_its_place_counts_again() -> None:
     truly = {**PLACES, "left": bumped(PLACES["left"], 2.0)}
     fuser, _ = watched(dict.fromkeys(("front", "left"), walking), truly, 8.0)
     assert fuser.left_out
-    for frame in range(240, 400):
-        time_ns = FRAME_NS * (frame + 1)
-        joints = walking(time_ns / 1e9)
-        seen = [
-            CameraPeople(camera, time_ns, [person_seen(joints, PLACES[camera], 0)])
-            for camera in ("front", "left")
-        ]
-        fuser.fuse(seen, time_ns)
+    watched(dict.fromkeys(("front", "left"), walking), PLACES, 5.3, fuser, since=8.0)
     assert not fuser.left_out

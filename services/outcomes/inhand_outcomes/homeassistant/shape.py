@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import msgspec
 
-from inhand_outcomes.kinds import HANDLED
+from inhand_outcomes.kinds import amounts_by_kind
 from inhand_outcomes.outcome import adds_up
 from inhand_outcomes.rules import Goal
 from inhand_outcomes.totals import DayTotal
@@ -52,9 +52,8 @@ def object_shape(
 ) -> ObjectShape:
     """Return the shape of an object by its use, by what was seen of it, and by what was announced
     of it before: an entity stays as long as its object does."""
-    kinds: dict[str, set[str]] = {kind: set() for kind in HANDLED}
-    for kind, amounts in USES[use].kinds.items() if use in USES else ():
-        kinds.setdefault(kind, set()).update(filter(is_shown, amounts))
+    of_use = amounts_by_kind([USES[use]] if use in USES else [])
+    kinds = {kind: set(filter(is_shown, amounts)) for kind, amounts in of_use.items()}
     for kind, amounts in before.kinds if before is not None else ():
         kinds.setdefault(kind, set()).update(amounts)
     for total in seen:
