@@ -94,7 +94,7 @@ def test_objects_of_measures_and_of_a_mesh_file_are_made_seen_and_saved(
         page.get_by_text("0 so far").wait_for()
         use = page.get_by_role("button", name="Use these marks")
         use.click()
-        page.get_by_text("click on 3 points").wait_for()
+        page.get_by_text("click on 3 points of the object or more", exact=True).wait_for()
         for number, place in enumerate(_face(page), 1):
             page.mouse.click(*place)
             page.get_by_text(f"{number} so far").wait_for()
